@@ -1,0 +1,72 @@
+// Environment files in and out: OpenEXR and Radiance .hdr, in the layouts people have them in.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+
+namespace relumine::cubemap {
+
+/// How the sphere of directions lies in an image.
+enum class Layout {
+    LatLong,       ///< 2:1; centre is +Z, left edge longitude +pi, so +X lies left of the centre; top is +Y (OpenEXR)
+    Cube,          ///< 1:6; faces +X -X +Y -Y +Z -Z stacked top to bottom, orientation as in Face (OpenEXR)
+    VerticalCross, ///< 3:4; Debevec's and HDR Shop's cross
+};
+
+[[nodiscard]] std::string_view name(Layout layout);
+
+/// Where the samples of an image lie.
+enum class Sampling {
+    TexelCentres, ///< a pixel covers its square; nearly all HDRIs
+    Borders,      ///< the outermost samples lie on the border, so edges are shared: OpenEXR files with the `envmap` attribute
+};
+
+/// Pixels that no radiance can have.
+struct BadPixels {
+    std::size_t num_nan = 0;      ///< pixels with a NaN channel
+    std::size_t num_infinite = 0; ///< pixels with an infinite and no NaN channel
+    std::size_t num_negative = 0; ///< pixels with a negative and no NaN or infinite channel
+    std::uint32_t first_x = 0;    ///< column of the first bad pixel in reading order, where there is one
+    std::uint32_t first_y = 0;
+    [[nodiscard]] std::size_t count() const { return num_nan + num_infinite + num_negative; }
+};
+
+/// An environment image as it stood in the file, with what was found out or assumed about it.
+struct EnvironmentImage {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<glm::vec3> pixels; ///< [height * width] row by row from the top; linear RGB radiance
+    Layout layout = Layout::LatLong;
+    Sampling sampling = Sampling::TexelCentres;
+    std::string assumptions; ///< one sentence: why this layout and sampling ("2:1 image without envmap attribute")
+    BadPixels bad_pixels;    ///< as found in the file
+    bool fixed = false;      ///< bad pixels were replaced
+};
+
+struct LoadOptions {
+    std::optional<Layout> layout; ///< overrides what attribute and aspect ratio say
+    bool fix_bad_pixels = false;  ///< NaN and negative become 0, infinity the largest finite value of the image; otherwise refused
+    bool refuse_bad_pixels = true; ///< false: load them as they are (for `info`)
+};
+
+/// Reads an .exr (scanline or tiled, half/float/uint, any compression, luminance-only, luminance-chroma, alpha and extra
+/// channels, any data window) or .hdr file. Throws std::runtime_error "path: expected X, got Y".
+[[nodiscard]] EnvironmentImage load_environment(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The cube-map resolution that keeps about the image's own: width / 4 of a lat-long, the face of a cube or a cross.
+[[nodiscard]] std::uint32_t natural_resolution(const EnvironmentImage& image);
+
+/// Writes a cube map as .exr (Cube: float, ZIP, `envmap` attribute; Cube or LatLong) or .hdr. LatLong is 4R x 2R. With `envmap` the samples
+/// lie on the borders, as the specification says; the file reads back to the same energy to 0.1 %. Whole or not at all.
+void save_environment(const std::filesystem::path& path, const CubeMap& map, Layout layout = Layout::Cube);
+
+} // namespace relumine::cubemap

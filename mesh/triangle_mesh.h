@@ -1,0 +1,44 @@
+// Triangle mesh: the plain arrays that every other folder works on.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace relumine::mesh {
+
+/// Three indices into TriangleMesh::positions, counter-clockwise seen from outside.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// Indexed triangle mesh. Count and order of the vertices are those of the file; unreferenced vertices, holes and
+/// non-manifold edges are kept. World axes: right-handed, +Y up; units are the file's own.
+struct TriangleMesh {
+    std::vector<glm::vec3> positions; ///< [num_vertices]
+    std::vector<Triangle> triangles;  ///< [num_triangles], every index < num_vertices
+    std::vector<glm::vec3> normals;   ///< [num_vertices], unit length, or zero where a vertex has no face with an area
+    std::vector<glm::vec3> colors;    ///< [num_vertices] linear RGB, or empty
+    std::vector<glm::vec2> uvs;       ///< [num_vertices], or empty
+
+    [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
+    [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }
+};
+
+/// Axis-aligned box around points.
+struct Bounds {
+    glm::vec3 min{0.0f};
+    glm::vec3 max{0.0f};
+
+    [[nodiscard]] glm::vec3 center() const { return 0.5f * (min + max); }
+    [[nodiscard]] glm::vec3 size() const { return max - min; }
+    /// Length of the box's diagonal, 0 for a single point.
+    [[nodiscard]] float diagonal() const;
+};
+
+/// Box around the vertices that some triangle uses (stray points do not count); around all where there is no triangle.
+[[nodiscard]] Bounds bounds(const TriangleMesh& mesh);
+
+} // namespace relumine::mesh
