@@ -49,9 +49,10 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     if (std::filesystem::is_directory(target_))
         fail(target_, "write", EISDIR);
     // mkstemp chooses a name that no other process has; the extension is kept for writers that look at it.
-    std::string name = (target_.parent_path() / ("." + target_.stem().string() + ".XXXXXX")).string();
-    name += target_.extension().string();
-    const Descriptor file(::mkstemps(name.data(), static_cast<int>(target_.extension().string().size())));
+    const std::string extension = target_.extension().string();
+    std::string name =
+        (target_.parent_path() / fmt::format(".{}.XXXXXX{}", target_.stem().string(), extension)).string();
+    const Descriptor file(::mkstemps(name.data(), static_cast<int>(extension.size())));
     if (file.fd < 0)
         fail(target_, "write", errno);
     temporary_ = name;
