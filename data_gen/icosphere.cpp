@@ -1,0 +1,148 @@
+#include "data_gen/icosphere.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace relumine::data_gen {
+namespace {
+
+constexpr std::uint32_t NumCorners = 12;
+constexpr std::uint32_t NumEdges = 30;
+
+constexpr std::array<mesh::Triangle, 20> Faces = {
+    {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+     {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+     {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
+
+// The three golden rectangles.
+std::array<glm::dvec3, NumCorners> corners() {
+    const double g = (1.0 + std::sqrt(5.0)) / 2.0;
+    return {{{-1, g, 0},
+             {1, g, 0},
+             {-1, -g, 0},
+             {1, -g, 0},
+             {0, -1, g},
+             {0, 1, g},
+             {0, -1, -g},
+             {0, 1, -g},
+             {g, 0, -1},
+             {g, 0, 1},
+             {-g, 0, -1},
+             {-g, 0, 1}}};
+}
+
+// Number of the edge between two corners, in the order in which the faces first meet them.
+class EdgeNumbers {
+public:
+    EdgeNumbers() {
+        for (const mesh::Triangle& face : Faces) {
+            for (std::size_t k = 0; k < 3; ++k) {
+                const auto edge = std::minmax({face[k], face[(k + 1) % 3]});
+                if (std::find(edges_.begin(), edges_.begin() + count_, edge) == edges_.begin() + count_) {
+                    edges_[static_cast<std::size_t>(count_++)] = edge;
+                }
+            }
+        }
+    }
+    [[nodiscard]] std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const {
+        const std::pair<std::uint32_t, std::uint32_t> edge = std::minmax(a, b);
+        return static_cast<std::uint32_t>(std::find(edges_.begin(), edges_.end(), edge) - edges_.begin());
+    }
+    [[nodiscard]] const auto& edges() const { return edges_; }
+
+private:
+    std::array<std::pair<std::uint32_t, std::uint32_t>, NumEdges> edges_;
+    std::ptrdiff_t count_ = 0;
+};
+
+} // namespace
+
+mesh::TriangleMesh icosphere(std::uint32_t frequency) {
+    if (frequency < 1 || frequency > 10'000) {
+        throw std::invalid_argument(
+            fmt::format("icosphere: expected a frequency in [1, 10000], got {}", frequency));
+    }
+    const std::uint32_t f = frequency;
+    const auto corner = corners();
+    const EdgeNumbers edge_number;
+    mesh::TriangleMesh sphere;
+    sphere.positions.reserve(10 * std::size_t{f} * f + 2);
+    const auto add = [&](const glm::dvec3& point) {
+        sphere.positions.emplace_back(glm::normalize(point));
+    };
+
+    // Vertices: the corners, then the inner points of each edge (from its lower corner), then those of each face, row by row.
+    for (const glm::dvec3& point : corner) {
+        add(point);
+    }
+    for (const auto& [a, b] : edge_number.edges()) {
+        for (std::uint32_t i = 1; i < f; ++i) {
+            add(corner[a] * double(f - i) + corner[b] * double(i));
+        }
+    }
+    for (const auto& [a, b, c] : Faces) {
+        for (std::uint32_t i = 1; i + 1 < f; ++i) {
+            for (std::uint32_t j = 1; i + j < f; ++j) {
+                add(corner[a] * double(f - i - j) + corner[b] * double(i) + corner[c] * double(j));
+            }
+        }
+    }
+
+    const auto on_edge = [&](std::uint32_t a, std::uint32_t b, std::uint32_t steps_from_a) {
+        const std::uint32_t steps = a < b ? steps_from_a : f - steps_from_a;
+        return NumCorners + edge_number(a, b) * (f - 1) + steps - 1;
+    };
+    const std::uint32_t first_inner = NumCorners + NumEdges * (f - 1);
+    const std::uint32_t inner_per_face = f < 3 ? 0 : (f - 1) * (f - 2) / 2;
+    // The vertex i steps towards the face's second corner and j towards its third.
+    const auto vertex = [&](std::uint32_t face, std::uint32_t i, std::uint32_t j) {
+        const auto [a, b, c] = Faces[face];
+        if (i == 0 && j == 0) {
+            return a;
+        }
+        if (i == f) {
+            return b;
+        }
+        if (j == f) {
+            return c;
+        }
+        if (j == 0) {
+            return on_edge(a, b, i);
+        }
+        if (i == 0) {
+            return on_edge(a, c, j);
+        }
+        if (i + j == f) {
+            return on_edge(b, c, j);
+        }
+        const std::uint32_t rows_before = (i - 1) * (f - 1) - (i - 1) * i / 2;
+        return first_inner + face * inner_per_face + rows_before + j - 1;
+    };
+    sphere.triangles.reserve(20 * std::size_t{f} * f);
+    for (std::uint32_t face = 0; face < Faces.size(); ++face) {
+        for (std::uint32_t i = 0; i < f; ++i) {
+            for (std::uint32_t j = 0; i + j < f; ++j) {
+                sphere.triangles.push_back(
+                    {vertex(face, i, j), vertex(face, i + 1, j), vertex(face, i, j + 1)});
+                if (i + j + 1 < f) {
+                    sphere.triangles.push_back(
+                        {vertex(face, i + 1, j), vertex(face, i + 1, j + 1), vertex(face, i, j + 1)});
+                }
+            }
+        }
+    }
+    return sphere;
+}
+
+std::uint32_t icosphere_frequency(std::size_t num_vertices) {
+    const double squared = (static_cast<double>(num_vertices) - 2.0) / 10.0;
+    return squared < 1.0 ? 1 : static_cast<std::uint32_t>(std::lround(std::sqrt(squared)));
+}
+
+} // namespace relumine::data_gen

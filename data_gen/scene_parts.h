@@ -1,0 +1,17 @@
+// What the scenes share; not for others.
+#pragma once
+
+#include <cstddef>
+
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::data_gen {
+
+/// Throws std::invalid_argument outside [MinSceneVertices, MaxSceneVertices].
+void check_num_vertices(std::size_t num_vertices);
+
+/// The objects with a floor of the vertices that are left, and normals.
+[[nodiscard]] mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,
+                                           std::size_t num_vertices);
+
+} // namespace relumine::data_gen

@@ -1,0 +1,160 @@
+#include "data_gen/scenes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "data_gen/icosphere.h"
+#include "data_gen/noise.h"
+#include "data_gen/scene_parts.h"
+#include "data_gen/shapes.h"
+#include "mesh/normals.h"
+
+namespace relumine::data_gen {
+namespace {
+
+constexpr double FullTurn = 2.0 * std::numbers::pi;
+
+// The knot's centre line, standing upright and leaning back; period 1.
+glm::dvec3 knot_line(double t) {
+    constexpr double Ring = 1.0;
+    constexpr double Tube = 0.42;
+    const double around = 2.0 * FullTurn * t;
+    const double across = 3.0 * FullTurn * t;
+    const double radius = Ring + Tube * std::cos(across);
+    const glm::dvec3 flat(radius * std::sin(around), radius * std::cos(around), Tube * std::sin(across));
+    const double lean = 0.35;
+    return {flat.x, flat.y * std::cos(lean) + flat.z * std::sin(lean),
+            flat.z * std::cos(lean) - flat.y * std::sin(lean)};
+}
+
+// Parameters at equal distances along the closed line, [num].
+std::vector<double> even_parameters(std::uint32_t num) {
+    constexpr int NumChords = 20'000; // the chords' length differs from the line's by less than 1e-7 of it
+    std::vector<double> length_to = {0.0};
+    for (int i = 0; i < NumChords; ++i) {
+        const double chord =
+            glm::distance(knot_line(double(i) / NumChords), knot_line(double(i + 1) / NumChords));
+        length_to.push_back(length_to.back() + chord);
+    }
+    std::vector<double> parameters;
+    for (std::uint32_t i = 0; i < num; ++i) {
+        const double wanted = length_to.back() * i / num;
+        const auto above = std::upper_bound(length_to.begin(), length_to.end(), wanted);
+        const double fraction = (wanted - above[-1]) / (above[0] - above[-1]);
+        parameters.push_back((double(above - length_to.begin() - 1) + fraction) / NumChords);
+    }
+    return parameters;
+}
+
+// Two axes across the line, turning with it so that they close up: the first is the part of the way from the ring's
+// centre line that stands square on the knot.
+std::array<glm::dvec3, 2> knot_axes(double t) {
+    constexpr double Step = 1e-5;
+    const glm::dvec3 along = glm::normalize(knot_line(t + Step) - knot_line(t - Step));
+    glm::dvec3 core(0.0);
+    // The point of the ring's centre line beside t: the mean of the knot over a turn of its tube, which is opposite to opposite.
+    const double lean = 0.35;
+    const double around = 2.0 * FullTurn * t;
+    core = {std::sin(around), std::cos(around) * std::cos(lean), -std::cos(around) * std::sin(lean)};
+    glm::dvec3 outwards = knot_line(t) - core;
+    outwards = glm::normalize(outwards - along * glm::dot(outwards, along));
+    return {outwards, glm::cross(along, outwards)};
+}
+
+} // namespace
+
+void check_num_vertices(std::size_t num_vertices) {
+    if (num_vertices < MinSceneVertices || num_vertices > MaxSceneVertices) {
+        throw std::invalid_argument(fmt::format("scene: expected {} to {} vertices, got {}", MinSceneVertices,
+                                                MaxSceneVertices, num_vertices));
+    }
+}
+
+mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side, std::size_t num_vertices) {
+    append_ground(objects, floor_side, num_vertices - std::min(num_vertices, objects.num_vertices()));
+    objects.normals = mesh::smooth_normals(objects);
+    return objects;
+}
+
+mesh::TriangleMesh knot(std::size_t num_vertices) {
+    check_num_vertices(num_vertices);
+    constexpr double LineLength = 15.1; // of knot_line; sets how even the spacing is, nothing else
+    constexpr double TubeRadius = 0.21;
+    const double wish = 0.5 * static_cast<double>(num_vertices);
+    const auto num_across =
+        static_cast<std::uint32_t>(std::lround(std::sqrt(wish * FullTurn * TubeRadius / LineLength)));
+    const auto num_along = static_cast<std::uint32_t>(std::lround(wish / num_across));
+
+    mesh::TriangleMesh mesh;
+    std::vector<glm::dvec3> centers;
+    std::vector<std::array<glm::dvec3, 2>> axes;
+    for (const double t : even_parameters(num_along)) {
+        centers.push_back(knot_line(t));
+        axes.push_back(knot_axes(t));
+    }
+    append_wrapped_grid(mesh, num_across, num_along, [&](std::uint32_t i, std::uint32_t j) {
+        const double angle = FullTurn * i / num_across;
+        return centers[j] + TubeRadius * (std::cos(angle) * axes[j][0] + std::sin(angle) * axes[j][1]);
+    });
+    constexpr float Gap = 0.05f;
+    const float lift = Gap - mesh::bounds(mesh).min.y;
+    for (glm::vec3& p : mesh.positions) {
+        p.y += lift;
+    }
+    return on_ground(std::move(mesh), 8.0, num_vertices);
+}
+
+mesh::TriangleMesh blob(std::size_t num_vertices) {
+    check_num_vertices(num_vertices);
+    mesh::TriangleMesh mesh = icosphere(icosphere_frequency(num_vertices / 2));
+    float lowest = 0.0f;
+    for (glm::vec3& p : mesh.positions) {
+        const glm::dvec3 direction(p);
+        // Broad lumps, bent by a second noise, with ridges between them and fine grain.
+        const glm::dvec3 bend(gradient_noise(1.7 * direction, 11), gradient_noise(1.7 * direction, 12),
+                              gradient_noise(1.7 * direction, 13));
+        const double lumps = fractal_noise(1.4 * direction + 0.3 * bend, 8, 1);
+        const double ridges = 1.0 - std::abs(fractal_noise(1.9 * direction + 0.2 * bend, 4, 21));
+        const double radius = 1.0 + 0.28 * lumps + 0.25 * (ridges * ridges - 0.6);
+        const glm::dvec3 rough = radius * direction;
+        // It lies on a side: heights below `bed` are pressed together, smoothly and one to one.
+        constexpr double Bed = -0.62;
+        constexpr double Softness = 0.06;
+        const double height = Bed + Softness * std::log1p(std::exp((rough.y - Bed) / Softness));
+        p = glm::vec3(glm::dvec3(rough.x, height, rough.z));
+        lowest = std::min(lowest, p.y);
+    }
+    for (glm::vec3& p : mesh.positions) {
+        p.y -= lowest;
+    }
+    return on_ground(std::move(mesh), 7.0, num_vertices);
+}
+
+mesh::TriangleMesh sphere(std::size_t num_vertices) {
+    check_num_vertices(num_vertices);
+    mesh::TriangleMesh mesh = icosphere(icosphere_frequency(num_vertices / 2));
+    for (glm::vec3& p : mesh.positions) {
+        p = SphereCenter + SphereRadius * p;
+    }
+    return on_ground(std::move(mesh), 8.0, num_vertices);
+}
+
+std::span<const Scene> scenes() {
+    static constexpr std::array<Scene, 4> Scenes = {{
+        {"colonnade", "a round temple of fluted columns: long hard and soft shadows", colonnade},
+        {"knot", "a torus knot just above the floor: soft shadows on itself and on the floor", knot},
+        {"blob", "a weathered boulder of fractal noise: small shadows everywhere", blob},
+        {"sphere", "a sphere hovering over the floor, whose shadow has a closed form", sphere},
+    }};
+    return Scenes;
+}
+
+} // namespace relumine::data_gen
