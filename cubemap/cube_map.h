@@ -14,7 +14,7 @@ namespace relumine::cubemap {
 /// 6 x R x R texels of linear RGB radiance (Rec. 709 primaries as in the files; not converted). A texel holds the mean
 /// radiance over its solid angle.
 struct CubeMap {
-    std::uint32_t resolution = 0;   ///< R, texels along a face's edge
+    std::uint32_t resolution = 0;  ///< R, texels along a face's edge
     std::vector<glm::vec3> texels; ///< [6 * R * R], face-major, then row by row from the top
 
     CubeMap() = default;
@@ -24,12 +24,17 @@ struct CubeMap {
     [[nodiscard]] std::size_t index(Face face, std::uint32_t x, std::uint32_t y) const {
         return (static_cast<std::size_t>(face) * resolution + y) * resolution + x;
     }
-    [[nodiscard]] glm::vec3& at(Face face, std::uint32_t x, std::uint32_t y) { return texels[index(face, x, y)]; }
-    [[nodiscard]] const glm::vec3& at(Face face, std::uint32_t x, std::uint32_t y) const { return texels[index(face, x, y)]; }
+    [[nodiscard]] glm::vec3& at(Face face, std::uint32_t x, std::uint32_t y) {
+        return texels[index(face, x, y)];
+    }
+    [[nodiscard]] const glm::vec3& at(Face face, std::uint32_t x, std::uint32_t y) const {
+        return texels[index(face, x, y)];
+    }
 };
 
 /// Unit direction of a texel's centre.
-[[nodiscard]] glm::dvec3 texel_direction(Face face, std::uint32_t x, std::uint32_t y, std::uint32_t resolution);
+[[nodiscard]] glm::dvec3 texel_direction(Face face, std::uint32_t x, std::uint32_t y,
+                                         std::uint32_t resolution);
 
 /// Exact solid angles of one face's texels, [R * R] row by row (the same for all faces), steradians.
 [[nodiscard]] std::vector<double> texel_solid_angles(std::uint32_t resolution);

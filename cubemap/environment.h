@@ -17,8 +17,8 @@ namespace relumine::cubemap {
 
 /// How the sphere of directions lies in an image.
 enum class Layout {
-    LatLong,       ///< 2:1; centre is +Z, left edge longitude +pi, so +X lies left of the centre; top is +Y (OpenEXR)
-    Cube,          ///< 1:6; faces +X -X +Y -Y +Z -Z stacked top to bottom, orientation as in Face (OpenEXR)
+    LatLong, ///< 2:1; centre is +Z, left edge longitude +pi, so +X lies left of the centre; top is +Y (OpenEXR)
+    Cube,    ///< 1:6; faces +X -X +Y -Y +Z -Z stacked top to bottom, orientation as in Face (OpenEXR)
     VerticalCross, ///< 3:4; Debevec's and HDR Shop's cross
 };
 
@@ -27,7 +27,7 @@ enum class Layout {
 /// Where the samples of an image lie.
 enum class Sampling {
     TexelCentres, ///< a pixel covers its square; nearly all HDRIs
-    Borders,      ///< the outermost samples lie on the border, so edges are shared: OpenEXR files with the `envmap` attribute
+    Borders, ///< the outermost samples lie on the border, so edges are shared: OpenEXR files with the `envmap` attribute
 };
 
 /// Pixels that no radiance can have.
@@ -47,20 +47,23 @@ struct EnvironmentImage {
     std::vector<glm::vec3> pixels; ///< [height * width] row by row from the top; linear RGB radiance
     Layout layout = Layout::LatLong;
     Sampling sampling = Sampling::TexelCentres;
-    std::string assumptions; ///< one sentence: why this layout and sampling ("2:1 image without envmap attribute")
-    BadPixels bad_pixels;    ///< as found in the file
-    bool fixed = false;      ///< bad pixels were replaced
+    std::string
+        assumptions; ///< one sentence: why this layout and sampling ("2:1 image without envmap attribute")
+    BadPixels bad_pixels; ///< as found in the file
+    bool fixed = false;   ///< bad pixels were replaced
 };
 
 struct LoadOptions {
     std::optional<Layout> layout; ///< overrides what attribute and aspect ratio say
-    bool fix_bad_pixels = false;  ///< NaN and negative become 0, infinity the largest finite value of the image; otherwise refused
+    bool fix_bad_pixels =
+        false; ///< NaN and negative become 0, infinity the largest finite value of the image; otherwise refused
     bool refuse_bad_pixels = true; ///< false: load them as they are (for `info`)
 };
 
 /// Reads an .exr (scanline or tiled, half/float/uint, any compression, luminance-only, luminance-chroma, alpha and extra
 /// channels, any data window) or .hdr file. Throws std::runtime_error "path: expected X, got Y".
-[[nodiscard]] EnvironmentImage load_environment(const std::filesystem::path& path, const LoadOptions& options = {});
+[[nodiscard]] EnvironmentImage load_environment(const std::filesystem::path& path,
+                                                const LoadOptions& options = {});
 
 /// The cube-map resolution that keeps about the image's own: width / 4 of a lat-long, the face of a cube or a cross.
 [[nodiscard]] std::uint32_t natural_resolution(const EnvironmentImage& image);

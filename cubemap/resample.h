@@ -16,7 +16,7 @@ namespace relumine::cubemap {
 [[nodiscard]] CubeMap resample(const CubeMap& map, std::uint32_t resolution);
 
 /// The other way round: a cube map as an image of the given layout, size and sampling; each pixel is the mean over its patch.
-[[nodiscard]] EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width, std::uint32_t height,
-                                        Sampling sampling = Sampling::TexelCentres);
+[[nodiscard]] EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width,
+                                        std::uint32_t height, Sampling sampling = Sampling::TexelCentres);
 
 } // namespace relumine::cubemap

@@ -9,8 +9,8 @@ namespace relumine::cubemap {
 
 /// Figures of an environment image. Sums are solid-angle weighted and in double; bad pixels are left out of all but the counts.
 struct EnvironmentStatistics {
-    glm::dvec3 mean_radiance{0.0};       ///< over the sphere, per channel
-    double mean_luminance = 0.0;         ///< Rec. 709 weights
+    glm::dvec3 mean_radiance{0.0}; ///< over the sphere, per channel
+    double mean_luminance = 0.0;   ///< Rec. 709 weights
     double max_luminance = 0.0;
     double min_positive_luminance = 0.0; ///< smallest luminance above zero, 0 when there is none
     double dynamic_range_ev = 0.0;       ///< log2(max / min positive)

@@ -1,0 +1,152 @@
+// Overlaps of polygons on the sphere with the texels of a cube map.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "cubemap/face.h"
+#include "cubemap/grid_cut.h"
+
+namespace relumine::cubemap {
+
+/// Solid angle of a polygon on a face, given in coordinates [-1, 1]^2: the density (1 + u^2 + v^2)^(-3/2) to second order about
+/// `centre`. The expansion is additive: pieces of one cell add up to the cell if all use the cell's centre. Relative
+/// error below (distance from centre)^3 / 2 for a piece and far less for a whole cell.
+[[nodiscard]] inline double solid_angle_about(const glm::dvec2& centre, const Polygon& polygon) {
+    if (polygon.size() < 3)
+        return 0.0;
+    double moment = 0.0, moment_x = 0.0, moment_y = 0.0, moment_xx = 0.0, moment_xy = 0.0, moment_yy = 0.0;
+    glm::dvec2 a = polygon.back() - centre;
+    for (const glm::dvec2& corner : polygon) {
+        const glm::dvec2 b = corner - centre;
+        const double cross = a.x * b.y - b.x * a.y;
+        moment += cross;
+        moment_x += (a.x + b.x) * cross;
+        moment_y += (a.y + b.y) * cross;
+        moment_xx += (a.x * a.x + a.x * b.x + b.x * b.x) * cross;
+        moment_xy += (a.x * b.y + 2.0 * (a.x * a.y + b.x * b.y) + b.x * a.y) * cross;
+        moment_yy += (a.y * a.y + a.y * b.y + b.y * b.y) * cross;
+        a = b;
+    }
+    const double inverse = 1.0 / (1.0 + glm::dot(centre, centre));
+    const double density = inverse * std::sqrt(inverse);
+    const double slope = -3.0 * inverse, bend = 15.0 * inverse * inverse; // times u, v and their products
+    return density *
+           (moment / 2.0 + slope * (centre.x * moment_x + centre.y * moment_y) / 6.0 +
+            ((slope + bend * centre.x * centre.x) * moment_xx +
+             (slope + bend * centre.y * centre.y) * moment_yy + bend * centre.x * centre.y * moment_xy) /
+                24.0);
+}
+
+/// Finds the texels under a spherical polygon. Keeps its buffers; one per thread.
+class TexelOverlaps {
+public:
+    explicit TexelOverlaps(std::uint32_t resolution)
+        : resolution_(resolution), cells_per_texel_((FinestCell + resolution - 1) / resolution),
+          num_cells_(resolution * cells_per_texel_) {}
+
+    /// Calls `visit(face, x, y, solid_angle)` for the texels that the polygon overlaps, some of them more than once. Corners are directions
+    /// of any length, clockwise seen from the centre of the sphere and within a half-sphere; edges are great circles.
+    template<typename Visit>
+    void find(std::span<const glm::dvec3> corners, const Visit& visit) {
+        const Face first = face_point(corners.front()).face;
+        bool one_face = true;
+        for (const glm::dvec3& corner : corners)
+            one_face = one_face && face_point(corner).face == first;
+        if (one_face) {
+            clipped_.assign(corners.begin(), corners.end());
+            cut(first, visit);
+            return;
+        }
+        for (const Face face : AllFaces) {
+            clip(corners, face);
+            if (clipped_.size() >= 3)
+                cut(face, visit);
+        }
+    }
+
+private:
+    // Finer cells than 1/128 of a face are needed nowhere: the solid angles of pieces are good to 3e-7 there.
+    static constexpr std::uint32_t FinestCell = 128;
+
+    /// Axes of a face: to the right and down in its image, outwards.
+    struct Axes {
+        glm::dvec3 right, down, out;
+    };
+    [[nodiscard]] static Axes axes(Face face) {
+        const glm::dvec3 out = cube_point(face, 0.5, 0.5);
+        return {cube_point(face, 1.0, 0.5) - out, cube_point(face, 0.5, 1.0) - out, out};
+    }
+
+    /// The part of the polygon inside the pyramid of a face, into clipped_.
+    void clip(std::span<const glm::dvec3> corners, Face face) {
+        const auto [right, down, out] = axes(face);
+        const std::array<glm::dvec3, 4> planes = {out - right, out + right, out - down, out + down};
+        clipped_.assign(corners.begin(), corners.end());
+        for (const glm::dvec3& plane : planes) {
+            kept_.clear();
+            if (clipped_.empty())
+                return;
+            glm::dvec3 previous = clipped_.back();
+            double previous_height = glm::dot(plane, previous);
+            for (const glm::dvec3& current : clipped_) {
+                const double height = glm::dot(plane, current);
+                if ((height < 0.0 && previous_height > 0.0) || (height > 0.0 && previous_height < 0.0))
+                    kept_.push_back(previous +
+                                    (current - previous) * (previous_height / (previous_height - height)));
+                if (height >= 0.0)
+                    kept_.push_back(current);
+                previous = current;
+                previous_height = height;
+            }
+            std::swap(clipped_, kept_);
+        }
+    }
+
+    template<typename Visit>
+    void cut(Face face, const Visit& visit) {
+        const auto [right, down, out] = axes(face);
+        const double n = num_cells_;
+        polygon_.clear();
+        for (const glm::dvec3& corner : clipped_) {
+            const double distance = glm::dot(out, corner);
+            if (!(distance > 0.0))
+                return; // nothing but the origin itself
+            polygon_.emplace_back((glm::dot(right, corner) / distance + 1.0) * 0.5 * n,
+                                  (glm::dot(down, corner) / distance + 1.0) * 0.5 * n);
+        }
+        UnitLines columns(num_cells_), rows(num_cells_);
+        cutter_.cut(polygon_, columns, rows, [&](std::size_t column, std::size_t row, const Polygon& piece) {
+            to_face(piece);
+            const glm::dvec2 centre((2.0 * static_cast<double>(column) + 1.0) / n - 1.0,
+                                    (2.0 * static_cast<double>(row) + 1.0) / n - 1.0);
+            const double overlap = solid_angle_about(centre, scaled_);
+            if (overlap != 0.0)
+                visit(face, static_cast<std::uint32_t>(column / cells_per_texel_),
+                      static_cast<std::uint32_t>(row / cells_per_texel_), overlap);
+        });
+    }
+
+    /// From units of cells to [-1, 1]^2.
+    void to_face(const Polygon& piece) {
+        scaled_.clear();
+        for (const glm::dvec2& point : piece)
+            scaled_.push_back(point * (2.0 / num_cells_) - 1.0);
+    }
+
+    std::uint32_t resolution_, cells_per_texel_, num_cells_;
+    std::vector<glm::dvec3> clipped_, kept_;
+    Polygon polygon_, scaled_;
+    GridCutter cutter_;
+};
+
+} // namespace relumine::cubemap
