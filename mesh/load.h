@@ -13,9 +13,12 @@ enum class NormalSource {
 };
 
 /// Reads a mesh. The format is told by the extension (.obj .ply .off .stl, any case). Vertices keep the file's count
-/// and order (STL, which has no vertices, is welded exactly); polygons are triangulated, concave ones included.
-/// Throws std::runtime_error "path: expected X, got Y" when the file cannot be read, has no face, an index out of range,
-/// a position that is not finite, or declares more than it can hold.
+/// and order (STL, which has no vertices, is welded exactly); polygons are triangulated, concave ones included, n corners into
+/// n - 2 triangles, degenerate ones as well. Faces of one or two corners are skipped.
+/// Colours come as the file has them, bytes divided by 255, without alpha; those of faces are skipped. Colours and uvs are
+/// left out where some are not finite, or where a vertex has none or several (uvs of OBJ).
+/// Throws std::runtime_error "path: expected X, got Y" when the file cannot be read, has no face of three corners, an index
+/// out of range, a position that is not finite, or declares more or less than it holds.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path, NormalSource normals = NormalSource::File);
 
 } // namespace relumine::mesh

@@ -19,9 +19,10 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct TriangleMesh {
     std::vector<glm::vec3> positions; ///< [num_vertices]
     std::vector<Triangle> triangles;  ///< [num_triangles], every index < num_vertices
-    std::vector<glm::vec3> normals;   ///< [num_vertices], unit length, or zero where a vertex has no face with an area
-    std::vector<glm::vec3> colors;    ///< [num_vertices] linear RGB, or empty
-    std::vector<glm::vec2> uvs;       ///< [num_vertices], or empty
+    std::vector<glm::vec3>
+        normals; ///< [num_vertices], unit length, or zero where a vertex has no face with an area
+    std::vector<glm::vec3> colors; ///< [num_vertices] linear RGB, or empty
+    std::vector<glm::vec2> uvs;    ///< [num_vertices], or empty
 
     [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
     [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }

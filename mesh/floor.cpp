@@ -1,0 +1,67 @@
+#include "mesh/floor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace relumine::mesh {
+
+namespace {
+
+/// Fills an attribute up to `num_vertices` if the mesh has it.
+template<class Value>
+void extend(std::vector<Value>& attribute, std::size_t num_vertices, const Value& value) {
+    if (!attribute.empty())
+        attribute.resize(num_vertices, value);
+}
+
+} // namespace
+
+void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
+    constexpr std::uint64_t MaxVertices = std::numeric_limits<std::uint32_t>::max();
+    const std::size_t first = mesh.num_vertices();
+    const std::uint64_t num_vertices = std::uint64_t{n} * n;
+    if (n < 2)
+        throw std::invalid_argument(
+            fmt::format("floor: expected at least 2 x 2 vertices, got {} x {}", n, n));
+    if (num_vertices + first > MaxVertices)
+        throw std::invalid_argument(fmt::format("floor: expected at most {} vertices in all, got {}",
+                                                MaxVertices, num_vertices + first));
+
+    const Bounds box = bounds(mesh);
+    const double horizontal = std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
+    const double side = scale * (horizontal > 0.0 ? horizontal : double{box.diagonal()});
+    const glm::dvec3 center = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+    const double farthest = std::max(std::abs(center.x), std::abs(center.z)) + 0.5 * side;
+    if (!(side > 0.0) || !(farthest <= double{std::numeric_limits<float>::max()}))
+        throw std::invalid_argument(
+            fmt::format("floor: expected a positive, finite side, got {} times the mesh's size", scale));
+
+    mesh.positions.reserve(first + num_vertices);
+    for (std::uint32_t row = 0; row < n; ++row)
+        for (std::uint32_t column = 0; column < n; ++column) {
+            const double u = static_cast<double>(column) / (n - 1) - 0.5;
+            const double v = static_cast<double>(row) / (n - 1) - 0.5;
+            mesh.positions.emplace_back(static_cast<float>(center.x + side * u), box.min.y,
+                                        static_cast<float>(center.z + side * v));
+        }
+    extend(mesh.normals, mesh.num_vertices(), glm::vec3(0.0f, 1.0f, 0.0f));
+    extend(mesh.colors, mesh.num_vertices(), glm::vec3(1.0f));
+    extend(mesh.uvs, mesh.num_vertices(), glm::vec2(0.0f));
+
+    mesh.triangles.reserve(mesh.num_triangles() + 2 * std::size_t{n - 1} * (n - 1));
+    for (std::uint32_t row = 0; row + 1 < n; ++row)
+        for (std::uint32_t column = 0; column + 1 < n; ++column) {
+            // a b   +X to the right, +Z down: counter-clockwise seen from above is a c b.
+            // c d
+            const std::uint32_t a = static_cast<std::uint32_t>(first) + row * n + column;
+            const std::uint32_t b = a + 1, c = a + n, d = c + 1;
+            mesh.triangles.push_back({a, c, b});
+            mesh.triangles.push_back({b, c, d});
+        }
+}
+
+} // namespace relumine::mesh

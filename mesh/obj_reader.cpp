@@ -1,0 +1,198 @@
+// Wavefront OBJ: v (with colours), vt, vn and f; everything else in the format (groups, materials, lines, curves) is skipped.
+//
+// Our own reader, since no library in Debian reads OBJ without silent changes: OpenMesh drops vertices with an unreadable or
+// non-finite number (all later indices then mean another vertex) and everything after a line's continuation; tinyobjloader
+// reads such numbers as 0, wraps indices at 32 bits, trips over comments behind a face and stores at most 255 corners per face;
+// Assimp splits vertices per corner; CGAL refuses lines, points and unusual white space.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "mesh/polygon_soup.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+constexpr std::uint32_t NoIndex = std::numeric_limits<std::uint32_t>::max();
+
+/// What an OBJ corner refers to, counted from 0; NoIndex where it has no texture coordinate or normal.
+struct Corner {
+    std::uint32_t position = NoIndex;
+    std::uint32_t uv = NoIndex;
+    std::uint32_t normal = NoIndex;
+};
+
+class ObjReader {
+public:
+    explicit ObjReader(std::string_view text) : reader_(text, '#') {}
+    PolygonSoup read();
+
+private:
+    bool next_statement();
+    void read_vertex();
+    void read_uv();
+    void read_face();
+    [[nodiscard]] std::uint32_t index(std::string_view word, std::size_t count) const;
+    [[nodiscard]] Corner corner(std::string_view word) const;
+    void check_indices();
+    void sum_normals();
+    void gather_uvs();
+
+    TextReader reader_;
+    std::vector<std::string_view> words_;
+    PolygonSoup soup_;
+    std::vector<glm::vec2> uvs_;
+    std::vector<glm::vec3> normals_;
+    std::vector<Corner> corners_; ///< parallel to soup_.corners
+};
+
+/// A statement is a line and those that a backslash at the end joins to it.
+bool ObjReader::next_statement() {
+    words_.clear();
+    while (reader_.next_line()) {
+        words_.insert(words_.end(), reader_.words().begin(), reader_.words().end());
+        if (!words_.back().ends_with('\\'))
+            return true;
+        words_.back().remove_suffix(1);
+        if (words_.back().empty())
+            words_.pop_back();
+    }
+    return !words_.empty();
+}
+
+void ObjReader::read_vertex() {
+    // x y z, x y z w, x y z r g b or x y z r g b a; the weight w is for curves alone.
+    const std::size_t num_values = words_.size() - 1;
+    if (num_values < 3 || num_values == 5 || num_values > 7)
+        reader_.fail("3, 4, 6 or 7 numbers of a vertex", fmt::format("{}", num_values));
+    std::array<float, 7> values{};
+    for (std::size_t i = 0; i < num_values; ++i)
+        values[i] = static_cast<float>(reader_.number(words_[i + 1]));
+    if (num_values >= 6 && soup_.colors.size() == soup_.positions.size())
+        soup_.colors.emplace_back(values[3], values[4], values[5]);
+    soup_.positions.emplace_back(values[0], values[1], values[2]);
+}
+
+void ObjReader::read_uv() {
+    if (words_.size() < 2 || words_.size() > 4)
+        reader_.fail("1, 2 or 3 texture coordinates", fmt::format("{}", words_.size() - 1));
+    uvs_.emplace_back(reader_.number(words_[1]), words_.size() > 2 ? reader_.number(words_[2]) : 0.0);
+}
+
+/// Indices count from 1, or backwards from the newest element (-1). Elements that follow later in the file are allowed.
+std::uint32_t ObjReader::index(std::string_view word, std::size_t count) const {
+    const std::int64_t written = reader_.integer(word);
+    const std::int64_t result = written > 0 ? written - 1 : static_cast<std::int64_t>(count) + written;
+    if (written == 0 || result < 0 || result >= std::int64_t{NoIndex})
+        reader_.fail(fmt::format("an index (1 is the first, -1 the newest of {})", count), quoted(word));
+    return static_cast<std::uint32_t>(result);
+}
+
+/// v, v/t, v//n or v/t/n; v/ and v// occur, too.
+Corner ObjReader::corner(std::string_view word) const {
+    const std::size_t slash = std::min(word.find('/'), word.size());
+    const std::string_view rest = word.substr(std::min(slash + 1, word.size()));
+    const std::size_t second_slash = std::min(rest.find('/'), rest.size());
+    const std::string_view uv = rest.substr(0, second_slash);
+    const std::string_view normal = rest.substr(std::min(second_slash + 1, rest.size()));
+    Corner result;
+    result.position = index(word.substr(0, slash), soup_.positions.size());
+    if (!uv.empty())
+        result.uv = index(uv, uvs_.size());
+    if (!normal.empty())
+        result.normal = index(normal, normals_.size());
+    return result;
+}
+
+void ObjReader::read_face() {
+    for (std::size_t i = 1; i < words_.size(); ++i) {
+        corners_.push_back(corner(words_[i]));
+        soup_.corners.push_back(corners_.back().position);
+    }
+    soup_.end_face();
+}
+
+/// Files that refer to texture coordinates or normals but have none at all are common and lose nothing but these.
+void ObjReader::check_indices() {
+    const auto check = [](const char* what, std::uint32_t index, std::size_t count) {
+        if (index != NoIndex && index >= count)
+            throw std::runtime_error(
+                fmt::format("expected {} indices of 1 to {}, got {}", what, count, std::uint64_t{index} + 1));
+    };
+    for (Corner& corner : corners_) {
+        if (uvs_.empty())
+            corner.uv = NoIndex;
+        if (normals_.empty())
+            corner.normal = NoIndex;
+        check("vertex", corner.position, soup_.positions.size());
+        check("texture coordinate", corner.uv, uvs_.size());
+        check("normal", corner.normal, normals_.size());
+    }
+}
+
+/// A vertex has the sum of its corners' normals; none has one unless all corners do.
+void ObjReader::sum_normals() {
+    std::vector<glm::vec3> sums(soup_.positions.size(), glm::vec3(0.0f));
+    for (const Corner& corner : corners_) {
+        if (corner.normal == NoIndex)
+            return;
+        const glm::vec3 normal = normals_[corner.normal];
+        const float length = glm::length(normal);
+        sums[corner.position] += length > 0.0f ? normal / length : normal;
+    }
+    soup_.normals = std::move(sums);
+}
+
+/// The mesh has texture coordinates if every corner has one and those of one vertex agree.
+void ObjReader::gather_uvs() {
+    std::vector<std::optional<glm::vec2>> gathered(soup_.positions.size());
+    for (const Corner& corner : corners_) {
+        if (corner.uv == NoIndex)
+            return;
+        std::optional<glm::vec2>& uv = gathered[corner.position];
+        if (uv && *uv != uvs_[corner.uv])
+            return;
+        uv = uvs_[corner.uv];
+    }
+    soup_.uvs.reserve(gathered.size());
+    for (const std::optional<glm::vec2>& uv : gathered)
+        soup_.uvs.push_back(uv.value_or(glm::vec2(0.0f)));
+}
+
+PolygonSoup ObjReader::read() {
+    while (next_statement()) {
+        const std::string_view keyword = words_[0];
+        if (keyword == "v")
+            read_vertex();
+        else if (keyword == "vt")
+            read_uv();
+        else if (keyword == "vn") {
+            if (words_.size() != 4)
+                reader_.fail("3 numbers of a normal", fmt::format("{}", words_.size() - 1));
+            normals_.emplace_back(reader_.number(words_[1]), reader_.number(words_[2]),
+                                  reader_.number(words_[3]));
+        } else if (keyword == "f" || keyword == "fo") // fo: faces in files of the eighties
+            read_face();
+    }
+    check_indices();
+    sum_normals();
+    gather_uvs();
+    if (soup_.colors.size() != soup_.positions.size())
+        soup_.colors.clear();
+    normalize_text_colors(soup_.colors);
+    return std::move(soup_);
+}
+
+} // namespace
+
+PolygonSoup read_obj(std::span<const std::byte> bytes) {
+    return ObjReader(as_text(bytes)).read();
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,154 @@
+// Object File Format (Geomview): [ST][C][N]OFF, ASCII. One vertex and one face per line; comments anywhere; faces may end in up
+// to four colour values, which are skipped; colours of vertices have three or four values.
+//
+// Our own reader, since OpenMesh refuses comments and misreads polygons followed by colours and the counts on the keyword's
+// line; Assimp misreads comments between vertices and faces. CGAL reads all of these, but accepts a file with too many
+// lines or values, and would be a dependency (with Boost and GMP) for this format alone.
+#include <fmt/format.h>
+
+#include "mesh/polygon_soup.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+/// What the keyword says of each vertex beyond its position, in the order of the file.
+struct Layout {
+    bool has_normal = false;
+    bool has_color = false;
+    bool has_uv = false;
+};
+
+struct Counts {
+    std::size_t vertices, faces;
+};
+
+/// Takes `prefix` off the front of `text`.
+bool take(std::string_view& text, std::string_view prefix) {
+    const bool found = text.starts_with(prefix);
+    if (found)
+        text.remove_prefix(prefix.size());
+    return found;
+}
+
+class OffReader {
+public:
+    explicit OffReader(std::string_view text) : reader_(text, '#'), num_bytes_(text.size()) {}
+    PolygonSoup read();
+
+private:
+    std::vector<std::string_view> read_keyword();
+    Counts read_counts();
+    void read_vertex();
+    void read_face(std::size_t num_vertices);
+
+    TextReader reader_;
+    std::size_t num_bytes_;
+    Layout layout_;
+    PolygonSoup soup_;
+};
+
+/// Reads the optional keyword into the layout; returns the words that follow it in its line.
+std::vector<std::string_view> OffReader::read_keyword() {
+    if (!reader_.next_line())
+        reader_.fail("an OFF header", "the end of the file");
+    std::vector<std::string_view> words = reader_.words();
+    std::string_view keyword = words[0];
+    layout_.has_uv = take(keyword, "ST");
+    layout_.has_color = take(keyword, "C");
+    layout_.has_normal = take(keyword, "N");
+    const bool has_keyword = take(keyword, "OFF");
+    if (!has_keyword && (keyword.size() != words[0].size() || keyword[0] < '0' || keyword[0] > '9'))
+        reader_.fail("OFF with an optional ST, C, N in front, in three dimensions", quoted(words[0]));
+    if (words.size() > 1 && words[1] == "BINARY")
+        reader_.fail("ASCII OFF", "'BINARY'");
+    // Some files lack the space between the keyword and the counts (ModelNet's).
+    words[0] = keyword;
+    if (keyword.empty())
+        words.erase(words.begin());
+    return words;
+}
+
+Counts OffReader::read_counts() {
+    std::vector<std::string_view> words = read_keyword();
+    if (words.empty() && reader_.next_line())
+        words = reader_.words();
+    if (words.size() != 3)
+        reader_.fail("the numbers of vertices, faces and edges", fmt::format("{} values", words.size()));
+    // A vertex takes at least six bytes ("0 0 0" and the line's end), a face two.
+    const std::int64_t vertices = reader_.integer(words[0]), faces = reader_.integer(words[1]);
+    static_cast<void>(reader_.integer(words[2]));
+    const auto limit = static_cast<std::int64_t>(num_bytes_);
+    if (vertices < 0 || faces < 0 || vertices > limit / 6 || faces > limit / 2)
+        reader_.fail(fmt::format("numbers of vertices and faces that fit into {} bytes", num_bytes_),
+                     fmt::format("{} and {}", vertices, faces));
+    return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(faces)};
+}
+
+void OffReader::read_vertex() {
+    const std::size_t num_colors = layout_.has_color ? 3 : 0;
+    const std::size_t num_values =
+        3u + (layout_.has_normal ? 3u : 0u) + num_colors + (layout_.has_uv ? 2u : 0u);
+    const std::size_t num_words = reader_.next_line() ? reader_.words().size() : 0;
+    const bool has_alpha = layout_.has_color && num_words == num_values + 1;
+    if (num_words != num_values && !has_alpha)
+        reader_.fail(fmt::format("{} numbers of a vertex", num_values), fmt::format("{}", num_words));
+    std::size_t next = 3;
+    soup_.positions.push_back(reader_.vector(0));
+    if (layout_.has_normal) {
+        soup_.normals.push_back(reader_.vector(next));
+        next += 3;
+    }
+    if (layout_.has_color) {
+        soup_.colors.push_back(reader_.vector(next));
+        next += has_alpha ? 4 : 3;
+    }
+    if (layout_.has_uv)
+        soup_.uvs.emplace_back(reader_.number(reader_.words()[next]),
+                               reader_.number(reader_.words()[next + 1]));
+}
+
+void OffReader::read_face(std::size_t num_vertices) {
+    if (!reader_.next_line())
+        reader_.fail("a face", "the end of the file");
+    const std::vector<std::string_view>& words = reader_.words();
+    const std::int64_t num_corners = reader_.integer(words[0]);
+    const auto num_others = static_cast<std::int64_t>(words.size()) - 1;
+    if (num_corners < 0 || num_corners > num_others || num_others - num_corners > 4)
+        reader_.fail(fmt::format("{} corners and at most 4 colour values", num_corners),
+                     fmt::format("{} values", num_others));
+    for (std::size_t i = 1; i <= static_cast<std::size_t>(num_corners); ++i) {
+        const std::int64_t index = reader_.integer(words[i]);
+        if (index < 0 || static_cast<std::size_t>(index) >= num_vertices)
+            reader_.fail(
+                fmt::format("a vertex index of 0 to {}", static_cast<std::int64_t>(num_vertices) - 1),
+                quoted(words[i]));
+        soup_.corners.push_back(static_cast<std::uint32_t>(index));
+    }
+    for (std::size_t i = static_cast<std::size_t>(num_corners) + 1; i < words.size(); ++i)
+        static_cast<void>(reader_.number(words[i]));
+    soup_.end_face();
+}
+
+PolygonSoup OffReader::read() {
+    const Counts counts = read_counts();
+    soup_.positions.reserve(counts.vertices);
+    for (std::size_t i = 0; i < counts.vertices; ++i)
+        read_vertex();
+    for (std::size_t i = 0; i < counts.faces; ++i)
+        read_face(counts.vertices);
+    if (reader_.next_line())
+        reader_.fail(fmt::format("nothing after {} vertices and {} faces", counts.vertices, counts.faces),
+                     quoted(reader_.words()[0]));
+    normalize_text_colors(soup_.colors);
+    return std::move(soup_);
+}
+
+} // namespace
+
+PolygonSoup read_off(std::span<const std::byte> bytes) {
+    return OffReader(as_text(bytes)).read();
+}
+
+} // namespace relumine::mesh

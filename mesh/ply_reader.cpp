@@ -1,0 +1,382 @@
+// Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, any number type for any property, further
+// elements, properties and lists skipped, the elements in any order.
+//
+// Our own reader, since OpenMesh misreads or refuses lists beside the index list (on vertices, faces or other elements),
+// lists with 32-bit sizes and any file that declares more than it has (it tries to allocate it); Assimp loses track in elements
+// that hold lists and would be a large dependency for this format alone; CGAL refuses 16-bit indices and checks no sizes. The
+// other small libraries (miniply, happly, tinyply) are not in Debian.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "mesh/polygon_soup.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
+
+struct Property {
+    std::string_view name;
+    Type type = Type::Int8;
+    std::optional<Type> size_type; ///< of a list's length
+};
+
+struct Element {
+    std::string_view name;
+    std::uint64_t count = 0;
+    std::vector<Property> properties;
+};
+
+struct Header {
+    std::string_view format;
+    std::vector<Element> elements;
+    std::size_t num_bytes = 0; ///< where the data begins
+};
+
+std::size_t size_of(Type type) {
+    constexpr std::array<std::size_t, 8> Sizes = {1, 1, 2, 2, 4, 4, 4, 8};
+    return Sizes[static_cast<std::size_t>(type)];
+}
+
+bool is_float(Type type) {
+    return type == Type::Float32 || type == Type::Float64;
+}
+
+Type type_named(std::string_view name, const TextReader& reader) {
+    constexpr std::array<std::array<std::string_view, 2>, 8> Names = {{{"char", "int8"},
+                                                                       {"uchar", "uint8"},
+                                                                       {"short", "int16"},
+                                                                       {"ushort", "uint16"},
+                                                                       {"int", "int32"},
+                                                                       {"uint", "uint32"},
+                                                                       {"float", "float32"},
+                                                                       {"double", "float64"}}};
+    for (std::size_t i = 0; i < Names.size(); ++i)
+        if (name == Names[i][0] || name == Names[i][1])
+            return static_cast<Type>(i);
+    reader.fail("a number type such as float or uchar", quoted(name));
+}
+
+void read_property(const TextReader& reader, Header& header) {
+    const std::vector<std::string_view>& words = reader.words();
+    if (header.elements.empty())
+        reader.fail("an element before its properties", quoted(words[0]));
+    Property property;
+    if (words.size() == 5 && words[1] == "list") {
+        property.size_type = type_named(words[2], reader);
+        if (is_float(*property.size_type))
+            reader.fail("a whole number as the size of a list", quoted(words[2]));
+        property.type = type_named(words[3], reader);
+    } else if (words.size() == 3)
+        property.type = type_named(words[1], reader);
+    else
+        reader.fail("'property TYPE NAME' or 'property list TYPE TYPE NAME'",
+                    fmt::format("{} words", words.size()));
+    property.name = words.back();
+    header.elements.back().properties.push_back(property);
+}
+
+/// Finds the line "end_header"; the header's text ends before it, the data begin after it.
+std::pair<std::string_view, std::size_t> split_header(std::string_view text) {
+    constexpr std::string_view EndKeyword = "end_header";
+    for (std::size_t at = text.find(EndKeyword); at != std::string_view::npos;
+         at = text.find(EndKeyword, at + 1)) {
+        std::size_t end = text.find_first_not_of(" \t", at + EndKeyword.size());
+        if (at == 0 || (text[at - 1] != '\n' && text[at - 1] != '\r') || end == std::string_view::npos ||
+            (text[end] != '\n' && text[end] != '\r'))
+            continue;
+        // After a lone CR the first byte of the data may happen to be an LF: the first line's end tells what ends lines.
+        const std::string_view first_end = text.substr(text.find_first_of("\r\n"), 2);
+        const bool lone_cr = first_end[0] == '\r' && first_end != "\r\n";
+        end += text.substr(end, 2) == "\r\n" && !lone_cr ? 2 : 1;
+        return {text.substr(0, at), end};
+    }
+    throw std::runtime_error("expected a PLY header that ends in 'end_header', got none");
+}
+
+Header read_header(std::string_view text) {
+    if (!text.starts_with("ply\n") && !text.starts_with("ply\r"))
+        throw std::runtime_error(
+            fmt::format("expected a PLY file that begins with 'ply', got {}", quoted(text.substr(0, 3))));
+    Header header;
+    const auto [header_text, num_bytes] = split_header(text);
+    header.num_bytes = num_bytes;
+    TextReader reader(header_text);
+    reader.next_line();
+    while (reader.next_line()) {
+        const std::vector<std::string_view>& words = reader.words();
+        if (words[0] == "comment" || words[0] == "obj_info")
+            continue;
+        if (words[0] == "format" && words.size() == 3 && words[2] == "1.0")
+            header.format = words[1];
+        else if (words[0] == "element" && words.size() == 3) {
+            const std::int64_t count = reader.integer(words[2]);
+            if (count < 0)
+                reader.fail("a number of elements", quoted(words[2]));
+            for (const Element& element : header.elements)
+                if (element.name == words[1])
+                    reader.fail("each element once", quoted(words[1]));
+            header.elements.push_back({words[1], static_cast<std::uint64_t>(count), {}});
+        } else if (words[0] == "property")
+            read_property(reader, header);
+        else
+            reader.fail("format 1.0, element, property, comment or obj_info", quoted(words[0]));
+    }
+    return header;
+}
+
+/// Numbers of an ASCII body.
+class AsciiValues {
+public:
+    static constexpr bool IsBinary = false;
+    explicit AsciiValues(std::string_view body) : reader_(body), num_bytes_(body.size()) {}
+    double next(Type /*type*/) { return reader_.number(reader_.next_word("a number")); }
+    [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
+    void expect_end() {
+        if (!reader_.at_end())
+            reader_.fail("the end of the data", quoted(reader_.words()[0]));
+    }
+
+private:
+    TextReader reader_;
+    std::size_t num_bytes_;
+};
+
+/// Numbers of a binary body, in the order of bytes `Order`.
+template<std::endian Order>
+class BinaryValues {
+public:
+    static constexpr bool IsBinary = true;
+    explicit BinaryValues(std::string_view body) : rest_(body) {}
+    double next(Type type) {
+        switch (type) {
+        case Type::Int8:
+            return take<std::int8_t>();
+        case Type::Uint8:
+            return take<std::uint8_t>();
+        case Type::Int16:
+            return take<std::int16_t>();
+        case Type::Uint16:
+            return take<std::uint16_t>();
+        case Type::Int32:
+            return take<std::int32_t>();
+        case Type::Uint32:
+            return take<std::uint32_t>();
+        case Type::Float32:
+            return take<float>();
+        case Type::Float64:
+            return take<double>();
+        }
+        return 0.0;
+    }
+    [[nodiscard]] std::size_t num_bytes() const { return rest_.size(); }
+    void expect_end() const {
+        if (rest_.find_first_not_of(" \t\r\n") != std::string_view::npos)
+            throw std::runtime_error(
+                fmt::format("expected the end of the data, got {} bytes more", rest_.size()));
+    }
+
+private:
+    template<class Value>
+    Value take() {
+        std::array<char, sizeof(Value)> bytes;
+        if (rest_.size() < bytes.size())
+            throw std::runtime_error(
+                "expected all elements that the header declares, got the end of the file");
+        std::copy_n(rest_.begin(), bytes.size(), bytes.begin());
+        rest_.remove_prefix(bytes.size());
+        if constexpr (Order != std::endian::native)
+            std::reverse(bytes.begin(), bytes.end());
+        return std::bit_cast<Value>(bytes);
+    }
+
+    std::string_view rest_;
+};
+
+/// Refuses a header that declares more than the body can hold, before anything is allocated.
+void check_sizes(const Header& header, std::size_t num_bytes, bool is_binary) {
+    for (const Element& element : header.elements) {
+        std::size_t least =
+            0; // bytes of one element; an empty list is its size alone, an ASCII number a digit and a space
+        for (const Property& property : element.properties)
+            least += is_binary ? size_of(property.size_type.value_or(property.type)) : 2;
+        if (least > 0 && element.count > (num_bytes + 1) / least)
+            throw std::runtime_error(
+                fmt::format("expected {} elements '{}' of {} bytes or more each, got {} bytes in all",
+                            element.count, element.name, least, num_bytes));
+    }
+}
+
+/// Takes the length of a list.
+template<class Values>
+std::uint32_t list_size(const Property& property, Values& values) {
+    const double size = values.next(*property.size_type);
+    if (!(size >= 0.0 && size <= double{std::numeric_limits<std::uint32_t>::max()}) ||
+        size != std::floor(size))
+        throw std::runtime_error(
+            fmt::format("expected the length of the list '{}', got {}", property.name, size));
+    return static_cast<std::uint32_t>(size);
+}
+
+template<class Values>
+void skip(const Property& property, Values& values) {
+    const std::uint32_t count = property.size_type ? list_size(property, values) : 1;
+    for (std::uint32_t i = 0; i < count; ++i)
+        static_cast<void>(values.next(property.type));
+}
+
+template<class Values>
+void skip(const Element& element, Values& values) {
+    for (std::uint64_t i = 0; !element.properties.empty() && i < element.count; ++i)
+        for (const Property& property : element.properties)
+            skip(property, values);
+}
+
+/// The numbers of a vertex that are used, and the names they go by.
+enum Slot : std::size_t { X, Y, Z, NormalX, NormalY, NormalZ, Red, Green, Blue, U, V, NumSlots };
+constexpr std::array<std::array<std::string_view, 4>, NumSlots> SlotNames = {
+    {{"x"},
+     {"y"},
+     {"z"},
+     {"nx"},
+     {"ny"},
+     {"nz"},
+     {"red", "r", "diffuse_red"},
+     {"green", "g", "diffuse_green"},
+     {"blue", "b", "diffuse_blue"},
+     {"s", "u", "texture_u", "texture_s"},
+     {"t", "v", "texture_v", "texture_t"}}};
+
+std::size_t slot_of(const Property& property) {
+    for (std::size_t slot = 0; slot < NumSlots && !property.size_type; ++slot)
+        for (const std::string_view name : SlotNames[slot])
+            if (!name.empty() && property.name == name)
+                return slot;
+    return NumSlots;
+}
+
+/// Bytes and shorts are fractions of their greatest value; other types are the colour itself.
+double color_scale(Type type) {
+    return type == Type::Uint8 ? 1.0 / 255.0 : type == Type::Uint16 ? 1.0 / 65535.0 : 1.0;
+}
+
+template<class Values>
+void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
+    std::vector<std::size_t> slots; // of each property; NumSlots: skipped
+    std::array<bool, NumSlots + 1> has{};
+    std::array<double, NumSlots + 1> scale;
+    scale.fill(1.0);
+    for (const Property& property : element.properties) {
+        // Of several names for the same number ("u" beside "s") the first counts.
+        const std::size_t slot = slot_of(property);
+        slots.push_back(has[slot] ? NumSlots : slot);
+        has[slot] = slot != NumSlots;
+        if (slots.back() >= Red && slots.back() <= Blue)
+            scale[slot] = color_scale(property.type);
+    }
+    if (!has[X] || !has[Y] || !has[Z])
+        throw std::runtime_error("expected vertices with the properties x, y and z, got others");
+    const bool has_normals = has[NormalX] && has[NormalY] && has[NormalZ];
+    const bool has_colors = has[Red] && has[Green] && has[Blue];
+    const bool has_uvs = has[U] && has[V];
+
+    soup.positions.reserve(element.count);
+    std::array<double, NumSlots> row{};
+    const auto value = [&row](std::size_t slot) {
+        return static_cast<float>(row[slot]);
+    };
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        for (std::size_t p = 0; p < slots.size(); ++p) {
+            if (slots[p] == NumSlots)
+                skip(element.properties[p], values);
+            else
+                row[slots[p]] = values.next(element.properties[p].type) * scale[slots[p]];
+        }
+        soup.positions.emplace_back(value(X), value(Y), value(Z));
+        if (has_normals)
+            soup.normals.emplace_back(value(NormalX), value(NormalY), value(NormalZ));
+        if (has_colors)
+            soup.colors.emplace_back(value(Red), value(Green), value(Blue));
+        if (has_uvs)
+            soup.uvs.emplace_back(value(U), value(V));
+    }
+}
+
+template<class Values>
+void read_faces(const Element& element, std::uint64_t num_vertices, Values& values, PolygonSoup& soup) {
+    const auto is_index_list = [](const Property& property) {
+        return (property.name == "vertex_indices" || property.name == "vertex_index") && property.size_type &&
+               !is_float(property.type);
+    };
+    const auto indices = std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
+    if (indices == element.properties.end())
+        throw std::runtime_error("expected faces with a list of whole numbers 'vertex_indices', got none");
+    soup.face_ends.reserve(element.count);
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+        for (auto property = element.properties.begin(); property != element.properties.end(); ++property) {
+            if (property != indices) {
+                skip(*property, values);
+                continue;
+            }
+            const std::uint32_t num_corners = list_size(*property, values);
+            for (std::uint32_t corner = 0; corner < num_corners; ++corner) {
+                const double index = values.next(property->type);
+                if (!(index >= 0.0 && index < static_cast<double>(num_vertices)) ||
+                    index != std::floor(index))
+                    throw std::runtime_error(fmt::format("expected vertex indices of 0 to {}, got {}",
+                                                         static_cast<std::int64_t>(num_vertices) - 1, index));
+                soup.corners.push_back(static_cast<std::uint32_t>(index));
+            }
+        }
+        soup.end_face();
+    }
+}
+
+template<class Values>
+PolygonSoup read_body(const Header& header, Values values) {
+    check_sizes(header, values.num_bytes(), Values::IsBinary);
+    std::uint64_t num_vertices = 0;
+    for (const Element& element : header.elements)
+        if (element.name == "vertex")
+            num_vertices = element.count;
+    if (num_vertices >= std::numeric_limits<std::uint32_t>::max())
+        throw std::runtime_error(fmt::format("expected fewer than 2^32 vertices, got {}", num_vertices));
+    PolygonSoup soup;
+    for (const Element& element : header.elements) {
+        if (element.name == "vertex" && element.count > 0)
+            read_vertices(element, values, soup);
+        else if (element.name == "face" && element.count > 0)
+            read_faces(element, num_vertices, values, soup);
+        else
+            skip(element, values);
+    }
+    values.expect_end();
+    return soup;
+}
+
+} // namespace
+
+PolygonSoup read_ply(std::span<const std::byte> bytes) {
+    const std::string_view text = as_text(bytes);
+    const Header header = read_header(text);
+    const std::string_view body = text.substr(header.num_bytes);
+    if (header.format == "ascii")
+        return read_body(header, AsciiValues(body));
+    if (header.format == "binary_little_endian")
+        return read_body(header, BinaryValues<std::endian::little>(body));
+    if (header.format == "binary_big_endian")
+        return read_body(header, BinaryValues<std::endian::big>(body));
+    throw std::runtime_error(
+        fmt::format("expected the format ascii, binary_little_endian or binary_big_endian, got {}",
+                    quoted(header.format)));
+}
+
+} // namespace relumine::mesh

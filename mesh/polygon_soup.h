@@ -1,0 +1,34 @@
+// What the file readers hand to load(): vertices and polygons as the file has them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace relumine::mesh {
+
+struct PolygonSoup {
+    std::vector<glm::vec3> positions; ///< [num_vertices], perhaps not finite: load() checks
+    std::vector<std::uint32_t>
+        corners; ///< vertex indices of all faces, one face after the other, perhaps out of range
+    std::vector<std::size_t> face_ends; ///< [num_faces], each face's end in `corners`
+    std::vector<glm::vec3> normals;     ///< [num_vertices], any length, or empty
+    std::vector<glm::vec3> colors;      ///< [num_vertices], or empty
+    std::vector<glm::vec2> uvs;         ///< [num_vertices], or empty
+
+    /// Closes the face whose corners were appended to `corners` since the last call.
+    void end_face() { face_ends.push_back(corners.size()); }
+};
+
+/// The readers, one per format, of a whole file's bytes. They throw std::runtime_error "expected X, got Y" (load() puts
+/// the path in front), never read outside `bytes`, and allocate no more than a small multiple of its size.
+[[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes);
+[[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);
+[[nodiscard]] PolygonSoup read_ply(std::span<const std::byte> bytes);
+[[nodiscard]] PolygonSoup read_stl(std::span<const std::byte> bytes);
+
+} // namespace relumine::mesh

@@ -1,0 +1,130 @@
+// Ear clipping. Based on: G. H. Meisters, "Polygons have ears", 1975; the closed-triangle test of reflex corners only, as in
+// Eberly, "Triangulation by ear clipping", 2002. Debian has no library that does it: mapbox's earcut comes for Python alone,
+// and GLU's tessellator adds vertices of its own.
+#include "mesh/triangulate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+namespace relumine::mesh {
+
+namespace {
+
+/// Twice the signed area of a, b, c; positive counter-clockwise.
+double turn_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+} // namespace
+
+/// Drops the axis along which the polygon's Newell normal is longest, so that coordinates stay exact, and orients the
+/// result counter-clockwise. False for a polygon without area.
+bool Triangulator::project(std::span<const std::uint32_t> polygon) {
+    // Relative to the first corner: the normal of a small polygon far from the origin would drown in rounding otherwise.
+    const glm::dvec3 origin(positions_[polygon[0]]);
+    glm::dvec3 normal(0.0);
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        normal += glm::cross(glm::dvec3(positions_[polygon[i]]) - origin,
+                             glm::dvec3(positions_[polygon[(i + 1) % polygon.size()]]) - origin);
+    int axis = std::abs(normal.x) >= std::abs(normal.y) ? 0 : 1;
+    if (std::abs(normal.z) > std::abs(normal[axis]))
+        axis = 2;
+    if (!(std::abs(normal[axis]) > 0.0))
+        return false;
+    int u = (axis + 1) % 3, v = (axis + 2) % 3;
+    if (normal[axis] < 0.0)
+        std::swap(u, v);
+
+    const auto n = static_cast<std::uint32_t>(polygon.size());
+    corners_.resize(n);
+    for (std::uint32_t i = 0; i < n; ++i) {
+        const glm::vec3& position = positions_[polygon[i]];
+        corners_[i] = {{position[u], position[v]}, i == 0 ? n - 1 : i - 1, i + 1 == n ? 0 : i + 1, false};
+    }
+    return true;
+}
+
+void Triangulator::find_reflex_corners() {
+    reflex_.clear();
+    for (std::uint32_t i = 0; i < corners_.size(); ++i)
+        if (turn(i) <= 0.0)
+            reflex_.emplace_back(corners_[i].point.x, i);
+    std::sort(reflex_.begin(), reflex_.end());
+}
+
+double Triangulator::turn(std::uint32_t corner) const {
+    const Corner& c = corners_[corner];
+    return turn_of(corners_[c.previous].point, c.point, corners_[c.next].point);
+}
+
+bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
+    work_left_ -= 1.0;
+    const double area = turn(corner);
+    if (kind != Ear::Empty)
+        return kind == Ear::Any || area == 0.0;
+    if (!(area > 0.0))
+        return false;
+
+    // An ear holds no other corner; among the corners in the triangle there is a reflex one if there is any. Corners at the
+    // same place as one of the triangle's are ends of doubled edges, which pass the triangle by.
+    const glm::dvec2 a = corners_[corners_[corner].previous].point;
+    const glm::dvec2 b = corners_[corner].point;
+    const glm::dvec2 c = corners_[corners_[corner].next].point;
+    const double min_x = std::min({a.x, b.x, c.x}), max_x = std::max({a.x, b.x, c.x});
+    const double min_y = std::min({a.y, b.y, c.y}), max_y = std::max({a.y, b.y, c.y});
+    for (auto it = std::lower_bound(reflex_.begin(), reflex_.end(), std::pair(min_x, std::uint32_t{0}));
+         it != reflex_.end() && it->first <= max_x; ++it) {
+        work_left_ -= 1.0;
+        const Corner& other = corners_[it->second];
+        const glm::dvec2 p = other.point;
+        if (other.clipped || p.y < min_y || p.y > max_y || p == a || p == b || p == c)
+            continue;
+        if (turn_of(a, b, p) >= 0.0 && turn_of(b, c, p) >= 0.0 && turn_of(c, a, p) >= 0.0 &&
+            turn(it->second) <= 0.0)
+            return false;
+    }
+    return true;
+}
+
+void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {
+    if (polygon.size() == 3 || !project(polygon)) {
+        for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+            triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
+        return;
+    }
+    find_reflex_corners();
+    // Usual polygons need a few tests per corner; the mesh as a whole may spend many more before it is given up.
+    work_left_ += 300.0 * static_cast<double>(polygon.size());
+
+    // Ears with an area come first: a corner on a straight edge then gets triangles with an area, too.
+    std::size_t num_left = polygon.size();
+    std::size_t num_refused = 0; // corners in a row that are no ear
+    Ear kind = Ear::Empty;
+    std::uint32_t corner = 1;
+    while (num_left > 2) {
+        const auto [point, previous, next, clipped] = corners_[corner];
+        if (is_ear(corner, kind)) {
+            triangles.push_back({polygon[previous], polygon[corner], polygon[next]});
+            corners_[previous].next = next;
+            corners_[next].previous = previous;
+            corners_[corner].clipped = true;
+            --num_left;
+            num_refused = 0;
+            kind = Ear::Empty;
+        } else if (++num_refused == num_left) {
+            num_refused = 0;
+            kind = kind == Ear::Empty ? Ear::Flat : Ear::Any;
+        }
+        if (work_left_ < 0.0)
+            throw std::runtime_error(fmt::format(
+                "expected simple polygons, got one of {} corners that crosses itself", polygon.size()));
+        corner = next;
+    }
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,49 @@
+// Polygons into triangles.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::mesh {
+
+/// Cuts polygons of a mesh into triangles by ear clipping, in the polygon's own vertices: n - 2 triangles for n corners,
+/// which cover the polygon exactly, also a concave one and one whose holes are joined to its outline by doubled edges.
+/// Convex polygons become fans. A polygon that crosses itself has no triangulation and becomes n - 2 triangles all the
+/// same. O(n) for convex polygons, about O(n log n) for usual ones.
+class Triangulator {
+public:
+    /// `positions` must outlive the triangulator.
+    explicit Triangulator(std::span<const glm::vec3> positions) : positions_(positions) {}
+
+    /// Appends the triangles of one polygon of at least three corners, all of them valid indices. Throws
+    /// std::runtime_error for polygons that cross themselves so often that cutting them would take minutes.
+    void append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles);
+
+private:
+    struct Corner {
+        glm::dvec2 point;
+        std::uint32_t previous, next;
+        bool clipped;
+    };
+    enum class Ear { Empty, Flat, Any };
+
+    bool project(std::span<const std::uint32_t> polygon);
+    void find_reflex_corners();
+    [[nodiscard]] double turn(std::uint32_t corner) const;
+    [[nodiscard]] bool is_ear(std::uint32_t corner, Ear kind);
+
+    std::span<const glm::vec3> positions_;
+    std::vector<Corner> corners_;                          ///< of the current polygon, a ring
+    std::vector<std::pair<double, std::uint32_t>> reflex_; ///< corners that are not convex, sorted by point.x
+    double work_left_ = 1e8; ///< corner-in-triangle tests, some 3 ns each, before the mesh is given up
+};
+
+} // namespace relumine::mesh
