@@ -1,0 +1,45 @@
+#include "prt/lattice.h"
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+// Cube coordinates [-1, 1] in steps of 2^-15 are exact integers for all samples down to MaxLevel.
+constexpr double Scale = 1u << (MaxLevel + 1);
+constexpr std::uint32_t BitsPerCoordinate = 20;
+constexpr std::uint64_t Mask = (1u << BitsPerCoordinate) - 1;
+constexpr std::int64_t Offset = 1 << (BitsPerCoordinate - 1);
+
+std::uint64_t packed(double coordinate) {
+    return static_cast<std::uint64_t>(std::llround(coordinate * Scale) + Offset);
+}
+
+double unpacked(std::uint64_t bits) {
+    return static_cast<double>(static_cast<std::int64_t>(bits & Mask) - Offset) / Scale;
+}
+
+} // namespace
+
+std::array<LatticePoint, SamplesPerCell> lattice_points(const Cell& cell) {
+    std::array<LatticePoint, SamplesPerCell> points;
+    const double half = 0.5 * cell.size();
+    for (std::uint32_t i = 0; i < SamplesPerCell; ++i) {
+        const glm::dvec3 point =
+            cubemap::cube_point(cell.face, (2 * cell.x + i % 3) * half, (2 * cell.y + i / 3) * half);
+        points[i] =
+            packed(point.x) | packed(point.y) << BitsPerCoordinate | packed(point.z) << 2 * BitsPerCoordinate;
+    }
+    return points;
+}
+
+glm::vec3 direction(LatticePoint point) {
+    const glm::dvec3 on_cube(unpacked(point), unpacked(point >> BitsPerCoordinate),
+                             unpacked(point >> 2 * BitsPerCoordinate));
+    return glm::normalize(on_cube);
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,56 @@
+// The preprocessor: from receivers and blockers to light clusters and their transfer.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+
+#include "prt/blockers.h"
+#include "prt/receivers.h"
+#include "prt/transfer.h"
+
+namespace relumine::prt {
+
+struct PrecomputeOptions {
+    /// A cell is a cluster when the RMS over the receivers of T_C - T_l is below this for all samples l, 1/sr, albedo 1:
+    /// ||T_C - T_l|| / sqrt(N) < tolerance. The default is the paper's epsilon of 5e-5 for its Bunny of 73,196 vertices. 0
+    /// splits everything down to single texels.
+    /// Differs from [JN, Eq. 11], which divides by N, so that big meshes get worse; `epsilon` is that form.
+    float tolerance = 0.0135f;
+    std::optional<float> epsilon = {}; ///< [JN, Eq. 11]: ||T_C - T_l|| / N < epsilon; overrides tolerance
+    std::uint32_t min_level =
+        3; ///< every cell is split at least this often: nine samples can miss a thin blocker
+    std::uint32_t face_resolution =
+        1024; ///< R, 1..16384: cells stop at single texels of a 6 x R x R environment
+    float bias =
+        0.0f; ///< lift of the rays' origins along the normal, in the mesh's unit; see automatic_bias()
+    std::stop_token stop = {}; ///< polled a few times a second or more often
+    std::function<void(double)> on_progress =
+        {}; ///< estimated fraction in [0, 1], never falling; one call at a time
+};
+
+struct PrecomputeStatistics {
+    std::uint64_t num_clusters = 0;
+    std::uint64_t num_directions = 0; ///< distinct sample directions on the sphere
+    std::uint64_t num_samples = 0;    ///< (receiver, direction) pairs decided: receivers times directions
+    std::uint64_t num_rays = 0;       ///< those above the receiver's horizon, which were traced
+    std::uint32_t deepest_level = 0;
+    double seconds = 0.0;
+};
+
+/// Thrown by precompute() when its stop token asks.
+struct Cancelled : std::exception {
+    [[nodiscard]] const char* what() const noexcept override { return "cancelled"; }
+};
+
+/// Clusters all directions of the sphere by their light transfer to the receivers [JN, Section 4]. Each sample direction is
+/// traced once for each receiver. Parallel over receivers (TBB); the result is the same bit by bit for any number of
+/// threads. Memory: the result twice, and one bit per receiver and direction of the level in work.
+/// Throws std::invalid_argument for options out of range or no receivers, Cancelled when stopped.
+[[nodiscard]] Transfer precompute(const Receivers& receivers, const Blockers& blockers,
+                                  const PrecomputeOptions& options = {},
+                                  PrecomputeStatistics* statistics = nullptr);
+
+} // namespace relumine::prt

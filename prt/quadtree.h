@@ -1,0 +1,75 @@
+// The quadtree over the six cube faces whose leaves are the light clusters.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "cubemap/face.h"
+
+namespace relumine::prt {
+
+/// A dyadic square of a face: [x, x + 1] x [y, y + 1] in units of 2^-level, x to the right and y down as in cubemap::Face.
+/// Cells are squares of the continuous face, not ranges of texels, so a tree fits environments of any resolution.
+struct Cell {
+    cubemap::Face face = cubemap::Face::PositiveX;
+    std::uint8_t level = 0;
+    std::uint32_t x = 0;
+    std::uint32_t y = 0;
+
+    /// Children in the order (0,0) (1,0) (0,1) (1,1) of (right, down).
+    [[nodiscard]] Cell child(std::uint32_t i) const {
+        return {face, static_cast<std::uint8_t>(level + 1), 2 * x + (i & 1u), 2 * y + (i >> 1u)};
+    }
+    /// Length of the cell's side; the whole face has 1.
+    [[nodiscard]] double size() const { return 1.0 / static_cast<double>(1u << level); }
+    bool operator==(const Cell&) const = default;
+};
+
+/// A rectangle of a face, [s0, s1] x [t0, t1] in face coordinates.
+struct FaceRectangle {
+    cubemap::Face face = cubemap::Face::PositiveX;
+    double s0 = 0.0;
+    double t0 = 0.0;
+    double s1 = 1.0;
+    double t1 = 1.0;
+};
+
+/// Deepest level a cell can have: 2^14 texels along a face's edge.
+inline constexpr std::uint32_t MaxLevel = 14;
+
+/// Six quadtrees, one per face; the leaves are numbered depth first, face by face, so every subtree owns a range of leaves.
+/// Immutable.
+class Quadtree {
+public:
+    /// The tree with no split: six leaves.
+    Quadtree();
+    /// From its depth-first split flags, true = split, as split_flags() returns them. Throws std::invalid_argument when they end early,
+    /// go on after the last leaf or go deeper than MaxLevel.
+    explicit Quadtree(const std::vector<bool>& split_flags);
+
+    [[nodiscard]] std::size_t num_leaves() const { return leaves_.size(); }
+    [[nodiscard]] std::span<const Cell> leaves() const { return leaves_; }
+    [[nodiscard]] std::vector<bool> split_flags() const;
+
+    /// Appends to `leaf_indices`, in ascending order, the leaves whose cells share area with the rectangle. Walks
+    /// the tree from the face's root [JN, Section 5.2].
+    void find_leaves(const FaceRectangle& rectangle, std::vector<std::uint32_t>& leaf_indices) const;
+
+private:
+    struct Node {
+        std::uint32_t first_child = 0; ///< index of four consecutive nodes, 0 for a leaf
+        std::uint32_t leaf = 0;        ///< leaf index, where it is one
+    };
+    void build(std::uint32_t node, const Cell& cell, const std::vector<bool>& split_flags,
+               std::size_t& next_flag);
+    void find(std::uint32_t node, const Cell& cell, const FaceRectangle& rectangle,
+              std::vector<std::uint32_t>& leaf_indices) const;
+
+    std::vector<Node> nodes_; ///< the six roots first
+    std::vector<Cell> leaves_;
+};
+
+} // namespace relumine::prt

@@ -1,0 +1,145 @@
+#include "prt/ray_scene.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <embree3/rtcore.h>
+#include <fmt/format.h>
+
+namespace relumine::prt {
+
+namespace {
+
+constexpr float Infinity = std::numeric_limits<float>::infinity();
+
+struct DeviceDeleter {
+    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneDeleter {
+    void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using DeviceHandle = std::unique_ptr<std::remove_pointer_t<RTCDevice>, DeviceDeleter>;
+using SceneHandle = std::unique_ptr<std::remove_pointer_t<RTCScene>, SceneDeleter>;
+
+void throw_on_error(RTCDevice device, const char* action) {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error != RTC_ERROR_NONE)
+        throw std::runtime_error(
+            fmt::format("Embree could not {} (error {})", action, static_cast<int>(error)));
+}
+
+/// Copies an array into a geometry buffer; Embree pads it as its kernels need.
+template<typename Element>
+void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                 const std::vector<Element>& elements) {
+    void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
+    if (buffer != nullptr)
+        std::memcpy(buffer, elements.data(), elements.size() * sizeof(Element));
+}
+
+} // namespace
+
+struct RayScene::Impl {
+    DeviceHandle device;
+    SceneHandle scene;
+};
+
+RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+    impl_->device.reset(rtcNewDevice(nullptr));
+    if (!impl_->device)
+        throw std::runtime_error("Embree could not start on this processor");
+    RTCDevice device = impl_->device.get();
+    impl_->scene.reset(rtcNewScene(device));
+    rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
+
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions);
+    fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometry(impl_->scene.get(), geometry);
+    rtcReleaseGeometry(geometry);
+    rtcCommitScene(impl_->scene.get());
+    throw_on_error(device, "build the ray accelerator");
+}
+
+RayScene::~RayScene() = default;
+RayScene::RayScene(RayScene&&) noexcept = default;
+RayScene& RayScene::operator=(RayScene&&) noexcept = default;
+
+std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                 std::uint32_t active) const {
+    alignas(64) std::array<int, PacketSize> valid;
+    RTCRay16 rays;
+    for (std::size_t i = 0; i < PacketSize; ++i) {
+        valid[i] = (active >> i & 1u) != 0 ? -1 : 0;
+        rays.org_x[i] = origin.x;
+        rays.org_y[i] = origin.y;
+        rays.org_z[i] = origin.z;
+        rays.tnear[i] = 0.0f;
+        rays.tfar[i] = Infinity;
+        rays.time[i] = 0.0f;
+        rays.mask[i] = ~0u;
+        rays.flags[i] = 0;
+    }
+    std::memcpy(rays.dir_x, directions.x.data(), sizeof rays.dir_x);
+    std::memcpy(rays.dir_y, directions.y.data(), sizeof rays.dir_y);
+    std::memcpy(rays.dir_z, directions.z.data(), sizeof rays.dir_z);
+
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded16(valid.data(), impl_->scene.get(), &context, &rays);
+
+    // Embree marks a blocked ray by tfar = -infinity.
+    std::uint32_t blocked = 0;
+    for (std::size_t i = 0; i < PacketSize; ++i)
+        blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
+    return blocked & active;
+}
+
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) const {
+    RTCRay ray{};
+    ray.org_x = origin.x;
+    ray.org_y = origin.y;
+    ray.org_z = origin.z;
+    ray.dir_x = direction.x;
+    ray.dir_y = direction.y;
+    ray.dir_z = direction.z;
+    ray.tfar = Infinity;
+    ray.mask = ~0u;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(impl_->scene.get(), &context, &ray);
+    return ray.tfar < 0.0f;
+}
+
+std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction) const {
+    RTCRayHit query{};
+    query.ray.org_x = origin.x;
+    query.ray.org_y = origin.y;
+    query.ray.org_z = origin.z;
+    query.ray.dir_x = direction.x;
+    query.ray.dir_y = direction.y;
+    query.ray.dir_z = direction.z;
+    query.ray.tfar = Infinity;
+    query.ray.mask = ~0u;
+    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(impl_->scene.get(), &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+        return std::nullopt;
+    return Hit{
+        .triangle = query.hit.primID, .barycentric = {query.hit.u, query.hit.v}, .distance = query.ray.tfar};
+}
+
+float automatic_bias(const mesh::TriangleMesh& blockers) {
+    return 1e-4f * mesh::bounds(blockers).diagonal();
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,29 @@
+// Receivers: the points whose light transfer is computed.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::prt {
+
+/// Points with normals. A receiver with a zero normal (an unreferenced vertex) receives nothing.
+struct Receivers {
+    std::vector<glm::vec3> positions; ///< [num_receivers]
+    std::vector<glm::vec3> normals;   ///< [num_receivers], unit length or zero
+
+    [[nodiscard]] std::size_t size() const { return positions.size(); }
+};
+
+/// One receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section 3.1].
+[[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
+
+/// An order that puts neighbours in space next to each other: place -> receiver index, [num_receivers]. Morton order of the
+/// positions on a 2^21 grid, ties by index; receivers with a zero normal come last. Deterministic.
+[[nodiscard]] std::vector<std::uint32_t> spatial_order(const Receivers& receivers);
+
+} // namespace relumine::prt

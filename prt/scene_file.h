@@ -1,0 +1,43 @@
+// Scenes on disk: the .prt file. docs/prt-format.md describes it byte by byte.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/transfer.h"
+
+namespace relumine::prt {
+
+/// How a transfer was made; kept in the file, so that a result can be traced back to its source.
+struct SceneSettings {
+    float tolerance = 0.0f;            ///< RMS form, 1/sr; see PrecomputeOptions
+    std::optional<float> epsilon = {}; ///< set where the paper's form was used instead
+    std::uint32_t min_level = 0;
+    std::uint32_t face_resolution = 0;
+    float bias = 0.0f;                ///< in the mesh's unit
+    std::uint32_t floor_vertices = 0; ///< n of an n x n floor that was added, 0 for none
+    std::string source = {};          ///< file name of the mesh, without folders
+    std::uint64_t source_hash = 0;    ///< xxHash64 of the mesh file's bytes, 0 when it came from no file
+};
+
+/// All that relighting and drawing needs.
+struct Scene {
+    mesh::TriangleMesh mesh;
+    Transfer transfer;
+    SceneSettings settings;
+};
+
+/// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws std::runtime_error naming the path.
+std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
+
+/// Reads a scene and checks all of it: sizes against the file before anything is allocated, checksums, indices, the tree, the counts.
+/// Throws std::runtime_error "path: expected X, got Y".
+[[nodiscard]] Scene load_scene(const std::filesystem::path& path);
+
+/// xxHash64 of a file's bytes.
+[[nodiscard]] std::uint64_t file_hash(const std::filesystem::path& path);
+
+} // namespace relumine::prt

@@ -1,0 +1,27 @@
+// The result of the precompute: light clusters and how much of each reaches every receiver.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/quadtree.h"
+#include "prt/visible_counts.h"
+
+namespace relumine::prt {
+
+/// Light transfer of a set of diffuse receivers, albedo 1 (colour is a factor applied when the light is known).
+/// T_C(x) = c(x, C)/16 * max(dot(n(x), w), 0) / pi, unit 1/sr [JN, Eqs. 2 and 10]. Immutable once made.
+struct Transfer {
+    Quadtree quadtree;                ///< its leaves are the clusters
+    std::vector<std::uint32_t> order; ///< [num_receivers] place in spatial order -> receiver index
+    std::vector<glm::vec3> normals;   ///< [num_receivers] by place, unit or zero
+    VisibleCounts counts;             ///< by place
+
+    [[nodiscard]] std::size_t num_receivers() const { return order.size(); }
+    [[nodiscard]] std::size_t num_clusters() const { return quadtree.num_leaves(); }
+};
+
+} // namespace relumine::prt

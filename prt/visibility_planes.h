@@ -1,0 +1,53 @@
+// Visibility of all receivers in the sample directions: one plane of bits per direction, each direction traced once.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/blockers.h"
+#include "prt/cluster_kernels.h"
+#include "prt/lattice.h"
+
+namespace relumine::prt {
+
+/// The planes that the level in work needs. A bit says "the light from this direction reaches this receiver": the direction is above
+/// the receiver's horizon and not blocked.
+class VisibilityPlanes {
+public:
+    /// origins: ray starts of the receivers in the order of `normals`, [num_receivers]. The arguments must outlive this.
+    VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
+                     const Blockers& blockers);
+
+    /// Traces those of the points that are not known yet. Points that lie close together should stand close together.
+    /// `on_receivers(n)` is called from the working threads as receivers are done; it may throw to cancel.
+    void trace(std::span<const LatticePoint> points, const std::function<void(std::size_t)>& on_receivers);
+
+    /// Forgets all points but those given.
+    void keep_only(std::span<const LatticePoint> points);
+
+    /// The plane of a traced point, [num_words].
+    [[nodiscard]] const std::uint64_t* plane(LatticePoint point) const { return planes_.at(point).data(); }
+
+    [[nodiscard]] std::uint64_t num_directions() const { return num_directions_; }
+    [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }
+
+private:
+    struct Patch; ///< up to 16 new directions and their planes
+
+    void trace_word(std::size_t word, const Patch& patch, std::uint64_t& num_rays) const;
+
+    std::span<const glm::vec3> origins_;
+    const NormalArrays& normals_;
+    const Blockers& blockers_;
+    std::unordered_map<LatticePoint, std::vector<std::uint64_t>> planes_;
+    std::uint64_t num_directions_ = 0;
+    std::atomic<std::uint64_t> num_rays_ = 0;
+};
+
+} // namespace relumine::prt

@@ -1,0 +1,60 @@
+// How much of each cluster each receiver sees: the precomputed data itself.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace relumine::prt {
+
+/// Receivers are handled in blocks of 16 neighbours.
+inline constexpr std::size_t BlockSize = 16;
+
+/// Visible counts of one cluster for all receivers.
+struct LeafColumn {
+    std::vector<std::uint64_t>
+        visible;                      ///< [ceil(num_blocks / 64)] bit b: every receiver of block b counts 16
+    std::vector<std::uint64_t> mixed; ///< the same shape; bit b: block b has entries in `counts`
+    std::vector<std::uint8_t> counts; ///< [num_mixed_blocks * 16], in order of blocks
+};
+
+/// The count c in 0..16 of every (receiver, leaf) pair, [num_receivers x num_leaves]: the weighted number of the leaf's nine samples that
+/// reach the receiver, so that T_C(x) = c/16 max(n.w, 0)/pi for albedo 1 [JN, Eq. 10]. Receivers are in spatial
+/// order. Most blocks of 16 receivers see all of a leaf or nothing: two bits say so; only mixed ones store 16 counts. Layout (promised):
+/// all of a block lies together, leaves ascending, so relighting streams through it and an edit finds the few leaves
+/// it needs by bit arithmetic.
+struct VisibleCounts {
+    std::size_t num_receivers = 0;
+    std::size_t num_leaves = 0;
+    std::vector<std::uint64_t> visible =
+        {}; ///< [num_blocks * words_per_block] bit of a leaf: all 16 receivers count 16
+    std::vector<std::uint64_t> mixed =
+        {}; ///< the same shape; bit of a leaf: it has 16 entries in `counts`; never set with `visible`
+    std::vector<std::uint64_t> mixed_before =
+        {}; ///< the same shape; mixed (block, leaf) pairs before this word's first leaf
+    std::vector<std::uint8_t> counts = {}; ///< [num_mixed * 16]
+
+    [[nodiscard]] std::size_t num_blocks() const { return (num_receivers + BlockSize - 1) / BlockSize; }
+    [[nodiscard]] std::size_t words_per_block() const { return (num_leaves + 63) / 64; }
+    [[nodiscard]] std::size_t num_mixed() const { return counts.size() / BlockSize; }
+
+    /// The 16 counts of a mixed (word, bit): word = block * words_per_block() + leaf / 64, bit = leaf % 64.
+    [[nodiscard]] const std::uint8_t* mixed_counts(std::size_t word, std::uint32_t bit) const {
+        const std::uint64_t below = mixed[word] & ((std::uint64_t{1} << bit) - 1);
+        return counts.data() +
+               (mixed_before[word] + static_cast<std::size_t>(std::popcount(below))) * BlockSize;
+    }
+
+    /// c of one pair. Not for hot loops.
+    [[nodiscard]] int count(std::size_t receiver_place, std::size_t leaf) const;
+
+    /// Fills mixed_before from mixed; `counts` must have 16 entries for every bit of mixed. Throws std::invalid_argument when sizes or bits
+    /// contradict each other, or a count is above 16.
+    void index();
+};
+
+/// Turns columns (one per leaf, in leaf order) into the block layout; frees each column's memory as it goes.
+[[nodiscard]] VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t num_receivers);
+
+} // namespace relumine::prt

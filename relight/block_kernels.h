@@ -1,0 +1,57 @@
+// The inner loops of relighting: clusters' light times visible counts, 16 receivers at a time. Vectorised with run-time dispatch.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "prt/transfer.h"
+#include "relight/cluster_lights.h"
+
+namespace relumine::relight {
+
+/// Light of the clusters as the kernels read it: per cluster the red, green and blue vector irradiance over 16 pi, rounded to
+/// float. Full sums and updates use the very same rounded numbers.
+struct ClusterLights {
+    static constexpr std::size_t Stride = 9;
+    std::vector<float> vectors; ///< [num_clusters * 9] red x y z, green x y z, blue x y z
+    std::vector<double> prefix; ///< [(num_clusters + 1) * 9] sums of `vectors` over the clusters before each
+
+    explicit ClusterLights(std::size_t num_clusters);
+    void set(std::size_t cluster, const VectorIrradiance& irradiance);
+    /// Fills `prefix`, which only light_block() reads.
+    void sum_prefix();
+};
+
+/// What a block of 16 receivers has received, in two parts: clusters that all 16 see whole add up to one vector; those they see in part add
+/// up per receiver. The sums are of float sums over 64 clusters each, taken in double. An update takes such a float sum away and adds the
+/// new one, so nothing remains of a light that is gone, not even its rounding.
+struct alignas(64) BlockLight {
+    std::array<double, ClusterLights::Stride> visible{};       ///< vector irradiance over 16 pi
+    std::array<std::array<double, prt::BlockSize>, 3> mixed{}; ///< radiance [channel][receiver]
+};
+
+/// Changed clusters among the 64 that share a word of VisibleCounts.
+struct ChangedWord {
+    std::uint32_t word = 0;     ///< cluster / 64
+    std::uint64_t clusters = 0; ///< bit cluster % 64
+};
+
+/// Normals of blocks, coordinates apart: [num_blocks] of {x[16], y[16], z[16]}, padded with zeros.
+struct alignas(64) BlockNormals {
+    std::array<std::array<float, prt::BlockSize>, 3> axes{};
+};
+
+/// The block's light from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi.
+void light_block(const prt::VisibleCounts& counts, std::size_t block, const BlockNormals& normals,
+                 const ClusterLights& lights, BlockLight& light);
+
+/// Adds what the changed clusters make of the block's light [JN, Eq. 15]. `before` and `after` are ClusterLights::vectors of all clusters;
+/// they differ in no other cluster. Returns whether the block sees any of them.
+bool update_block(const prt::VisibleCounts& counts, std::size_t block, const BlockNormals& normals,
+                  std::span<const ChangedWord> changes, std::span<const float> before,
+                  std::span<const float> after, BlockLight& light);
+
+} // namespace relumine::relight

@@ -1,0 +1,124 @@
+#include "relight/cluster_lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+namespace relumine::relight {
+
+namespace {
+
+/// Range of texels along one axis that an interval meets, and which of them it covers whole.
+struct TexelRange {
+    std::uint32_t begin, end; ///< those it meets
+    std::uint32_t whole_begin,
+        whole_end; ///< those inside; empty (begin == end) for an interval within one texel
+};
+
+TexelRange texel_range(double low, double high) {
+    TexelRange range{};
+    range.begin = static_cast<std::uint32_t>(std::floor(low));
+    range.end = static_cast<std::uint32_t>(std::ceil(high));
+    range.whole_begin = static_cast<std::uint32_t>(std::ceil(low));
+    range.whole_end = std::max(range.whole_begin, static_cast<std::uint32_t>(std::floor(high)));
+    return range;
+}
+
+/// Sums of L q, L q u and L q v, where q (u, v, 1) is a texel's solid angle times its direction in face coordinates.
+struct FaceSums {
+    glm::dvec3 one{0.0};
+    glm::dvec3 u{0.0};
+    glm::dvec3 v{0.0};
+
+    void add(const glm::dvec3& weighted, double at_u, double at_v) {
+        one += weighted;
+        u += weighted * at_u;
+        v += weighted * at_v;
+    }
+};
+
+/// From the coordinates (u, v, 1) of a face to the world, one colour channel.
+glm::dvec3 to_world(cubemap::Face face, double u, double v, double one) {
+    // cube_point is linear in (2s - 1, 2t - 1, 1) for a fixed face.
+    const glm::dvec3 centre = cubemap::cube_point(face, 0.5, 0.5);
+    const glm::dvec3 right = cubemap::cube_point(face, 1.0, 0.5) - centre;
+    const glm::dvec3 down = cubemap::cube_point(face, 0.5, 1.0) - centre;
+    return one * centre + u * right + v * down;
+}
+
+} // namespace
+
+LightBinning::LightBinning(std::uint32_t face_resolution) : resolution_(face_resolution) {
+    const std::vector<double> solid_angles = cubemap::texel_solid_angles(face_resolution);
+    weights_.resize(solid_angles.size());
+    const double step = 2.0 / face_resolution;
+    for (std::size_t y = 0; y < face_resolution; ++y)
+        for (std::size_t x = 0; x < face_resolution; ++x) {
+            const double u = (static_cast<double>(x) + 0.5) * step - 1.0;
+            const double v = (static_cast<double>(y) + 0.5) * step - 1.0;
+            const std::size_t i = y * face_resolution + x;
+            weights_[i] = static_cast<float>(solid_angles[i] / std::sqrt(u * u + v * v + 1.0));
+        }
+}
+
+VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment, const prt::Cell& cell) const {
+    const double r = resolution_;
+    const double s0 = cell.x * cell.size() * r; // in texels
+    const double t0 = cell.y * cell.size() * r;
+    const double s1 = s0 + cell.size() * r;
+    const double t1 = t0 + cell.size() * r;
+    const TexelRange columns = texel_range(s0, s1);
+    const TexelRange rows = texel_range(t0, t1);
+    const double step = 2.0 / r;
+    FaceSums sums;
+
+    const auto add_part = [&](std::uint32_t x, std::uint32_t y) {
+        const double part_s0 = std::max(s0, static_cast<double>(x)) / r;
+        const double part_s1 = std::min(s1, x + 1.0) / r;
+        const double part_t0 = std::max(t0, static_cast<double>(y)) / r;
+        const double part_t1 = std::min(t1, y + 1.0) / r;
+        const double u = part_s0 + part_s1 - 1.0;
+        const double v = part_t0 + part_t1 - 1.0;
+        const double weight =
+            cubemap::solid_angle(part_s0, part_t0, part_s1, part_t1) / std::sqrt(u * u + v * v + 1.0);
+        sums.add(glm::dvec3(environment.at(cell.face, x, y)) * weight, u, v);
+    };
+    for (std::uint32_t y = rows.begin; y < rows.end; ++y) {
+        const bool whole_row = y >= rows.whole_begin && y < rows.whole_end;
+        const std::uint32_t whole_begin = whole_row ? columns.whole_begin : columns.end;
+        const std::uint32_t whole_end = whole_row ? columns.whole_end : columns.end;
+        for (std::uint32_t x = columns.begin; x < std::min(whole_begin, columns.end); ++x)
+            add_part(x, y);
+        if (whole_begin < whole_end) {
+            FaceSums row;
+            const glm::vec3* radiance = &environment.at(cell.face, 0, y);
+            const float* weights = weights_.data() + std::size_t{y} * resolution_;
+            for (std::uint32_t x = whole_begin; x < whole_end; ++x) {
+                const glm::dvec3 weighted = glm::dvec3(radiance[x]) * static_cast<double>(weights[x]);
+                row.one += weighted;
+                row.u += weighted * ((x + 0.5) * step - 1.0);
+            }
+            sums.one += row.one;
+            sums.u += row.u;
+            sums.v += row.one * ((y + 0.5) * step - 1.0);
+        }
+        for (std::uint32_t x = std::max(whole_end, columns.begin); x < columns.end; ++x)
+            add_part(x, y);
+    }
+    return {.red = to_world(cell.face, sums.u.r, sums.v.r, sums.one.r),
+            .green = to_world(cell.face, sums.u.g, sums.v.g, sums.one.g),
+            .blue = to_world(cell.face, sums.u.b, sums.v.b, sums.one.b)};
+}
+
+std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
+                                                 std::span<const prt::Cell> cells) const {
+    std::vector<VectorIrradiance> result(cells.size());
+    tbb::parallel_for(std::size_t{0}, cells.size(),
+                      [&](std::size_t i) { result[i] = sum(environment, cells[i]); });
+    return result;
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,82 @@
+// Relights a precomputed scene: full relighting and updates of a part of the environment.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "prt/transfer.h"
+#include "relight/block_kernels.h"
+#include "relight/cluster_lights.h"
+
+namespace relumine::relight {
+
+/// Texels [x0, x1) x [y0, y1) of a face.
+struct TexelRectangle {
+    cubemap::Face face = cubemap::Face::PositiveX;
+    std::uint32_t x0 = 0;
+    std::uint32_t y0 = 0;
+    std::uint32_t x1 = 0;
+    std::uint32_t y1 = 0;
+};
+
+/// Where the time of set_environment() went.
+struct RelightTimes {
+    double seconds_bin = 0.0;     ///< summing the environment into clusters
+    double seconds_relight = 0.0; ///< summing the clusters into radiance [JN, Eq. 8]
+};
+
+/// What an update did.
+struct UpdateReport {
+    std::size_t num_clusters = 0;  ///< whose light was summed anew
+    std::size_t num_receivers = 0; ///< that see any of them (counted in whole blocks of 16)
+    double seconds = 0.0;
+};
+
+/// Keeps the light of a scene's receivers under an environment that may change. Parallel inside (TBB); every result is the same bit by
+/// bit for any number of threads. One thread at a time may call anything that is not const.
+class Relighter {
+public:
+    /// The transfer must outlive the Relighter. Memory: about 470 bytes per block of 16 receivers.
+    explicit Relighter(const prt::Transfer& transfer);
+
+    /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous sphere. O(6 R^2 + size of the
+    /// transfer). Throws std::invalid_argument for a radiance that is negative or not finite.
+    RelightTimes set_environment(cubemap::CubeMap environment);
+
+    /// Replaces a rectangle of the environment's texels by `radiance`, row by row [(x1 - x0) * (y1 - y0)], and updates what the clusters it
+    /// touches contribute [JN, Section 5.2, Eq. 15]. Equal to set_environment() of the changed map to 1e-5 relative, however
+    /// many updates went before. Throws std::invalid_argument for a rectangle that is not inside the face, a
+    /// wrong size, a radiance as above, or no environment; nothing has changed then.
+    UpdateReport update_region(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance);
+
+    /// Outgoing radiance for albedo 1, [num_receivers] in the receivers' own order; the unit of the environment's radiance.
+    [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+
+    [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
+
+private:
+    void write_radiance(std::size_t block);
+
+    const prt::Transfer& transfer_;
+    std::vector<BlockNormals> normals_; ///< [num_blocks]
+    std::vector<BlockLight> light_;     ///< [num_blocks]
+    ClusterLights lights_;
+    std::vector<float> lit_by_; ///< ClusterLights::vectors that light_ is made of
+    std::optional<LightBinning> binning_;
+    cubemap::CubeMap environment_;
+    std::vector<glm::vec3> radiance_;
+    std::vector<std::uint32_t> touched_leaves_; ///< scratch of update_region()
+    std::vector<ChangedWord> changes_;          ///< scratch of update_region()
+};
+
+/// The one-call form: radiance of all receivers under an environment, albedo 1.
+[[nodiscard]] std::vector<glm::vec3> relight(const prt::Transfer& transfer,
+                                             const cubemap::CubeMap& environment);
+
+} // namespace relumine::relight
