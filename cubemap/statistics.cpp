@@ -1,0 +1,53 @@
+#include "cubemap/statistics.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "cubemap/image_layout.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+/// Rec. 709 weights.
+double luminance(const glm::dvec3& radiance) {
+    return 0.2126 * radiance.x + 0.7152 * radiance.y + 0.0722 * radiance.z;
+}
+
+bool is_good(const glm::vec3& radiance) {
+    const auto good = [](float value) {
+        return value >= 0.0f && std::isfinite(value);
+    };
+    return good(radiance.x) && good(radiance.y) && good(radiance.z);
+}
+
+} // namespace
+
+EnvironmentStatistics statistics(const EnvironmentImage& image) {
+    EnvironmentStatistics result;
+    double smallest = std::numeric_limits<double>::infinity();
+    for_each_pixel({image.layout, image.sampling, image.width, image.height},
+                   [&](std::size_t index, const PixelPlace& place) {
+                       const glm::vec3& radiance = image.pixels[index];
+                       if (!is_good(radiance))
+                           return;
+                       result.mean_radiance += glm::dvec3(radiance) * place.solid_angle;
+                       const double value = luminance(radiance);
+                       if (value > result.max_luminance) {
+                           result.max_luminance = value;
+                           result.brightest_direction = place.direction;
+                       }
+                       if (value > 0.0)
+                           smallest = std::min(smallest, value);
+                   });
+    result.mean_radiance /= 4.0 * std::numbers::pi;
+    result.mean_luminance = luminance(result.mean_radiance);
+    if (result.max_luminance > 0.0) {
+        result.min_positive_luminance = smallest;
+        result.dynamic_range_ev = std::log2(result.max_luminance / smallest);
+    }
+    return result;
+}
+
+} // namespace relumine::cubemap
