@@ -44,4 +44,9 @@ protected:
     Blockers& operator=(Blockers&&) = default;
 };
 
+/// Where a receiver's rays start: lifted off its surface along the normal, so that the surface does not block itself.
+[[nodiscard]] inline glm::vec3 ray_origin(const glm::vec3& position, const glm::vec3& normal, float bias) {
+    return position + bias * normal;
+}
+
 } // namespace relumine::prt

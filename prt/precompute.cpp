@@ -99,14 +99,12 @@ public:
         : options_(options), order_(spatial_order(receivers)), progress_(options, receivers.size()),
           max_level_(static_cast<std::uint32_t>(std::bit_width(options.face_resolution - 1))),
           allowed_(allowed_squared_distance(options, receivers.size())) {
-        std::vector<glm::vec3> origins;
         for (const std::uint32_t receiver : order_) {
             const glm::vec3& normal = receivers.normals[receiver];
             ordered_normals_.push_back(normal);
-            origins.push_back(receivers.positions[receiver] + options.bias * normal);
+            origins_.push_back(ray_origin(receivers.positions[receiver], normal, options.bias));
         }
         normals_ = NormalArrays(ordered_normals_);
-        origins_ = std::move(origins);
         planes_.emplace(origins_, normals_, blockers);
     }
 

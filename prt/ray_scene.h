@@ -44,11 +44,6 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Where a receiver's rays start: lifted off its surface along the normal, so that the surface does not block itself.
-[[nodiscard]] inline glm::vec3 ray_origin(const glm::vec3& position, const glm::vec3& normal, float bias) {
-    return position + bias * normal;
-}
-
 /// The bias used where none is given: 1e-4 of the blockers' bounding-box diagonal. That is a thousand times the spacing of floats
 /// at the box's size, and well below the edge length of a mesh of a million triangles.
 [[nodiscard]] float automatic_bias(const mesh::TriangleMesh& blockers);

@@ -1,0 +1,166 @@
+#include "relight/exact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "prt/precompute.h"
+
+namespace relumine::relight {
+
+namespace {
+
+// A packet is a 4 x 4 tile of texels; 64 receivers of one task share the work of setting it up.
+constexpr std::uint32_t TileSize = 4;
+constexpr std::size_t ReceiversPerTask = 64;
+static_assert(TileSize * TileSize == prt::PacketSize);
+
+struct Tile {
+    prt::DirectionPacket packet;
+    std::array<glm::dvec3, prt::PacketSize> power{}; ///< L dw / pi
+    std::uint32_t lit = 0;                           ///< lanes with any light
+};
+
+Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_angles, cubemap::Face face,
+             std::uint32_t x0, std::uint32_t y0) {
+    Tile tile;
+    const std::uint32_t r = environment.resolution;
+    tile.packet.num_directions = prt::PacketSize;
+    for (std::uint32_t i = 0; i < prt::PacketSize; ++i) {
+        // Lanes outside of the face repeat its last texel, without light.
+        const std::uint32_t x = x0 + i % TileSize;
+        const std::uint32_t y = y0 + i / TileSize;
+        const std::uint32_t inner_x = std::min(x, r - 1);
+        const std::uint32_t inner_y = std::min(y, r - 1);
+        tile.packet.set(i, cubemap::texel_direction(face, inner_x, inner_y, r));
+        if (x >= r || y >= r)
+            continue;
+        tile.power[i] = glm::dvec3(environment.at(face, x, y)) *
+                        (solid_angles[std::size_t{y} * r + x] / std::numbers::pi);
+        tile.lit |= static_cast<std::uint32_t>(tile.power[i] != glm::dvec3(0.0)) << i;
+    }
+    return tile;
+}
+
+void add_tile(const Tile& tile, const glm::vec3& origin, const glm::vec3& normal,
+              const prt::Blockers& blockers, glm::dvec3& radiance) {
+    std::array<float, prt::PacketSize> cosines{};
+    std::uint32_t above = 0;
+    for (std::size_t i = 0; i < prt::PacketSize; ++i) {
+        cosines[i] = normal.x * tile.packet.x[i] + normal.y * tile.packet.y[i] + normal.z * tile.packet.z[i];
+        above |= static_cast<std::uint32_t>(cosines[i] > 0.0f) << i;
+    }
+    above &= tile.lit;
+    if (above == 0)
+        return;
+    const std::uint32_t visible = above & ~blockers.occluded(origin, tile.packet, above);
+    for (std::size_t i = 0; i < prt::PacketSize; ++i)
+        if ((visible >> i & 1u) != 0)
+            radiance += tile.power[i] * static_cast<double>(cosines[i]);
+}
+
+} // namespace
+
+std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
+                                       std::span<const std::uint32_t> receiver_indices,
+                                       const prt::Blockers& blockers, const cubemap::CubeMap& environment,
+                                       const ExactOptions& options) {
+    const std::uint32_t r = environment.resolution;
+    const std::vector<double> solid_angles = cubemap::texel_solid_angles(r);
+    std::vector<glm::dvec3> radiance(receiver_indices.size(), glm::dvec3(0.0));
+    std::mutex mutex;
+    std::size_t rows_done = 0;
+    const std::size_t num_tasks = (receiver_indices.size() + ReceiversPerTask - 1) / ReceiversPerTask;
+    const std::size_t rows_per_task = cubemap::NumFaces * ((r + TileSize - 1) / TileSize);
+
+    const auto report_row = [&] {
+        if (options.stop.stop_requested())
+            throw prt::Cancelled();
+        const std::scoped_lock lock(mutex);
+        ++rows_done;
+        if (options.on_progress)
+            options.on_progress(static_cast<double>(rows_done) /
+                                static_cast<double>(num_tasks * rows_per_task));
+    };
+    tbb::parallel_for(std::size_t{0}, num_tasks, [&](std::size_t task) {
+        const std::size_t begin = task * ReceiversPerTask;
+        const std::size_t end = std::min(begin + ReceiversPerTask, receiver_indices.size());
+        for (const cubemap::Face face : cubemap::AllFaces)
+            for (std::uint32_t y = 0; y < r; y += TileSize) {
+                for (std::uint32_t x = 0; x < r; x += TileSize) {
+                    const Tile tile = tile_at(environment, solid_angles, face, x, y);
+                    if (tile.lit == 0)
+                        continue;
+                    for (std::size_t i = begin; i < end; ++i) {
+                        const std::uint32_t receiver = receiver_indices[i];
+                        const glm::vec3& normal = receivers.normals[receiver];
+                        const glm::vec3 origin =
+                            prt::ray_origin(receivers.positions[receiver], normal, options.bias);
+                        add_tile(tile, origin, normal, blockers, radiance[i]);
+                    }
+                }
+                report_row();
+            }
+    });
+    return radiance;
+}
+
+std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::size_t count,
+                                            std::uint64_t seed) {
+    const std::size_t num_receivers = transfer.num_receivers();
+    if (count == 0 || count > num_receivers)
+        count = num_receivers;
+    std::vector<std::uint32_t> places(num_receivers);
+    std::iota(places.begin(), places.end(), 0u);
+    // Fisher and Yates' shuffle of the first `count` places, by SplitMix64 (Steele, Lea, Flood 2014): the same on every system.
+    for (std::size_t i = 0; i < count; ++i) {
+        std::uint64_t z = (seed += 0x9e3779b97f4a7c15);
+        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
+        z = (z ^ z >> 27) * 0x94d049bb133111eb;
+        z ^= z >> 31;
+        std::swap(places[i], places[i + z % (num_receivers - i)]);
+    }
+    places.resize(count);
+    std::sort(places.begin(), places.end());
+    std::transform(places.begin(), places.end(), places.begin(),
+                   [&](std::uint32_t p) { return transfer.order[p]; });
+    return places;
+}
+
+ErrorReport compare(std::span<const std::uint32_t> receiver_indices, std::span<const glm::dvec3> exact,
+                    std::span<const glm::vec3> relit) {
+    ErrorReport report;
+    double error_squares = 0.0;
+    double exact_squares = 0.0;
+    double error_sum = 0.0;
+    double exact_sum = 0.0;
+    double largest = -1.0;
+    for (std::size_t i = 0; i < receiver_indices.size(); ++i) {
+        const glm::dvec3 error = glm::abs(glm::dvec3(relit[receiver_indices[i]]) - exact[i]);
+        error_squares += glm::dot(error, error);
+        exact_squares += glm::dot(exact[i], exact[i]);
+        error_sum += error.r + error.g + error.b;
+        exact_sum += exact[i].r + exact[i].g + exact[i].b;
+        if (const double worst = std::max({error.r, error.g, error.b}); worst > largest) {
+            largest = worst;
+            report.worst_receiver = receiver_indices[i];
+        }
+    }
+    if (receiver_indices.empty() || error_sum == 0.0)
+        return report;
+    const double num_values = 3.0 * static_cast<double>(receiver_indices.size());
+    report.mean_radiance = exact_sum / num_values;
+    report.relative_l2 = std::sqrt(error_squares / exact_squares);
+    report.mean_abs = error_sum / exact_sum;
+    report.max_abs = largest / report.mean_radiance;
+    return report;
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,50 @@
+// Pictures of relit meshes by ray casting.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "mesh/triangle_mesh.h"
+#include "prt/ray_scene.h"
+
+namespace relumine::relight {
+
+/// A pinhole camera, +Y up.
+struct Camera {
+    glm::vec3 eye{0.0f};
+    glm::vec3 target{0.0f};
+    float fov_degrees = 35.0f; ///< vertical
+};
+
+/// A camera that sees the whole box from the front, a little from the right and from above.
+[[nodiscard]] Camera automatic_camera(const mesh::Bounds& bounds, float fov_degrees = 35.0f);
+
+/// Linear radiance, [height * width] row by row from the top.
+struct Picture {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<glm::vec3> pixels = {};
+};
+
+struct PictureOptions {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 768;
+    std::uint32_t samples_per_axis = 3; ///< n x n rays per pixel, box filter
+};
+
+/// The mesh seen by the camera, radiance interpolated between its vertices [num_vertices], the environment behind it.
+/// Throws std::invalid_argument for a camera without a direction, a field of view outside (0, 180) or a size outside 1..16384.
+[[nodiscard]] Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                           std::span<const glm::vec3> vertex_radiance, const cubemap::CubeMap& background,
+                           const Camera& camera, const PictureOptions& options = {});
+
+/// Writes .png (times 2^exposure_ev, sRGB curve, clipped, 8 bit) or .exr (linear float, exposure applied too).
+/// Whole or not at all. Throws std::runtime_error naming the path, std::invalid_argument for another extension.
+void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev = 0.0);
+
+} // namespace relumine::relight
