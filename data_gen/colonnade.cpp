@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include "data_gen/icosphere.h"
@@ -11,30 +10,34 @@
 #include "data_gen/scene_parts.h"
 #include "data_gen/scenes.h"
 #include "data_gen/shapes.h"
+#include "mesh/normals.h"
 
 namespace relumine::data_gen {
 namespace {
 
-enum class Detail { Plain, Full };
+enum class Detail {
+    Plain,  ///< few columns without bases
+    Full,   ///< all mouldings
+    Fluted, ///< and grooves in the shafts, each at least VerticesPerFlute wide
+};
 
 // Measures in metres; heights of a column's parts are above the stylobate, the top of the steps.
-constexpr double FloorSide = 24.0;
+constexpr double FloorRadius = 13.0;
 constexpr double RingRadius = 3.6; // axes of the columns
 constexpr double StylobateHeight = 0.6;
 constexpr double StylobateRadius = 4.3;
 constexpr double StepWidth = 0.35;
-constexpr double StepHeight = 0.2;
 constexpr double ColumnHeight = 4.0;
 constexpr double FootRadius = 0.36; // of a shaft
 constexpr double NeckRadius = 0.30;
 constexpr std::uint32_t NumFlutes = 20;
-constexpr std::uint32_t VerticesPerFlute = 4; // fewer do not show a groove
+constexpr std::uint32_t VerticesPerFlute = 3;
 
 std::uint32_t multiple_of(std::uint32_t factor, double value) {
     return factor * std::max(1u, static_cast<std::uint32_t>(std::lround(value / factor)));
 }
 
-// A shaft's outline with entasis: the taper starts slowly.
+// A shaft's outline with entasis: the taper starts slowly. Upwards it may be coarser than elsewhere.
 Curve shaft(double bottom, double top, double spacing) {
     Curve points = line({FootRadius, bottom}, {NeckRadius, top}, spacing);
     for (glm::dvec2& point : points) {
@@ -56,7 +59,7 @@ mesh::TriangleMesh column(double spacing, Detail detail) {
         return mesh;
     }
     Flutes flutes;
-    if (num_around >= 2 * NumFlutes) {
+    if (detail == Detail::Fluted) {
         num_around = std::max(VerticesPerFlute * NumFlutes, multiple_of(NumFlutes, num_around));
         flutes = {.count = NumFlutes, .depth = 0.028, .bottom = 0.50, .top = 3.42};
     }
@@ -81,30 +84,56 @@ mesh::TriangleMesh column(double spacing, Detail detail) {
     return mesh;
 }
 
+int num_steps(Detail detail) {
+    return detail == Detail::Plain ? 1 : 3;
+}
+
+double foot_radius(Detail detail) {
+    return StylobateRadius + StepWidth * (num_steps(detail) - 1);
+}
+
+std::uint32_t num_around_steps(double spacing) {
+    return std::max(18u, multiple_of(6, 2.0 * std::numbers::pi * StylobateRadius / spacing));
+}
+
 // Steps from the floor to the stylobate.
 mesh::TriangleMesh steps(double spacing, Detail detail) {
-    const int num_steps = detail == Detail::Plain ? 1 : 3;
-    const double step_height = StylobateHeight / num_steps;
-    const std::uint32_t num_around =
-        std::max(18u, multiple_of(6, 2.0 * std::numbers::pi * StylobateRadius / spacing));
+    const int num = num_steps(detail);
+    const std::uint32_t num_around = num_around_steps(spacing);
     const auto radius = [&](int step) {
-        return StylobateRadius + StepWidth * (num_steps - 1 - step);
+        return foot_radius(detail) - StepWidth * step;
     };
     mesh::TriangleMesh mesh;
     append_disc(mesh, {.radius = radius(0), .num_around = num_around, .facing = Facing::Down});
     std::vector<Curve> profile;
-    for (int step = 0; step < num_steps; ++step) {
-        const double top = step + 1 == num_steps ? StylobateHeight : step_height * (step + 1);
-        profile.push_back(line({radius(step), step_height * step}, {radius(step), top}, spacing));
-        if (step + 1 < num_steps) {
+    for (int step = 0; step < num; ++step) {
+        const double bottom = StylobateHeight * step / num;
+        const double top = StylobateHeight * (step + 1) / num;
+        profile.push_back(line({radius(step), bottom}, {radius(step), top}, spacing));
+        if (step + 1 < num) {
             profile.push_back(line({radius(step), top}, {radius(step + 1), top}, spacing));
         }
     }
     append_lathe(mesh, profile, num_around);
     append_disc(
         mesh,
-        {.radius = StylobateRadius, .height = StylobateHeight, .num_around = num_around, .fill = Fill::Even});
+        {.radius = radius(num - 1), .height = StylobateHeight, .num_around = num_around, .fill = Fill::Even});
     return mesh;
+}
+
+// The floor around the steps, from their foot outwards: a grid that ran on below them would smear the dark under them over
+// the nearest vertices outside. A ring k of the floor has 6 k vertices.
+void append_floor_around(mesh::TriangleMesh& mesh, double foot_radius, std::uint32_t foot_num_around,
+                         std::size_t num_vertices) {
+    const double foot_ring = foot_num_around / 6.0;
+    const double last_ring =
+        std::sqrt(static_cast<double>(num_vertices) / 3.0 + foot_ring * (foot_ring - 1.0) + 0.25) - 0.5;
+    append_disc(mesh, {.radius = FloorRadius,
+                       .num_around = std::max(foot_num_around + 6,
+                                              6 * static_cast<std::uint32_t>(std::lround(last_ring))),
+                       .fill = Fill::Even,
+                       .inner_radius = foot_radius,
+                       .inner_num_around = foot_num_around});
 }
 
 // The ring that the columns carry: architrave of two bands, frieze and cornice.
@@ -156,7 +185,7 @@ struct Parts {
     Parts(double spacing, Detail detail)
         : column(data_gen::column(spacing, detail)), steps(data_gen::steps(spacing, detail)),
           entablature(data_gen::entablature(spacing, detail)), num_columns(detail == Detail::Plain ? 6 : 12) {
-        if (detail == Detail::Full) {
+        if (detail != Detail::Plain) {
             monument = data_gen::monument(spacing);
         }
     }
@@ -170,7 +199,9 @@ struct Parts {
 
 mesh::TriangleMesh colonnade(std::size_t num_vertices) {
     check_num_vertices(num_vertices);
-    const Detail detail = num_vertices < 8'000 ? Detail::Plain : Detail::Full;
+    const Detail detail = num_vertices < 8'000    ? Detail::Plain
+                          : num_vertices < 80'000 ? Detail::Full
+                                                  : Detail::Fluted;
     // The widest spacing that fills half of the wish; the count falls as the spacing grows.
     double fine = 0.001;
     double coarse = 4.0;
@@ -188,7 +219,10 @@ mesh::TriangleMesh colonnade(std::size_t num_vertices) {
                     {RingRadius * std::sin(azimuth), StylobateHeight, RingRadius * std::cos(azimuth)});
     }
     append_copy(mesh, parts.entablature, 0.0, glm::dvec3(0.0));
-    return on_ground(std::move(mesh), FloorSide, num_vertices);
+    append_floor_around(mesh, foot_radius(detail), num_around_steps(coarse),
+                        num_vertices - std::min(num_vertices, mesh.num_vertices()));
+    mesh.normals = mesh::smooth_normals(mesh);
+    return mesh;
 }
 
 } // namespace relumine::data_gen

@@ -115,12 +115,12 @@ cubemap::CubeMap two_soft_boxes(std::uint32_t resolution) {
                                             .half_width = 0.36,
                                             .half_height = 0.30,
                                             .edge = 0.06,
-                                            .radiance = {7.8f, 6.6f, 5.2f}},
+                                            .radiance = {15.0f, 12.5f, 9.6f}},
                                            {.direction = {0.90, 0.30, 0.32},
                                             .half_width = 0.22,
                                             .half_height = 0.55,
                                             .edge = 0.10,
-                                            .radiance = {0.9f, 1.3f, 2.0f}}}};
+                                            .radiance = {1.3f, 2.0f, 3.1f}}}};
     return soft_boxes(resolution, boxes, glm::vec3(0.05f, 0.055f, 0.065f));
 }
 
@@ -145,7 +145,7 @@ std::span<const Environment> environments() {
     static constexpr std::array<Environment, 4> Environments = {{
         {"sun_sky", "a clear afternoon (Preetham): sun of true size, sky, ground; radiance 1 = 20 kcd/m^2",
          [](std::uint32_t resolution) {
-             return sun_and_sky(resolution, {.scale = 1.0 / 20.0});
+             return sun_and_sky(resolution, {.ground_albedo = {0.24, 0.20, 0.15}, .scale = 1.0 / 20.0});
          }},
         {"soft_boxes", "a studio: warm key from the front left, cool fill from the right, dim background",
          two_soft_boxes},

@@ -81,30 +81,39 @@ void append_lathe(mesh::TriangleMesh& mesh, const std::vector<Curve>& profile, s
 }
 
 void append_disc(mesh::TriangleMesh& mesh, const Disc& disc) {
-    const auto center = static_cast<std::uint32_t>(mesh.positions.size());
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size());
     const auto append = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
         mesh.triangles.push_back(disc.facing == Facing::Up ? mesh::Triangle{a, c, b}
                                                            : mesh::Triangle{a, b, c});
     };
-    mesh.positions.emplace_back(0.0f, disc.height, 0.0f);
     if (disc.fill == Fill::Fan) {
+        mesh.positions.emplace_back(0.0, disc.height, 0.0);
         for (std::uint32_t i = 0; i < disc.num_around; ++i) {
             mesh.positions.push_back(ring_point(disc.radius, disc.height, i, disc.num_around));
-            append(center, center + 1 + i, center + 1 + (i + 1) % disc.num_around);
+            append(first, first + 1 + i, first + 1 + (i + 1) % disc.num_around);
         }
         return;
     }
-    // Ring k has 6 k vertices; the strip between two rings is six sectors of k inner and k + 1 outer edges each.
-    assert(disc.num_around % 6 == 0 && "an even disc needs a rim of six equal parts");
-    const std::uint32_t num_rings = disc.num_around / 6;
-    const auto index = [&](std::uint32_t ring, std::uint32_t i) {
-        return ring == 0 ? center : center + 1 + 3 * ring * (ring - 1) + i % (6 * ring);
+    // Ring k has 6 k vertices, ring 0 is the centre; the strip between two rings is six sectors of k inner and k + 1 outer edges.
+    assert(disc.num_around % 6 == 0 && disc.inner_num_around % 6 == 0 &&
+           "an even disc needs rims of six equal parts");
+    const std::uint32_t first_ring = disc.inner_num_around / 6;
+    const std::uint32_t last_ring = disc.num_around / 6;
+    const auto num_before = [](std::uint32_t ring) {
+        return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1);
     };
-    for (std::uint32_t ring = 1; ring <= num_rings; ++ring) {
-        const double radius = ring == num_rings ? disc.radius : disc.radius * ring / num_rings;
-        for (std::uint32_t i = 0; i < 6 * ring; ++i) {
-            mesh.positions.push_back(ring_point(radius, disc.height, i, 6 * ring));
+    const auto index = [&](std::uint32_t ring, std::uint32_t i) {
+        return first + num_before(ring) - num_before(first_ring) + (ring == 0 ? 0 : i % (6 * ring));
+    };
+    for (std::uint32_t ring = first_ring; ring <= last_ring; ++ring) {
+        const double outwards = double(ring - first_ring) / (last_ring - first_ring);
+        const double radius = (1.0 - outwards) * disc.inner_radius + outwards * disc.radius;
+        const std::uint32_t num_around = std::max(1u, 6 * ring);
+        for (std::uint32_t i = 0; i < num_around; ++i) {
+            mesh.positions.push_back(ring_point(radius, disc.height, i, num_around));
         }
+    }
+    for (std::uint32_t ring = first_ring + 1; ring <= last_ring; ++ring) {
         const std::uint32_t inner = ring - 1;
         for (std::uint32_t sector = 0; sector < 6; ++sector) {
             for (std::uint32_t j = 0; j < ring; ++j) {

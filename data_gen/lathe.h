@@ -46,13 +46,16 @@ enum class Fill {
     Even, ///< rings of 6, 12, 18, ... vertices, about evenly spaced; num_around must be a multiple of 6
 };
 
-/// A flat disc that closes a lathe; its rim meets the lathe's to the bit.
+/// A flat disc that closes a lathe, or an annulus around one; its rims meet the lathe's to the bit.
 struct Disc {
     double radius = 1.0;
     double height = 0.0;
-    std::uint32_t num_around = 6;
+    std::uint32_t num_around = 6; ///< vertices of the rim
     Facing facing = Facing::Up;
     Fill fill = Fill::Fan;
+    double inner_radius = 0.0; ///< Even only: leaves out what is inside a rim of this radius ...
+    std::uint32_t inner_num_around =
+        0; ///< ... and of this many vertices, a multiple of 6 and less than num_around
 };
 void append_disc(mesh::TriangleMesh& mesh, const Disc& disc);
 

@@ -70,13 +70,13 @@ double gradient_noise(const glm::dvec3& point, std::uint32_t seed) {
     return sum;
 }
 
-double fractal_noise(const glm::dvec3& point, int num_octaves, std::uint32_t seed) {
+double fractal_noise(const glm::dvec3& point, const FractalOptions& options) {
     double sum = 0.0;
     double amplitude = 1.0;
     glm::dvec3 p = point;
-    for (int octave = 0; octave < num_octaves; ++octave) {
-        sum += amplitude * gradient_noise(p, seed + static_cast<std::uint32_t>(octave));
-        amplitude *= 0.5;
+    for (int octave = 0; octave < options.num_octaves; ++octave) {
+        sum += amplitude * gradient_noise(p, options.seed + static_cast<std::uint32_t>(octave));
+        amplitude *= options.gain;
         // The shift keeps the zeros at the lattice points of the octaves from falling together.
         p = 2.0 * p + glm::dvec3(0.37, 0.61, 0.23);
     }

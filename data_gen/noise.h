@@ -11,7 +11,13 @@ namespace relumine::data_gen {
 /// Based on: Perlin, "Improving noise", 2002, with an integer hash in place of the table.
 [[nodiscard]] double gradient_noise(const glm::dvec3& point, std::uint32_t seed = 0);
 
-/// Sum of octaves of gradient noise, each twice as fine and half as strong, roughly in [-1, 1].
-[[nodiscard]] double fractal_noise(const glm::dvec3& point, int num_octaves, std::uint32_t seed = 0);
+struct FractalOptions {
+    int num_octaves = 6;
+    double gain = 0.5; ///< strength of an octave, times that of the one before
+    std::uint32_t seed = 0;
+};
+
+/// Sum of octaves of gradient noise, each twice as fine as the one before; the first has strength 1.
+[[nodiscard]] double fractal_noise(const glm::dvec3& point, const FractalOptions& options = {});
 
 } // namespace relumine::data_gen

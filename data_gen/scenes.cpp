@@ -22,6 +22,12 @@ namespace {
 
 constexpr double FullTurn = 2.0 * std::numbers::pi;
 
+glm::dvec3 leaning(const glm::dvec3& p) {
+    constexpr double Angle = 0.35; // radians
+    return {p.x, p.y * std::cos(Angle) + p.z * std::sin(Angle),
+            p.z * std::cos(Angle) - p.y * std::sin(Angle)};
+}
+
 // The knot's centre line, standing upright and leaning back; period 1.
 glm::dvec3 knot_line(double t) {
     constexpr double Ring = 1.0;
@@ -30,9 +36,7 @@ glm::dvec3 knot_line(double t) {
     const double across = 3.0 * FullTurn * t;
     const double radius = Ring + Tube * std::cos(across);
     const glm::dvec3 flat(radius * std::sin(around), radius * std::cos(around), Tube * std::sin(across));
-    const double lean = 0.35;
-    return {flat.x, flat.y * std::cos(lean) + flat.z * std::sin(lean),
-            flat.z * std::cos(lean) - flat.y * std::sin(lean)};
+    return leaning(flat);
 }
 
 // Parameters at equal distances along the closed line, [num].
@@ -54,16 +58,12 @@ std::vector<double> even_parameters(std::uint32_t num) {
     return parameters;
 }
 
-// Two axes across the line, turning with it so that they close up: the first is the part of the way from the ring's
-// centre line that stands square on the knot.
+// Two axes square on the line that close up after a turn: the first points away from the ring around which the knot winds.
 std::array<glm::dvec3, 2> knot_axes(double t) {
     constexpr double Step = 1e-5;
     const glm::dvec3 along = glm::normalize(knot_line(t + Step) - knot_line(t - Step));
-    glm::dvec3 core(0.0);
-    // The point of the ring's centre line beside t: the mean of the knot over a turn of its tube, which is opposite to opposite.
-    const double lean = 0.35;
     const double around = 2.0 * FullTurn * t;
-    core = {std::sin(around), std::cos(around) * std::cos(lean), -std::cos(around) * std::sin(lean)};
+    const glm::dvec3 core = leaning({std::sin(around), std::cos(around), 0.0});
     glm::dvec3 outwards = knot_line(t) - core;
     outwards = glm::normalize(outwards - along * glm::dot(outwards, along));
     return {outwards, glm::cross(along, outwards)};
@@ -86,8 +86,8 @@ mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side, std:
 
 mesh::TriangleMesh knot(std::size_t num_vertices) {
     check_num_vertices(num_vertices);
-    constexpr double LineLength = 15.1; // of knot_line; sets how even the spacing is, nothing else
-    constexpr double TubeRadius = 0.21;
+    constexpr double LineLength = 15.0; // of knot_line; sets how even the spacing is, nothing else
+    constexpr double TubeRadius = 0.27;
     const double wish = 0.5 * static_cast<double>(num_vertices);
     const auto num_across =
         static_cast<std::uint32_t>(std::lround(std::sqrt(wish * FullTurn * TubeRadius / LineLength)));
@@ -118,12 +118,14 @@ mesh::TriangleMesh blob(std::size_t num_vertices) {
     float lowest = 0.0f;
     for (glm::vec3& p : mesh.positions) {
         const glm::dvec3 direction(p);
-        // Broad lumps, bent by a second noise, with ridges between them and fine grain.
-        const glm::dvec3 bend(gradient_noise(1.7 * direction, 11), gradient_noise(1.7 * direction, 12),
-                              gradient_noise(1.7 * direction, 13));
-        const double lumps = fractal_noise(1.4 * direction + 0.3 * bend, 8, 1);
-        const double ridges = 1.0 - std::abs(fractal_noise(1.9 * direction + 0.2 * bend, 4, 21));
-        const double radius = 1.0 + 0.28 * lumps + 0.25 * (ridges * ridges - 0.6);
+        // Broad lumps, bent by a second noise, worn ridges between them and a fine grain.
+        const glm::dvec3 bend(gradient_noise(1.3 * direction, 11), gradient_noise(1.3 * direction, 12),
+                              gradient_noise(1.3 * direction, 13));
+        const double lumps =
+            fractal_noise(1.15 * direction + 0.35 * bend, {.num_octaves = 9, .gain = 0.42, .seed = 1});
+        const double ridges = 1.0 - std::abs(fractal_noise(1.6 * direction + 0.3 * bend,
+                                                           {.num_octaves = 3, .gain = 0.35, .seed = 21}));
+        const double radius = 1.0 + 0.42 * lumps + 0.30 * (ridges * ridges - 0.6);
         const glm::dvec3 rough = radius * direction;
         // It lies on a side: heights below `bed` are pressed together, smoothly and one to one.
         constexpr double Bed = -0.62;

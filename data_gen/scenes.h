@@ -14,13 +14,13 @@ namespace relumine::data_gen {
 inline constexpr std::size_t MinSceneVertices = 1'000;
 inline constexpr std::size_t MaxSceneVertices = 5'000'000;
 
-// Every scene stands on a square floor at y = 0 that faces +Y and holds about half of the vertices; the rest are closed surfaces
+// Every scene stands on a flat floor at y = 0 that faces +Y and holds about half of the vertices; the rest are closed surfaces
 // of evenly spaced vertices, smooth where the shape is and with doubled vertices along sharp edges. Normals are set; colours and
 // texture coordinates are not. Units are metres. `num_vertices` is a wish that is met within 4 % (1 % from 20,000 on). The same
 // argument gives the same bits. Throws std::invalid_argument outside [MinSceneVertices, MaxSceneVertices].
 
-/// A round open temple: steps, a ring of columns with bases and capitals (fluted from about 40,000 vertices on) under an
-/// entablature, and a globe on a pedestal in the middle. 10 m across, 5.3 m high, the floor is 24 m wide. Below 8,000
+/// A round open temple: steps, a ring of columns with bases and capitals (fluted from 80,000 vertices on) under an
+/// entablature, and a globe on a pedestal in the middle. 10 m across, 5.3 m high; the floor is a round one of 26 m that begins at the steps' foot. Below 8,000
 /// vertices there are fewer columns and plainer ones, and the floor has less than half of the vertices.
 [[nodiscard]] mesh::TriangleMesh colonnade(std::size_t num_vertices = 100'000);
 
