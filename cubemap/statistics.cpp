@@ -1,8 +1,8 @@
 #include "cubemap/statistics.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "cubemap/image_layout.h"
 
@@ -27,12 +27,14 @@ bool is_good(const glm::vec3& radiance) {
 EnvironmentStatistics statistics(const EnvironmentImage& image) {
     EnvironmentStatistics result;
     double smallest = std::numeric_limits<double>::infinity();
+    double solid_angle = 0.0;
     for_each_pixel({image.layout, image.sampling, image.width, image.height},
                    [&](std::size_t index, const PixelPlace& place) {
                        const glm::vec3& radiance = image.pixels[index];
                        if (!is_good(radiance))
                            return;
                        result.mean_radiance += glm::dvec3(radiance) * place.solid_angle;
+                       solid_angle += place.solid_angle;
                        const double value = luminance(radiance);
                        if (value > result.max_luminance) {
                            result.max_luminance = value;
@@ -41,7 +43,8 @@ EnvironmentStatistics statistics(const EnvironmentImage& image) {
                        if (value > 0.0)
                            smallest = std::min(smallest, value);
                    });
-    result.mean_radiance /= 4.0 * std::numbers::pi;
+    if (solid_angle > 0.0)
+        result.mean_radiance /= solid_angle;
     result.mean_luminance = luminance(result.mean_radiance);
     if (result.max_luminance > 0.0) {
         result.min_positive_luminance = smallest;
