@@ -18,8 +18,9 @@ namespace relumine::data_gen {
                                         const glm::vec3& radiance = glm::vec3(1.0f));
 
 /// One round light in the dark, `radiance` within `angular_radius_degrees` (0 < a <= 90) of `direction` (any length but zero).
-/// Total power 2 pi L (1 - cos a), irradiance of a surface facing it pi L sin(a)^2; both hold to 0.1 % for any R, any place
-/// (across edges and corners of faces) and any size, far below a texel's too. A texel at the rim gets its covered part of L.
+/// Total power 2 pi L (1 - cos a), to 0.1 % for any R, any place (across edges and corners of faces) and any size, far below a
+/// texel's too; irradiance of a surface facing it pi L sin(a)^2, as well as R resolves directions (0.1 % from R = 128 on). A texel at
+/// the rim gets its covered part of L.
 [[nodiscard]] cubemap::CubeMap disc_light(std::uint32_t resolution, const glm::dvec3& direction,
                                           double angular_radius_degrees,
                                           const glm::vec3& radiance = glm::vec3(1.0f));

@@ -20,8 +20,9 @@ inline constexpr std::size_t MaxSceneVertices = 5'000'000;
 // argument gives the same bits. Throws std::invalid_argument outside [MinSceneVertices, MaxSceneVertices].
 
 /// A round open temple: steps, a ring of columns with bases and capitals (fluted from 80,000 vertices on) under an
-/// entablature, and a globe on a pedestal in the middle. 10 m across, 5.3 m high; the floor is a round one of 26 m that begins at the steps' foot. Below 8,000
-/// vertices there are fewer columns and plainer ones, and the floor has less than half of the vertices.
+/// entablature, and a globe on a pedestal in the middle. 10 m across, 5.3 m high; the floor is round, 26 m across, and begins
+/// at the foot of the steps. Below 8,000 vertices there are fewer and plainer columns, and down to 1,000 the floor has less than half
+/// of the vertices.
 [[nodiscard]] mesh::TriangleMesh colonnade(std::size_t num_vertices = 100'000);
 
 /// A (2,3) torus knot, leaning back a little, hovering just above the floor: contact shadows and soft shadows on itself.

@@ -1,1 +1,171 @@
+#include "data_gen/scenes.h"
+
+#include <cmath>
+#include <ostream>
+#include <set>
+#include <stdexcept>
+#include <string>
+
 #include <gtest/gtest.h>
+
+#include "mesh_checks.h"
+
+namespace relumine::data_gen {
+
+void PrintTo(const Scene& scene, std::ostream* out) {
+    *out << scene.name;
+}
+
+namespace {
+
+bool on_floor(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle) {
+    return mesh.positions[triangle[0]].y == 0.0f && mesh.positions[triangle[1]].y == 0.0f &&
+           mesh.positions[triangle[2]].y == 0.0f && area_vector(mesh, triangle).y > 0.0;
+}
+
+// The scene without its floor.
+mesh::TriangleMesh objects(const mesh::TriangleMesh& scene) {
+    mesh::TriangleMesh rest;
+    rest.positions = scene.positions;
+    for (const mesh::Triangle& triangle : scene.triangles) {
+        if (!on_floor(scene, triangle)) {
+            rest.triangles.push_back(triangle);
+        }
+    }
+    return rest;
+}
+
+class SceneTest : public testing::TestWithParam<Scene> {};
+
+INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scenes().begin(), scenes().end()),
+                         [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST_P(SceneTest, MeetsTheVertexCount) {
+    for (const std::size_t wish : {1'000u, 1'234u, 2'000u, 3'500u, 7'999u, 8'000u, 15'000u, 20'000u, 33'333u,
+                                   79'999u, 80'000u, 100'000u, 250'000u}) {
+        const auto count = static_cast<double>(GetParam().make(wish).num_vertices());
+        const double allowed = wish < 20'000 ? 0.04 : 0.01;
+        EXPECT_NEAR(count / static_cast<double>(wish), 1.0, allowed) << wish;
+    }
+}
+
+TEST_P(SceneTest, RefusesCountsOutOfRange) {
+    EXPECT_THROW((void)GetParam().make(MinSceneVertices - 1), std::invalid_argument);
+    EXPECT_THROW((void)GetParam().make(MaxSceneVertices + 1), std::invalid_argument);
+}
+
+TEST_P(SceneTest, IsTheSameEveryTime) {
+    const mesh::TriangleMesh first = GetParam().make(20'000);
+    const mesh::TriangleMesh second = GetParam().make(20'000);
+    EXPECT_EQ(first.positions, second.positions);
+    EXPECT_EQ(first.triangles, second.triangles);
+    EXPECT_EQ(first.normals, second.normals);
+}
+
+TEST_P(SceneTest, HasSoundTrianglesAndUnitNormals) {
+    for (const std::size_t wish : {1'000u, 10'000u, 300'000u}) {
+        const mesh::TriangleMesh mesh = GetParam().make(wish);
+        ASSERT_EQ(mesh.normals.size(), mesh.num_vertices());
+        std::vector<bool> used(mesh.num_vertices());
+        double smallest = 1.0;
+        for (const mesh::Triangle& triangle : mesh.triangles) {
+            for (const std::uint32_t index : triangle) {
+                ASSERT_LT(index, mesh.num_vertices());
+                used[index] = true;
+            }
+            smallest = std::min(smallest, glm::length(area_vector(mesh, triangle)));
+        }
+        EXPECT_GT(smallest, 1e-9) << wish;
+        EXPECT_EQ(std::count(used.begin(), used.end(), false), 0) << "vertices without a triangle";
+        for (const glm::vec3& normal : mesh.normals) {
+            ASSERT_NEAR(glm::length(normal), 1.0f, 1e-5f);
+        }
+    }
+}
+
+TEST_P(SceneTest, ObjectsAreClosedAndFaceOutwards) {
+    for (const std::size_t wish : {1'000u, 10'000u, 100'000u}) {
+        const mesh::TriangleMesh solid = objects(GetParam().make(wish));
+        EXPECT_EQ(num_open_edges(solid), 0u) << wish;
+        for (const double volume : volumes(solid)) {
+            EXPECT_GT(volume, 0.0) << wish;
+        }
+    }
+}
+
+TEST_P(SceneTest, StandsOnAFloorOfAboutHalfTheVertices) {
+    const mesh::TriangleMesh mesh = GetParam().make(50'000);
+    std::set<std::uint32_t> floor;
+    for (const mesh::Triangle& triangle : mesh.triangles) {
+        if (on_floor(mesh, triangle)) {
+            floor.insert(triangle.begin(), triangle.end());
+        }
+    }
+    EXPECT_NEAR(static_cast<double>(floor.size()) / static_cast<double>(mesh.num_vertices()), 0.5, 0.1);
+    for (const std::uint32_t index : floor) {
+        ASSERT_NEAR(mesh.normals[index].y, 1.0f, 1e-6f);
+    }
+    EXPECT_GE(mesh::bounds(mesh).min.y, 0.0f) << "something lies under the floor";
+}
+
+TEST(ColonnadeTest, ReachesTheLargestCount) {
+    const mesh::TriangleMesh mesh = colonnade(MaxSceneVertices);
+    EXPECT_NEAR(static_cast<double>(mesh.num_vertices()), double(MaxSceneVertices),
+                0.01 * double(MaxSceneVertices));
+    for (const mesh::Triangle& triangle : mesh.triangles) {
+        ASSERT_GT(glm::length(area_vector(mesh, triangle)), 0.0);
+    }
+}
+
+TEST(ColonnadeTest, EdgesAreSharp) {
+    // The steps' treads look straight up, to the very edge.
+    const mesh::TriangleMesh mesh = colonnade(100'000);
+    std::size_t num_tread_vertices = 0;
+    for (const mesh::Triangle& triangle : mesh.triangles) {
+        const glm::dvec3 face = area_vector(mesh, triangle);
+        if (face.y > 0.9999 * glm::length(face)) {
+            for (const std::uint32_t index : triangle) {
+                ASSERT_NEAR(mesh.normals[index].y, 1.0f, 1e-4f);
+                ++num_tread_vertices;
+            }
+        }
+    }
+    EXPECT_GT(num_tread_vertices, 10'000u);
+}
+
+TEST(SphereTest, IsASphereWhereTheHeaderSays) {
+    const mesh::TriangleMesh mesh = sphere(50'000);
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
+        if (mesh.positions[i].y > 0.0f) {
+            const glm::vec3 from_center = mesh.positions[i] - SphereCenter;
+            ASSERT_NEAR(glm::length(from_center), SphereRadius, 1e-5f);
+            ASSERT_GT(glm::dot(mesh.normals[i], from_center / SphereRadius), 0.9999f);
+        }
+    }
+}
+
+TEST(KnotTest, StrandsKeepApart) {
+    // Neighbours on one strand look nearly the same way; two strands that met would have close vertices that do not.
+    const mesh::TriangleMesh mesh = knot(8'000);
+    std::size_t num_tube = 0;
+    while (mesh.positions[num_tube].y > 0.0f) {
+        ++num_tube;
+    }
+    EXPECT_NEAR(static_cast<double>(num_tube), 4'000.0, 100.0);
+    for (std::size_t i = 0; i < num_tube; ++i) {
+        for (std::size_t j = 0; j < i; ++j) {
+            if (glm::distance(mesh.positions[i], mesh.positions[j]) < 0.2f) {
+                ASSERT_GT(glm::dot(mesh.normals[i], mesh.normals[j]), 0.6f);
+            }
+        }
+    }
+}
+
+TEST(KnotTest, TubeHasItsRadius) {
+    // Pappus: a tube along a line of length l has the area 2 pi r l and the volume pi r^2 l.
+    const mesh::TriangleMesh tube = objects(knot(200'000));
+    EXPECT_NEAR(2.0 * volumes(tube).at(0) / area(tube), 0.27, 0.001);
+}
+
+} // namespace
+} // namespace relumine::data_gen
