@@ -90,7 +90,7 @@ std::uint32_t ObjReader::index(std::string_view word, std::size_t count) const {
     const std::int64_t written = reader_.integer(word);
     const std::int64_t result = written > 0 ? written - 1 : static_cast<std::int64_t>(count) + written;
     if (written == 0 || result < 0 || result >= std::int64_t{NoIndex})
-        reader_.fail(fmt::format("an index (1 is the first, -1 the newest of {})", count), quoted(word));
+        reader_.fail(fmt::format("an index (1 is the first, -1 the newest of {})", count), excerpt(word));
     return static_cast<std::uint32_t>(result);
 }
 

@@ -59,8 +59,8 @@ std::vector<std::string_view> OffReader::read_keyword() {
     layout_.has_color = take(keyword, "C");
     layout_.has_normal = take(keyword, "N");
     const bool has_keyword = take(keyword, "OFF");
-    if (!has_keyword && (keyword.size() != words[0].size() || keyword[0] < '0' || keyword[0] > '9'))
-        reader_.fail("OFF with an optional ST, C, N in front, in three dimensions", quoted(words[0]));
+    if (!has_keyword && words[0].find_first_not_of("0123456789") != std::string_view::npos)
+        reader_.fail("OFF with an optional ST, C, N in front, in three dimensions", excerpt(words[0]));
     if (words.size() > 1 && words[1] == "BINARY")
         reader_.fail("ASCII OFF", "'BINARY'");
     // Some files lack the space between the keyword and the counts (ModelNet's).
@@ -123,7 +123,7 @@ void OffReader::read_face(std::size_t num_vertices) {
         if (index < 0 || static_cast<std::size_t>(index) >= num_vertices)
             reader_.fail(
                 fmt::format("a vertex index of 0 to {}", static_cast<std::int64_t>(num_vertices) - 1),
-                quoted(words[i]));
+                excerpt(words[i]));
         soup_.corners.push_back(static_cast<std::uint32_t>(index));
     }
     for (std::size_t i = static_cast<std::size_t>(num_corners) + 1; i < words.size(); ++i)
@@ -140,7 +140,7 @@ PolygonSoup OffReader::read() {
         read_face(counts.vertices);
     if (reader_.next_line())
         reader_.fail(fmt::format("nothing after {} vertices and {} faces", counts.vertices, counts.faces),
-                     quoted(reader_.words()[0]));
+                     excerpt(reader_.words()[0]));
     normalize_text_colors(soup_.colors);
     return std::move(soup_);
 }

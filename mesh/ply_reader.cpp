@@ -62,18 +62,18 @@ Type type_named(std::string_view name, const TextReader& reader) {
     for (std::size_t i = 0; i < Names.size(); ++i)
         if (name == Names[i][0] || name == Names[i][1])
             return static_cast<Type>(i);
-    reader.fail("a number type such as float or uchar", quoted(name));
+    reader.fail("a number type such as float or uchar", excerpt(name));
 }
 
 void read_property(const TextReader& reader, Header& header) {
     const std::vector<std::string_view>& words = reader.words();
     if (header.elements.empty())
-        reader.fail("an element before its properties", quoted(words[0]));
+        reader.fail("an element before its properties", excerpt(words[0]));
     Property property;
     if (words.size() == 5 && words[1] == "list") {
         property.size_type = type_named(words[2], reader);
         if (is_float(*property.size_type))
-            reader.fail("a whole number as the size of a list", quoted(words[2]));
+            reader.fail("a whole number as the size of a list", excerpt(words[2]));
         property.type = type_named(words[3], reader);
     } else if (words.size() == 3)
         property.type = type_named(words[1], reader);
@@ -105,7 +105,7 @@ std::pair<std::string_view, std::size_t> split_header(std::string_view text) {
 Header read_header(std::string_view text) {
     if (!text.starts_with("ply\n") && !text.starts_with("ply\r"))
         throw std::runtime_error(
-            fmt::format("expected a PLY file that begins with 'ply', got {}", quoted(text.substr(0, 3))));
+            fmt::format("expected a PLY file that begins with 'ply', got {}", excerpt(text.substr(0, 3))));
     Header header;
     const auto [header_text, num_bytes] = split_header(text);
     header.num_bytes = num_bytes;
@@ -120,15 +120,15 @@ Header read_header(std::string_view text) {
         else if (words[0] == "element" && words.size() == 3) {
             const std::int64_t count = reader.integer(words[2]);
             if (count < 0)
-                reader.fail("a number of elements", quoted(words[2]));
+                reader.fail("a number of elements", excerpt(words[2]));
             for (const Element& element : header.elements)
                 if (element.name == words[1])
-                    reader.fail("each element once", quoted(words[1]));
+                    reader.fail("each element once", excerpt(words[1]));
             header.elements.push_back({words[1], static_cast<std::uint64_t>(count), {}});
         } else if (words[0] == "property")
             read_property(reader, header);
         else
-            reader.fail("format 1.0, element, property, comment or obj_info", quoted(words[0]));
+            reader.fail("format 1.0, element, property, comment or obj_info", excerpt(words[0]));
     }
     return header;
 }
@@ -142,7 +142,7 @@ public:
     [[nodiscard]] std::size_t num_bytes() const { return num_bytes_; }
     void expect_end() {
         if (!reader_.at_end())
-            reader_.fail("the end of the data", quoted(reader_.words()[0]));
+            reader_.fail("the end of the data", excerpt(reader_.words()[0]));
     }
 
 private:
@@ -376,7 +376,7 @@ PolygonSoup read_ply(std::span<const std::byte> bytes) {
         return read_body(header, BinaryValues<std::endian::big>(body));
     throw std::runtime_error(
         fmt::format("expected the format ascii, binary_little_endian or binary_big_endian, got {}",
-                    quoted(header.format)));
+                    excerpt(header.format)));
 }
 
 } // namespace relumine::mesh

@@ -1,4 +1,4 @@
-// What the file readers hand to load(): vertices and polygons as the file has them.
+// Between the file readers and load(): vertices and polygons as the file has them.
 #pragma once
 
 #include <cstddef>
@@ -8,6 +8,8 @@
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "mesh/load.h"
 
 namespace relumine::mesh {
 
@@ -23,6 +25,10 @@ struct PolygonSoup {
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }
 };
+
+/// Checks the soup, cuts its polygons into triangles and completes the normals, as load() promises. Throws
+/// std::runtime_error "expected X, got Y".
+[[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source);
 
 /// The readers, one per format, of a whole file's bytes. They throw std::runtime_error "expected X, got Y" (load() puts
 /// the path in front), never read outside `bytes`, and allocate no more than a small multiple of its size.

@@ -92,7 +92,7 @@ private:
 void AsciiReader::expect(std::string_view keyword) {
     const std::string_view word = reader_.next_word(fmt::format("'{}'", keyword));
     if (!same_keyword(word, keyword))
-        reader_.fail(fmt::format("'{}'", keyword), quoted(word));
+        reader_.fail(fmt::format("'{}'", keyword), excerpt(word));
 }
 
 glm::vec3 AsciiReader::read_vector() {
@@ -121,7 +121,7 @@ PolygonSoup AsciiReader::read() {
     // Each solid's name takes the rest of its line and may hold any word.
     while (reader_.next_line()) {
         if (!same_keyword(reader_.words()[0], "solid"))
-            reader_.fail("'solid'", quoted(reader_.words()[0]));
+            reader_.fail("'solid'", excerpt(reader_.words()[0]));
         if (!reader_.next_line())
             reader_.fail("'facet' or 'endsolid'", "the end of the file");
         std::string_view word = reader_.next_word("'facet' or 'endsolid'");
@@ -130,7 +130,7 @@ PolygonSoup AsciiReader::read() {
             word = reader_.next_word("'facet' or 'endsolid'");
         }
         if (!same_keyword(word, "endsolid"))
-            reader_.fail("'facet' or 'endsolid'", quoted(word));
+            reader_.fail("'facet' or 'endsolid'", excerpt(word));
     }
     return welder_.result();
 }

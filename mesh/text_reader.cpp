@@ -26,7 +26,7 @@ std::string_view as_text(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::string quoted(std::string_view text) {
+std::string excerpt(std::string_view text) {
     constexpr std::size_t MaxLength = 40;
     std::string result(text.substr(0, MaxLength));
     std::replace_if(
@@ -84,7 +84,7 @@ double TextReader::number(std::string_view word) const {
     double value = 0.0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
-        fail("a number", quoted(word));
+        fail("a number", excerpt(word));
     if (error == std::errc::result_out_of_range) {
         const bool is_small =
             digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos;
@@ -98,7 +98,7 @@ std::int64_t TextReader::integer(std::string_view word) const {
     std::int64_t value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (end != digits.data() + digits.size() || error != std::errc())
-        fail("a whole number", quoted(word));
+        fail("a whole number", excerpt(word));
     return value;
 }
 

@@ -16,7 +16,7 @@ namespace relumine::mesh {
 [[nodiscard]] std::string_view as_text(std::span<const std::byte> bytes);
 
 /// Text of unknown content for an error message: quoted, shortened, without control characters.
-[[nodiscard]] std::string quoted(std::string_view text);
+[[nodiscard]] std::string excerpt(std::string_view text);
 
 /// Walks over a text line by line or word by word. Lines end with LF, CR or CR LF; words are separated by white space.
 /// The text must outlive the reader and its words. A UTF-8 byte order mark is skipped; text with NUL bytes (UTF-16) is

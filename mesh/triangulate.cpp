@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -53,8 +54,17 @@ void Triangulator::find_reflex_corners() {
     reflex_.clear();
     for (std::uint32_t i = 0; i < corners_.size(); ++i)
         if (turn(i) <= 0.0)
-            reflex_.emplace_back(corners_[i].point.x, i);
-    std::sort(reflex_.begin(), reflex_.end());
+            reflex_.push_back({corners_[i].point, i});
+    std::sort(reflex_.begin(), reflex_.end(), [](const ReflexCorner& a, const ReflexCorner& b) {
+        return std::pair(a.point.x, a.corner) < std::pair(b.point.x, b.corner);
+    });
+}
+
+/// Cuts clip reflex corners or make them convex, for good.
+void Triangulator::drop_reflex_corners_out_of_date() {
+    std::erase_if(reflex_, [this](const ReflexCorner& reflex) {
+        return corners_[reflex.corner].clipped || turn(reflex.corner) > 0.0;
+    });
 }
 
 double Triangulator::turn(std::uint32_t corner) const {
@@ -77,15 +87,16 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
     const glm::dvec2 c = corners_[corners_[corner].next].point;
     const double min_x = std::min({a.x, b.x, c.x}), max_x = std::max({a.x, b.x, c.x});
     const double min_y = std::min({a.y, b.y, c.y}), max_y = std::max({a.y, b.y, c.y});
-    for (auto it = std::lower_bound(reflex_.begin(), reflex_.end(), std::pair(min_x, std::uint32_t{0}));
-         it != reflex_.end() && it->first <= max_x; ++it) {
+    const auto begin =
+        std::lower_bound(reflex_.begin(), reflex_.end(), min_x,
+                         [](const ReflexCorner& reflex, double x) { return reflex.point.x < x; });
+    for (auto it = begin; it != reflex_.end() && it->point.x <= max_x; ++it) {
         work_left_ -= 1.0;
-        const Corner& other = corners_[it->second];
-        const glm::dvec2 p = other.point;
-        if (other.clipped || p.y < min_y || p.y > max_y || p == a || p == b || p == c)
+        const glm::dvec2 p = it->point;
+        if (p.y < min_y || p.y > max_y || p == a || p == b || p == c)
             continue;
         if (turn_of(a, b, p) >= 0.0 && turn_of(b, c, p) >= 0.0 && turn_of(c, a, p) >= 0.0 &&
-            turn(it->second) <= 0.0)
+            !corners_[it->corner].clipped && turn(it->corner) <= 0.0)
             return false;
     }
     return true;
@@ -99,14 +110,17 @@ void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Tr
     }
     find_reflex_corners();
     // Usual polygons need a few tests per corner; the mesh as a whole may spend many more before it is given up.
-    work_left_ += 300.0 * static_cast<double>(polygon.size());
+    work_left_ += 1000.0 * static_cast<double>(polygon.size());
 
-    // Ears with an area come first: a corner on a straight edge then gets triangles with an area, too.
+    // Ears with an area come first: a corner on a straight edge then gets triangles with an area, too. A cut can only make
+    // ears of its two neighbours; looking there first keeps long strips, with ears at their ends alone, from taking O(n^2).
+    constexpr std::uint32_t None = std::numeric_limits<std::uint32_t>::max();
     std::size_t num_left = polygon.size();
+    std::size_t num_cuts = 0;    // since out-of-date reflex corners were dropped
     std::size_t num_refused = 0; // corners in a row that are no ear
+    std::uint32_t other_neighbour = None;
     Ear kind = Ear::Empty;
-    std::uint32_t corner = 1;
-    while (num_left > 2) {
+    for (std::uint32_t corner = 1; num_left > 2;) {
         const auto [point, previous, next, clipped] = corners_[corner];
         if (is_ear(corner, kind)) {
             triangles.push_back({polygon[previous], polygon[corner], polygon[next]});
@@ -114,11 +128,22 @@ void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Tr
             corners_[next].previous = previous;
             corners_[corner].clipped = true;
             --num_left;
+            if (2 * ++num_cuts > reflex_.size() + 32) {
+                drop_reflex_corners_out_of_date();
+                num_cuts = 0;
+            }
             num_refused = 0;
             kind = Ear::Empty;
-        } else if (++num_refused == num_left) {
-            num_refused = 0;
-            kind = kind == Ear::Empty ? Ear::Flat : Ear::Any;
+            other_neighbour = previous;
+            corner = next;
+        } else if (other_neighbour != None) {
+            corner = std::exchange(other_neighbour, None);
+        } else {
+            corner = next;
+            if (++num_refused == num_left) {
+                num_refused = 0;
+                kind = kind == Ear::Empty ? Ear::Flat : Ear::Any;
+            }
         }
         if (work_left_ < 0.0)
             throw std::runtime_error(fmt::format(

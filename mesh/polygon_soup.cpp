@@ -1,0 +1,91 @@
+#include "mesh/polygon_soup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "mesh/normals.h"
+#include "mesh/triangulate.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+bool is_finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Refuses what no mesh may have, whatever the format.
+void check(const PolygonSoup& soup) {
+    const std::size_t num_vertices = soup.positions.size();
+    if (num_vertices == 0)
+        throw std::runtime_error("expected vertices, got none");
+    for (std::size_t i = 0; i < num_vertices; ++i)
+        if (!is_finite(soup.positions[i]))
+            throw std::runtime_error(fmt::format("expected finite positions, got {} {} {} at vertex {} of {}",
+                                                 soup.positions[i].x, soup.positions[i].y,
+                                                 soup.positions[i].z, i, num_vertices));
+    for (const std::uint32_t vertex : soup.corners)
+        if (vertex >= num_vertices)
+            throw std::runtime_error(
+                fmt::format("expected vertex indices below {}, got {}", num_vertices, vertex));
+}
+
+std::vector<Triangle> triangulate(const PolygonSoup& soup) {
+    std::vector<Triangle> triangles;
+    triangles.reserve(soup.face_ends.size());
+    Triangulator triangulator(soup.positions);
+    std::size_t begin = 0;
+    for (const std::size_t end : soup.face_ends) {
+        if (end - begin >= 3)
+            triangulator.append(std::span(soup.corners).subspan(begin, end - begin), triangles);
+        begin = end;
+    }
+    if (triangles.empty())
+        throw std::runtime_error(
+            fmt::format("expected faces with three or more corners, got {} vertices and {} faces",
+                        soup.positions.size(), soup.face_ends.size()));
+    return triangles;
+}
+
+/// Makes the normals unit length. False where a vertex of some face has none that is usable.
+bool normalize_normals(TriangleMesh& mesh) {
+    std::vector<bool> is_used(mesh.num_vertices(), false);
+    for (const Triangle& triangle : mesh.triangles)
+        for (const std::uint32_t vertex : triangle)
+            is_used[vertex] = true;
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
+        const glm::dvec3 normal(mesh.normals[i]);
+        const double length = is_finite(mesh.normals[i]) ? glm::length(normal) : 0.0;
+        if (length == 0.0 && is_used[i])
+            return false;
+        mesh.normals[i] = length > 0.0 ? glm::vec3(normal / length) : glm::vec3(0.0f);
+    }
+    return true;
+}
+
+} // namespace
+
+TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
+    check(soup);
+    TriangleMesh mesh;
+    mesh.triangles = triangulate(soup);
+    mesh.positions = std::move(soup.positions);
+    mesh.normals = std::move(soup.normals);
+    mesh.colors = std::move(soup.colors);
+    mesh.uvs = std::move(soup.uvs);
+    if (source == NormalSource::Smooth || mesh.normals.empty() || !normalize_normals(mesh))
+        mesh.normals = smooth_normals(mesh);
+    if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), is_finite))
+        mesh.colors.clear();
+    if (!std::all_of(mesh.uvs.begin(), mesh.uvs.end(), [](const glm::vec2& uv) {
+            return is_finite({uv, 0.0f});
+        }))
+        mesh.uvs.clear();
+    return mesh;
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,90 @@
+#include "tests/mesh/mesh_files.h"
+
+namespace relumine::mesh {
+namespace {
+
+std::string box_off(const std::string& keyword = "OFF", const std::string& vertex_suffix = "",
+                    const std::string& face_suffix = "") {
+    return keyword + "\n8 7 0\n" + box_vertex_lines("", vertex_suffix) + box_face_lines(face_suffix);
+}
+
+TEST(OffReader, KeepsVerticesAndCutsPolygons) {
+    expect_box(off(box_off()));
+    expect_box(off("OFF 8 7 0\n" + box_vertex_lines() + box_face_lines()));
+    expect_box(off("OFF8 7 0\n" + box_vertex_lines() + box_face_lines()));
+    expect_box(off("8 7 0\n" + box_vertex_lines() + box_face_lines()));
+}
+
+TEST(OffReader, LineEndsAndCommentsAnywhere) {
+    const std::string text = box_off();
+    expect_box(off(replace_all(text, "\n", "\r\n")));
+    expect_box(off(text.substr(0, text.size() - 1)));
+    expect_box(off("# first\n" + replace_all(text, "\n", " # 1 2 3\n\n# 4 5 6\n")));
+}
+
+TEST(OffReader, ColorsOfFacesAreSkipped) {
+    for (const char* color : {" 3", " 255 0 0", " 1.0 0.5 0 1", " 255 0 0 255"})
+        expect_box(off(box_off("OFF", "", color)));
+}
+
+TEST(OffReader, EveryLayoutOfVertices) {
+    const TriangleMesh bytes = off(box_off("COFF", " 255 51 0 255"));
+    expect_box(bytes);
+    EXPECT_EQ(bytes.colors, std::vector<glm::vec3>(8, {1.0f, 0.2f, 0.0f}));
+    EXPECT_EQ(off(box_off("COFF", " 255 51 0")).colors, bytes.colors);
+    EXPECT_EQ(off(box_off("COFF", " 1 0.5 0.25 1")).colors[7], glm::vec3(1.0f, 0.5f, 0.25f));
+    EXPECT_EQ(off(box_off("COFF", " 1 1 1 1")).colors[7], glm::vec3(1.0f));
+    EXPECT_TRUE(off(box_off("COFF", " nan 0 0 1")).colors.empty());
+
+    const TriangleMesh normals = off(box_off("NOFF", " 0 0 2"));
+    expect_box(normals);
+    EXPECT_EQ(normals.normals[0], glm::vec3(0, 0, 1));
+    EXPECT_NE(off(box_off("NOFF", " 0 0 2"), NormalSource::Smooth).normals[0], glm::vec3(0, 0, 1));
+
+    const TriangleMesh all = off(box_off("STCNOFF", " 0 1 0 255 51 0 255 0.25 0.5"));
+    expect_box(all);
+    EXPECT_EQ(all.normals[0], glm::vec3(0, 1, 0));
+    EXPECT_EQ(all.colors[0], glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_EQ(all.uvs[0], glm::vec2(0.25f, 0.5f));
+    EXPECT_EQ(off(box_off("CNOFF", " 0 1 0 255 51 0")).colors[0], glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_EQ(off(box_off("STOFF", " 0.25 0.5")).uvs[0], glm::vec2(0.25f, 0.5f));
+}
+
+TEST(OffReader, SkipsFacesOfFewerThanThreeCorners) {
+    expect_box(off(replace_all(box_off(), "8 7 0\n", "8 10 0\n") + "2 0 1\n1 0\n0\n"));
+}
+
+TEST(OffReader, RefusesWhatItWouldMisread) {
+    const std::string text = box_off();
+    const auto refused = [&text](const char* from, const char* to, const std::string& part) {
+        ASSERT_NE(text.find(from), std::string::npos);
+        expect_refusal([&] { return off(replace_all(text, from, to)); }, part);
+    };
+    refused("OFF", "4OFF", "'4OFF'");
+    refused("OFF", "nOFF", "'nOFF'");
+    refused("OFF", "OFF BINARY", "BINARY");
+    refused("OFF", "PLY", "'PLY'");
+    refused("8 7 0", "8 7", "edges");
+    refused("8 7 0", "353535235358 7 0", "353535235358");
+    refused("8 7 0", "8 4000000000 0", "4000000000");
+    refused("8 7 0", "-8 7 0", "-8");
+    refused("8 7 0", "8 6 0", "nothing after 8 vertices and 6 faces");
+    refused("8 7 0", "8 8 0", "the end of the file");
+    refused("8 7 0", "7 8 0", "line");
+    refused("1 0 0", "1 x 0", "'x'");
+    refused("1 0 0", "1 0", "3 numbers of a vertex in line 4, got 2");
+    refused("1 0 0", "1 0 0 255 0 0", "got 6");
+    refused("1 0 0", "1 inf 0", "inf");
+    refused("3 1 2 6", "3 1 2 8", "vertex index of 0 to 7");
+    refused("3 1 2 6", "3 1 2 -1", "'-1'");
+    refused("3 1 2 6", "3 1 2", "3 corners");
+    refused("3 1 2 6", "3 1 2 6 7 8 9 1 2", "4 colour values");
+    refused("3 1 2 6", "-3 1 2 6", "corners");
+    refused("3 1 2 6", "3 1 2 6.5", "'6.5'");
+    expect_refusal([] { return off(""); }, "header");
+    expect_refusal([] { return off("OFF\n0 0 0\n"); }, "vertices");
+    expect_refusal([] { return off("OFF\n1 0 0\n0 0 0\n"); }, "faces");
+}
+
+} // namespace
+} // namespace relumine::mesh

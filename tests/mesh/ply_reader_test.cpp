@@ -1,0 +1,136 @@
+#include "tests/mesh/mesh_files.h"
+
+namespace relumine::mesh {
+namespace {
+
+class PlyReaderTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlyReaderTest, EveryTypeOfNumber) {
+    expect_box(ply(box_ply({.format = GetParam()})));
+    for (const char* type : {"double", "short", "uchar", "int"})
+        expect_box(ply(box_ply({.format = GetParam(), .coordinate_type = type})));
+    for (const char* size_type : {"char", "ushort", "uint", "int"})
+        for (const char* index_type : {"uchar", "short", "ushort", "uint"})
+            expect_box(ply(box_ply({.format = GetParam(),
+                                    .size_type = size_type,
+                                    .index_type = index_type,
+                                    .index_name = "vertex_index"})));
+}
+
+TEST_P(PlyReaderTest, ExtraPropertiesListsAndElements) {
+    expect_box(ply(box_ply({.format = GetParam(), .face_list_before = true})));
+    expect_box(ply(box_ply({.format = GetParam(), .face_list_after = true})));
+    expect_box(ply(box_ply({.format = GetParam(), .other_element = true})));
+    expect_box(ply(box_ply({.format = GetParam(), .faces_first = true})));
+    const TriangleMesh mesh = ply(box_ply({.format = GetParam(),
+                                           .coordinate_type = "double",
+                                           .vertex_extras = true,
+                                           .face_list_before = true,
+                                           .face_list_after = true,
+                                           .faces_first = true,
+                                           .other_element = true}));
+    expect_box(mesh);
+    EXPECT_EQ(mesh.colors, std::vector<glm::vec3>(8, {1.0f, 0.2f, 0.0f}));
+}
+
+TEST_P(PlyReaderTest, LineEndsOfTheHeader) {
+    const std::string text = box_ply({.format = GetParam()});
+    const std::size_t body = text.find("end_header\n") + 11;
+    expect_box(ply(replace_all(text.substr(0, body), "\n", "\r\n") + text.substr(body)));
+    expect_box(ply(replace_all(text.substr(0, body), "\n", "\r") + text.substr(body)));
+    expect_box(ply(replace_all(text, "comment a box", "comment end_header")));
+    expect_box(ply(replace_all(text, "end_header\n", "end_header \n")));
+}
+
+TEST_P(PlyReaderTest, RefusesTooMuchAndTooLittle) {
+    const std::string text = box_ply({.format = GetParam()});
+    for (const char* count :
+         {"9", "1000", "4294967295", "100000000000", "9000000000000000000", "99999999999999999999"}) {
+        expect_refusal([&] { return ply(replace_all(text, "vertex 8", fmt::format("vertex {}", count))); },
+                       "got");
+        expect_refusal([&] { return ply(replace_all(text, "face 7", fmt::format("face {}", count))); },
+                       "got");
+    }
+    expect_refusal([&] { return ply(replace_all(text, "vertex 8", "vertex -8")); }, "'-8'");
+    expect_refusal([&] { return ply(replace_all(text, "face 7", "face 6")); }, "end of the data");
+    expect_refusal([&] { return ply(replace_all(text, "face 7", "face 0")); }, "end of the data");
+    expect_refusal([&] { return ply(text + "1"); }, "end of the data");
+    expect_box(ply(text + "\r\n"));
+    // An element without properties takes no bytes, however many there are.
+    expect_box(ply(replace_all(text, "end_header", "element nothing 1000000000000000\nend_header")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, PlyReaderTest,
+                         testing::Values("ascii", "binary_little_endian", "binary_big_endian"));
+
+TEST(PlyReader, AsciiLineEnds) {
+    expect_box(ply(replace_all(box_ply(), "\n", "\r\n")));
+    expect_box(ply(box_ply().substr(0, box_ply().size() - 2)));
+}
+
+std::string triangle_ply(const std::string& properties, const std::string& values) {
+    return fmt::format(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{}"
+        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0 {}\n1 0 0 {}\n0 1 0 {}\n3 0 1 2\n",
+        properties, values, values, values);
+}
+
+TEST(PlyReader, AttributesOfVertices) {
+    const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
+    EXPECT_EQ(ply(triangle_ply(normals, "0 3 4")).normals[0], glm::vec3(0.0f, 0.6f, 0.8f));
+    EXPECT_EQ(ply(triangle_ply(normals, "0 3 4"), NormalSource::Smooth).normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(ply(triangle_ply(normals, "0 0 0")).normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(ply(triangle_ply(normals, "nan 0 0")).normals[0], glm::vec3(0, 0, 1));
+
+    const auto colors = [](const std::string& type) {
+        return fmt::format("property {} red\nproperty {} green\nproperty {} blue\n", type, type, type);
+    };
+    EXPECT_EQ(ply(triangle_ply(colors("uchar"), "255 51 0")).colors[2], glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_EQ(ply(triangle_ply(colors("ushort"), "65535 13107 0")).colors[2], glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_EQ(ply(triangle_ply(colors("float"), "7.5 0.25 0")).colors[2], glm::vec3(7.5f, 0.25f, 0.0f))
+        << "HDR";
+    EXPECT_TRUE(ply(triangle_ply(colors("float"), "nan 0.25 0")).colors.empty());
+    EXPECT_TRUE(ply(triangle_ply("property uchar red\n", "255")).colors.empty());
+
+    EXPECT_EQ(ply(triangle_ply("property float s\nproperty float t\n", "0.25 0.5")).uvs[2],
+              glm::vec2(0.25f, 0.5f));
+    EXPECT_EQ(
+        ply(triangle_ply("property float u\nproperty float v\nproperty float s\n", "0.25 0.5 9")).uvs[2],
+        glm::vec2(0.25f, 0.5f));
+}
+
+TEST(PlyReader, RefusesWhatItWouldMisread) {
+    const std::string text = box_ply();
+    const auto refused = [&text](const char* from, const char* to, const std::string& part) {
+        ASSERT_NE(text.find(from), std::string::npos);
+        expect_refusal([&] { return ply(replace_all(text, from, to)); }, part);
+    };
+    refused("format ascii 1.0", "format ascii 2.0", "format 1.0");
+    refused("format ascii 1.0", "format utf8 1.0", "'utf8'");
+    refused("format ascii 1.0\n", "", "''");
+    refused("ply\n", "plx\n", "'plx'");
+    refused("end_header", "end_head", "end_header");
+    refused("property float x", "property float q", "x, y and z");
+    refused("property float x", "property quad x", "'quad'");
+    refused("property float x", "property float", "2 words");
+    refused("property list uchar int", "property list float int", "size of a list");
+    refused("property list uchar int", "property list uchar float", "vertex_indices");
+    refused("vertex_indices", "corner_indices", "vertex_indices");
+    refused("element face 7", "element vertex 7", "each element once");
+    refused("element vertex 8\n", "", "an element before its properties");
+    refused("3 1 2 6", "3 1 2 8", "vertex indices of 0 to 7, got 8");
+    refused("3 1 2 6", "3 1 2 -1", "got -1");
+    refused("3 1 2 6", "3 1 2 0.5", "got 0.5");
+    refused("3 1 2 6", "3 1 2 x", "'x'");
+    refused("3 1 2 6", "-3 1 2 6", "got -3");
+    refused("3 1 2 6", "4000000000 1 2 6", "got");
+    refused("1 2 3", "1 nan 3", "nan");
+    refused("1 2 3", "1 1e39 3", "inf");
+    expect_refusal([] { return ply(""); }, "'ply'");
+    expect_refusal([] { return ply("ply\n"); }, "end_header");
+    expect_refusal([] { return ply("ply\nformat ascii 1.0\nend_header\n"); }, "vertices, got none");
+}
+
+} // namespace
+} // namespace relumine::mesh
