@@ -1,0 +1,105 @@
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "cubemap/cube_map.h"
+#include "tests/cubemap/test_images.h"
+
+namespace relumine::cubemap {
+namespace {
+
+CubeMap random_map(std::uint32_t resolution) {
+    CubeMap map(resolution);
+    fill_randomly(map.texels, resolution);
+    return map;
+}
+
+/// Centre of light, unit.
+glm::dvec3 brightest(const CubeMap& map) {
+    glm::dvec3 sum(0.0);
+    for (const Face face : AllFaces) {
+        for (std::uint32_t y = 0; y < map.resolution; ++y) {
+            for (std::uint32_t x = 0; x < map.resolution; ++x)
+                sum += double{map.at(face, x, y).x} * texel_direction(face, x, y, map.resolution);
+        }
+    }
+    return glm::normalize(sum);
+}
+
+TEST(Rotation, NothingAndWholeTurnsChangeNothing) {
+    for (const std::uint32_t resolution : {1u, 4u, 7u}) {
+        const CubeMap map = random_map(resolution);
+        for (const double degrees : {0.0, 360.0, -720.0})
+            EXPECT_EQ(rotated(map, degrees).texels, map.texels);
+    }
+}
+
+TEST(Rotation, QuarterTurnsAreExactAndGoTheRightWay) {
+    const CubeMap map = random_map(5);
+    const CubeMap turned = rotated(map, 90.0);
+    // What came from +Z comes from +X, from +X from -Z, and so on; upright as before.
+    for (std::uint32_t y = 0; y < 5; ++y) {
+        for (std::uint32_t x = 0; x < 5; ++x) {
+            ASSERT_EQ(turned.at(Face::PositiveX, x, y), map.at(Face::PositiveZ, x, y));
+            ASSERT_EQ(turned.at(Face::NegativeZ, x, y), map.at(Face::PositiveX, x, y));
+            ASSERT_EQ(turned.at(Face::NegativeX, x, y), map.at(Face::NegativeZ, x, y));
+            ASSERT_EQ(turned.at(Face::PositiveZ, x, y), map.at(Face::NegativeX, x, y));
+        }
+    }
+    EXPECT_EQ(rotated(turned, 270.0).texels, map.texels);
+    EXPECT_EQ(rotated(turned, 90.0).texels, rotated(map, 180.0).texels);
+    EXPECT_EQ(rotated(map, -90.0).texels, rotated(map, 270.0).texels);
+}
+
+TEST(Rotation, ALightTurnsCounterClockwiseSeenFromAbove) {
+    CubeMap map(64);
+    map.at(Face::PositiveZ, 20, 30) = glm::vec3(1e4f);
+    const glm::dvec3 before = brightest(map);
+    for (const double degrees : {1.0, 30.0, 45.0, 89.999, 90.0, 123.4, -77.0, 359.0}) {
+        const CubeMap turned = rotated(map, degrees);
+        const double angle = degrees * std::numbers::pi / 180.0;
+        const glm::dvec3 expected(std::cos(angle) * before.x + std::sin(angle) * before.z, before.y,
+                                  std::cos(angle) * before.z - std::sin(angle) * before.x);
+        EXPECT_LT(glm::distance(brightest(turned), expected), 0.02) << degrees;
+        EXPECT_NEAR(total_power(turned).x / total_power(map).x, 1.0, 1e-5) << degrees;
+    }
+}
+
+TEST(Rotation, PowerAndConstantsAreKept) {
+    for (const std::uint32_t resolution : {1u, 2u, 9u, 64u}) {
+        const CubeMap map = random_map(resolution);
+        const CubeMap constant(resolution, glm::vec3(2.0f));
+        for (const double degrees : {0.1, 33.0, 45.0, 200.0}) {
+            EXPECT_NEAR(total_power(rotated(map, degrees)).y / total_power(map).y, 1.0, 1e-6);
+            for (const glm::vec3& texel : rotated(constant, degrees).texels)
+                ASSERT_NEAR(texel.x, 2.0f, 1e-6f);
+        }
+    }
+}
+
+TEST(Rotation, IrradianceTurnsWithTheLight) {
+    CubeMap map(96);
+    for (const Face face : AllFaces) {
+        for (std::uint32_t y = 0; y < 96; ++y) {
+            for (std::uint32_t x = 0; x < 96; ++x) {
+                const glm::dvec3 w = texel_direction(face, x, y, 96);
+                map.at(face, x, y) =
+                    glm::vec3(glm::dvec3(std::exp(8.0 * (glm::dot(w, glm::dvec3(0.6, 0.0, 0.8)) - 1.0))));
+            }
+        }
+    }
+    const CubeMap turned = rotated(map, 50.0);
+    const double angle = 50.0 * std::numbers::pi / 180.0;
+    const auto turn = [&](const glm::dvec3& w) {
+        return glm::dvec3(std::cos(angle) * w.x + std::sin(angle) * w.z, w.y,
+                          std::cos(angle) * w.z - std::sin(angle) * w.x);
+    };
+    for (const glm::dvec3 normal :
+         {glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0), glm::normalize(glm::dvec3(2, 1, 1))})
+        EXPECT_NEAR(irradiance(turned, turn(normal)).x / irradiance(map, normal).x, 1.0, 1e-3);
+}
+
+} // namespace
+} // namespace relumine::cubemap

@@ -1,0 +1,111 @@
+// Images and folders that the cubemap tests share.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+#include <gtest/gtest.h>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/environment.h"
+#include "cubemap/image_layout.h"
+
+namespace relumine::cubemap {
+
+inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint32_t width,
+                                    std::uint32_t height) {
+    EnvironmentImage image;
+    image.layout = layout;
+    image.sampling = sampling;
+    image.width = width;
+    image.height = height;
+    image.pixels.assign(static_cast<std::size_t>(width) * height, glm::vec3(0.0f));
+    return image;
+}
+
+/// An image of the layout whose height is `size` (LatLong) or whose faces are `size` (others).
+inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint32_t size) {
+    switch (layout) {
+    case Layout::LatLong:
+        return black_image(layout, sampling, 2 * size, size);
+    case Layout::Cube:
+        return black_image(layout, sampling, size, 6 * size);
+    case Layout::VerticalCross:
+        break;
+    }
+    return black_image(layout, sampling, 3 * size, 4 * size);
+}
+
+inline ImageShape shape_of(const EnvironmentImage& image) {
+    return {image.layout, image.sampling, image.width, image.height};
+}
+
+/// Sets every pixel from the direction it stands for.
+inline void paint(EnvironmentImage& image, const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
+    for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
+        image.pixels[index] = radiance(place.direction);
+    });
+}
+
+inline void fill_randomly(std::vector<glm::vec3>& pixels, std::uint32_t seed) {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<float> uniform(0.0f, 1.0f);
+    for (glm::vec3& pixel : pixels)
+        pixel = {uniform(generator), uniform(generator), uniform(generator)};
+}
+
+inline glm::dvec3 total_power(const EnvironmentImage& image) {
+    glm::dvec3 sum(0.0);
+    for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
+        sum += glm::dvec3(image.pixels[index]) * place.solid_angle;
+    });
+    return sum;
+}
+
+/// A folder of the test's own that goes with it.
+class TemporaryFolder {
+public:
+    TemporaryFolder()
+        : path_(std::filesystem::path(testing::TempDir()) /
+                ("cubemap_" +
+                 std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "_" +
+                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
+        std::filesystem::remove_all(path_);
+        std::filesystem::create_directories(path_);
+    }
+    ~TemporaryFolder() { std::filesystem::remove_all(path_); }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    [[nodiscard]] std::size_t num_files() const {
+        return static_cast<std::size_t>(
+            std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+    }
+
+private:
+    std::filesystem::path path_;
+};
+
+/// The message of the std::exception that a call throws, or nothing.
+template<typename Call>
+std::string message_of(const Call& call) {
+    try {
+        call();
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// A file of the data folder, or empty where that is absent.
+inline std::filesystem::path data_file(const std::string& name) {
+    const std::filesystem::path path = std::filesystem::path(RELUMINE_DATA_DIR) / "envs" / name;
+    return std::filesystem::exists(path) ? path : std::filesystem::path();
+}
+
+} // namespace relumine::cubemap
