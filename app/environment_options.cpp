@@ -1,0 +1,71 @@
+#include "app/environment_options.h"
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cubemap/resample.h"
+
+namespace relumine::app {
+
+namespace {
+
+const std::map<std::string, cubemap::Layout>& layouts() {
+    static const std::map<std::string, cubemap::Layout> Layouts = {{"latlong", cubemap::Layout::LatLong},
+                                                                   {"cube", cubemap::Layout::Cube},
+                                                                   {"cross", cubemap::Layout::VerticalCross}};
+    return Layouts;
+}
+
+} // namespace
+
+void EnvironmentOptions::add_to(CLI::App& command) {
+    command.add_option("ENV", path, "environment: .exr or .hdr; lat-long, OpenEXR cube or vertical cross")
+        ->required();
+    std::vector<std::string> names;
+    for (const auto& entry : layouts())
+        names.push_back(entry.first);
+    command.add_option("--layout", layout, "layout of the environment, where the file does not tell")
+        ->check(CLI::IsMember(names));
+    command
+        .add_option("--face-resolution", face_resolution,
+                    "texels along a cube face's edge, 0 for the environment's own")
+        ->capture_default_str();
+    command.add_flag("--fix-env", fix,
+                     "replace NaN and negative radiance by 0, infinite by the largest finite");
+    command
+        .add_option("--rotate", rotate_degrees, "turn the environment about +Y, degrees: +Z goes to +X at 90")
+        ->capture_default_str();
+}
+
+LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session) {
+    LoadedEnvironment result;
+    Stopwatch watch;
+    cubemap::LoadOptions load_options{.fix_bad_pixels = options.fix};
+    if (!options.layout.empty())
+        load_options.layout = parse_layout(options.layout);
+    const cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
+    result.assumptions = image.assumptions;
+    result.seconds_load = watch.lap();
+    session.detail(fmt::format("{}: {}", options.path, image.assumptions));
+    if (image.fixed)
+        session.say(fmt::format("{}: replaced {} bad pixels", options.path, image.bad_pixels.count()));
+    session.poll();
+
+    const std::uint32_t resolution =
+        options.face_resolution != 0 ? options.face_resolution : cubemap::natural_resolution(image);
+    result.map = cubemap::resample(image, resolution);
+    if (options.rotate_degrees != 0.0)
+        result.map = cubemap::rotated(result.map, options.rotate_degrees);
+    result.seconds_resample = watch.lap();
+    session.poll();
+    return result;
+}
+
+cubemap::Layout parse_layout(const std::string& name) {
+    return layouts().at(name);
+}
+
+} // namespace relumine::app

@@ -1,0 +1,41 @@
+// Environment files on the command line: which options they take and how they become cube maps.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "app/session.h"
+#include "cubemap/cube_map.h"
+#include "cubemap/environment.h"
+
+namespace relumine::app {
+
+/// The ENV argument and its options.
+struct EnvironmentOptions {
+    std::string path;
+    std::string layout;                ///< empty: as the file says
+    std::uint32_t face_resolution = 0; ///< 0: the image's own
+    bool fix = false;
+    double rotate_degrees = 0.0;
+
+    void add_to(CLI::App& command);
+};
+
+/// An environment ready to light, and where the time went.
+struct LoadedEnvironment {
+    cubemap::CubeMap map;
+    std::string assumptions;
+    double seconds_load = 0.0;
+    double seconds_resample = 0.0; ///< with the rotation
+};
+
+/// Loads, resamples and rotates. Says on -v what was assumed, and always when pixels were fixed.
+[[nodiscard]] LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session);
+
+/// The layout of a name given on the command line.
+[[nodiscard]] cubemap::Layout parse_layout(const std::string& name);
+
+} // namespace relumine::app

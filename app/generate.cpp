@@ -1,0 +1,97 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "cubemap/environment.h"
+#include "data_gen/environments.h"
+#include "data_gen/scenes.h"
+#include "mesh/save.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct Options {
+    std::string name;
+    std::string folder;
+    std::size_t num_vertices = 50000;
+    std::uint32_t face_resolution = 256;
+};
+
+void write_scene(const data_gen::Scene& scene, const Options& options, Session& session,
+                 nlohmann::json& files) {
+    const mesh::TriangleMesh mesh = scene.make(options.num_vertices);
+    session.poll();
+    const std::filesystem::path path =
+        std::filesystem::path(options.folder) / fmt::format("{}.ply", scene.name);
+    mesh::save(path, mesh, std::vector<glm::vec3>(mesh.num_vertices(), glm::vec3(1.0f)));
+    session.say(fmt::format("{}: {} vertices, {} triangles", path.string(), mesh.num_vertices(),
+                            mesh.num_triangles()));
+    files.push_back(
+        {{"file", path.string()}, {"vertices", mesh.num_vertices()}, {"triangles", mesh.num_triangles()}});
+}
+
+void write_environment(const data_gen::Environment& environment, const Options& options, Session& session,
+                       nlohmann::json& files) {
+    const cubemap::CubeMap map = environment.make(options.face_resolution);
+    session.poll();
+    const std::filesystem::path folder = options.folder;
+    for (const auto& [path, layout] :
+         {std::pair{folder / fmt::format("{}.exr", environment.name), cubemap::Layout::Cube},
+          std::pair{folder / fmt::format("{}_latlong.exr", environment.name), cubemap::Layout::LatLong}}) {
+        cubemap::save_environment(path, map, layout);
+        session.say(fmt::format("{}: {}, R = {}", path.string(), cubemap::name(layout), map.resolution));
+        files.push_back({{"file", path.string()}, {"face_resolution", map.resolution}});
+    }
+}
+
+void run(const Options& options, Session& session) {
+    std::filesystem::create_directories(options.folder);
+    nlohmann::json files = nlohmann::json::array();
+    for (const data_gen::Scene& scene : data_gen::scenes())
+        if (options.name == scene.name || options.name == "all")
+            write_scene(scene, options, session, files);
+    for (const data_gen::Environment& environment : data_gen::environments())
+        if (options.name == environment.name || options.name == "all")
+            write_environment(environment, options, session, files);
+    session.report({{"files", files}});
+}
+
+} // namespace
+
+void add_generate(CLI::App& program, Session& session) {
+    CLI::App& command =
+        *program.add_subcommand("generate", "make scenes (.ply) and environments (.exr) from nothing");
+    auto options = std::make_shared<Options>();
+    std::vector<std::string> names = {"all"};
+    std::string list = "\n\nNAME is `all` or one of:\n";
+    for (const data_gen::Scene& scene : data_gen::scenes()) {
+        names.emplace_back(scene.name);
+        list += fmt::format("  {:12} {}\n", scene.name, scene.description);
+    }
+    for (const data_gen::Environment& environment : data_gen::environments()) {
+        names.emplace_back(environment.name);
+        list += fmt::format("  {:12} {}\n", environment.name, environment.description);
+    }
+    command.footer(list);
+    command.add_option("NAME", options->name, "what to make, see below")
+        ->required()
+        ->check(CLI::IsMember(names))
+        ->type_name("NAME");
+    command.add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
+        ->required();
+    command.add_option("--vertices", options->num_vertices, "vertices of a scene, met within a few per cent")
+        ->capture_default_str();
+    command
+        .add_option("--face-resolution", options->face_resolution,
+                    "R of an environment: cube 6 x R x R, lat-long 4R x 2R")
+        ->capture_default_str();
+    session.add_common_options(command);
+    command.callback([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

@@ -1,0 +1,67 @@
+#include <cstdio>
+#include <exception>
+#include <string>
+
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include "app/commands.h"
+#include "prt/precompute.h"
+
+namespace {
+
+/// One line, whatever the library's message looked like.
+std::string one_line(std::string message) {
+    while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
+        message.pop_back();
+    for (char& c : message)
+        if (c == '\n' || c == '\r')
+            c = ' ';
+    return message;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    using namespace relumine;
+    app::Session session;
+    CLI::App program{"Relights meshes under measured environment light. Exit code 0: done, 1: the work "
+                     "failed, 2: wrong usage.",
+                     "relumine"};
+    program.set_version_flag("--version", "relumine " RELUMINE_VERSION);
+    program.require_subcommand(1);
+    app::add_precompute(program, session);
+    app::add_relight(program, session);
+    app::add_edit(program, session);
+    app::add_verify(program, session);
+    app::add_info(program, session);
+    app::add_generate(program, session);
+
+    // The subcommand runs after parsing, so that wrong usage and failed work cannot be confused.
+    std::unique_ptr<tbb::global_control> thread_limit;
+    program.parse_complete_callback([&] {
+        if (session.num_threads > 0)
+            thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                                 session.num_threads);
+    });
+    const auto fail = [&](const std::string& message) {
+        session.end_progress();
+        fmt::print(stderr, "relumine: {}\n", one_line(message));
+        return 1;
+    };
+    try {
+        program.parse(argc, argv);
+        return 0;
+    } catch (const CLI::Success& success) { // --help, --version
+        return program.exit(success);
+    } catch (const CLI::ParseError& error) {
+        fmt::print(stderr, "relumine: {} (see relumine --help)\n", one_line(error.what()));
+        return 2;
+    } catch (const prt::Cancelled&) {
+        return fail("cancelled; nothing was written");
+    } catch (const std::bad_alloc&) {
+        return fail("out of memory");
+    } catch (const std::exception& error) {
+        return fail(error.what());
+    }
+}

@@ -1,0 +1,136 @@
+#include "app/output_options.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/session.h"
+#include "files/output_file.h"
+#include "mesh/save.h"
+#include "prt/ray_scene.h"
+#include "relight/array_file.h"
+#include "relight/picture.h"
+
+namespace relumine::app {
+
+namespace {
+
+relight::PictureOptions parse_size(const std::string& text) {
+    relight::PictureOptions options;
+    unsigned width = 0;
+    unsigned height = 0;
+    char rest = 0;
+    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) !=
+        2) // NOLINT(cert-err34-c): checked by the count
+        throw CLI::ValidationError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
+    options.width = width;
+    options.height = height;
+    return options;
+}
+
+/// The part of the mesh that a picture should show: all of it but the floor that precompute added.
+mesh::Bounds subject_bounds(const prt::Scene& scene) {
+    const std::size_t num_floor = std::size_t{scene.settings.floor_vertices} * scene.settings.floor_vertices;
+    if (num_floor == 0 || num_floor >= scene.mesh.num_vertices())
+        return mesh::bounds(scene.mesh);
+    mesh::TriangleMesh subject;
+    subject.positions = scene.mesh.positions;
+    const std::size_t first_floor_vertex = scene.mesh.num_vertices() - num_floor;
+    for (const mesh::Triangle& triangle : scene.mesh.triangles)
+        if (triangle[0] < first_floor_vertex)
+            subject.triangles.push_back(triangle);
+    return mesh::bounds(subject);
+}
+
+relight::Camera camera_of(const OutputOptions& options, const prt::Scene& scene) {
+    relight::Camera camera = options.fov_degrees
+                                 ? relight::automatic_camera(subject_bounds(scene), *options.fov_degrees)
+                                 : relight::automatic_camera(subject_bounds(scene));
+    if (!options.target.empty()) {
+        const glm::vec3 target = parse_vec3("--target", options.target);
+        camera.eye += target - camera.target;
+        camera.target = target;
+    }
+    if (!options.eye.empty())
+        camera.eye = parse_vec3("--eye", options.eye);
+    return camera;
+}
+
+/// Radiance times albedo: one factor for all, or the mesh's own colours.
+std::vector<glm::vec3> coloured(const std::string& albedo, const mesh::TriangleMesh& mesh,
+                                std::span<const glm::vec3> radiance) {
+    std::vector<glm::vec3> result(radiance.begin(), radiance.end());
+    if (albedo == "mesh") {
+        if (mesh.colors.empty())
+            throw std::runtime_error("--albedo mesh: expected a mesh with vertex colours, got one without");
+        for (std::size_t i = 0; i < result.size(); ++i)
+            result[i] *= mesh.colors[i];
+        return result;
+    }
+    const bool is_grey = albedo.find(',') == std::string::npos;
+    const glm::vec3 factor = parse_vec3("--albedo", is_grey ? fmt::format("{0},{0},{0}", albedo) : albedo);
+    for (glm::vec3& value : result)
+        value *= factor;
+    return result;
+}
+
+} // namespace
+
+void OutputOptions::add_to(CLI::App& command) {
+    command
+        .add_option(
+            "-o,--output", path,
+            "what to write: .png .exr (picture), .ply .glb (mesh with vertex colours), .npy (numbers)")
+        ->required();
+    command
+        .add_option("--albedo", albedo,
+                    "reflectance: a number, R,G,B, or `mesh` for the mesh's vertex colours")
+        ->capture_default_str();
+    command.add_option("--exposure", exposure_ev, "brighten pictures and colours by this many stops")
+        ->capture_default_str();
+    command.add_option("--eye", eye, "camera position X,Y,Z (automatic)");
+    command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)");
+    command.add_option("--fov", fov_degrees, "vertical field of view in degrees (35)");
+    command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str();
+}
+
+void OutputOptions::check() const {
+    constexpr std::array<const char*, 5> Known = {".png", ".exr", ".ply", ".glb", ".npy"};
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (std::find(Known.begin(), Known.end(), extension) == Known.end())
+        throw std::runtime_error(
+            fmt::format("{}: expected .png, .exr, .ply, .glb or .npy, got '{}'", path, extension));
+    files::OutputFile{std::filesystem::path(path)};
+    static_cast<void>(parse_size(size));
+    for (const auto& [option, text] : {std::pair{"--eye", &eye}, std::pair{"--target", &target}})
+        if (!text->empty())
+            static_cast<void>(parse_vec3(option, *text));
+}
+
+void OutputOptions::save(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+                         const cubemap::CubeMap& environment) const {
+    std::vector<glm::vec3> colors = coloured(albedo, scene.mesh, radiance);
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (extension == ".png" || extension == ".exr") {
+        const prt::RayScene rays(scene.mesh);
+        const relight::Picture picture =
+            relight::draw(scene.mesh, rays, colors, environment, camera_of(*this, scene), parse_size(size));
+        relight::save_picture(path, picture, exposure_ev);
+        return;
+    }
+    const auto scale = static_cast<float>(std::exp2(exposure_ev));
+    for (glm::vec3& color : colors)
+        color *= scale;
+    if (extension == ".npy")
+        relight::save_npy(path, colors);
+    else
+        mesh::save(path, scene.mesh, colors);
+}
+
+} // namespace relumine::app

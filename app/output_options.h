@@ -1,0 +1,37 @@
+// Lit scenes as files: which options they take and how they are written.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "prt/scene_file.h"
+
+namespace relumine::app {
+
+/// -o and everything that shapes the output: camera, size, exposure, albedo.
+struct OutputOptions {
+    std::string path;
+    std::string albedo = "1";
+    double exposure_ev = 0.0;
+    std::string eye;    ///< empty: automatic
+    std::string target; ///< empty: automatic
+    std::optional<float> fov_degrees;
+    std::string size = "1024x768";
+
+    void add_to(CLI::App& command);
+
+    /// Refuses what cannot be written before any work is done.
+    void check() const;
+
+    /// Writes by extension: .png .exr pictures, .ply .glb meshes with vertex colours, .npy numbers.
+    void save(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+              const cubemap::CubeMap& environment) const;
+};
+
+} // namespace relumine::app

@@ -1,0 +1,133 @@
+#include "prt/precompute.h"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "files/output_file.h"
+#include "mesh/floor.h"
+#include "mesh/load.h"
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct Options {
+    std::string mesh;
+    std::string output;
+    std::string normals = "file";
+    std::optional<std::uint32_t> floor_vertices;
+    float floor_scale = 4.0f;
+    std::optional<float> bias;
+    prt::PrecomputeOptions precompute;
+};
+
+void run(const Options& options, Session& session) {
+    Stopwatch watch;
+    // Found out now, not after a minute of work.
+    files::OutputFile(options.output);
+
+    prt::Scene scene;
+    scene.mesh = mesh::load(options.mesh, options.normals == "smooth" ? mesh::NormalSource::Smooth
+                                                                      : mesh::NormalSource::File);
+    if (options.floor_vertices)
+        mesh::append_floor(scene.mesh, *options.floor_vertices, options.floor_scale);
+    const std::size_t num_vertices = scene.mesh.num_vertices();
+    const std::size_t num_triangles = scene.mesh.num_triangles();
+    session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh, num_vertices, num_triangles));
+
+    prt::PrecomputeOptions precompute = options.precompute;
+    precompute.bias = options.bias.value_or(prt::automatic_bias(scene.mesh));
+    precompute.stop = session.stop();
+    precompute.on_progress = session.progress("precompute");
+    prt::PrecomputeStatistics statistics;
+    {
+        const prt::RayScene rays(scene.mesh);
+        scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, precompute, &statistics);
+    }
+    session.end_progress();
+
+    scene.settings = {.tolerance = precompute.tolerance,
+                      .epsilon = precompute.epsilon,
+                      .min_level = precompute.min_level,
+                      .face_resolution = precompute.face_resolution,
+                      .bias = precompute.bias,
+                      .floor_vertices = options.floor_vertices.value_or(0),
+                      .source = std::filesystem::path(options.mesh).filename().string(),
+                      .source_hash = prt::file_hash(options.mesh)};
+    const std::uint64_t file_bytes = prt::save_scene(options.output, scene);
+
+    session.say(
+        fmt::format("{}: {} vertices, {} triangles -> {} clusters in {:.1f} s ({:.1f} M rays/s), {:.1f} MB",
+                    options.output, num_vertices, num_triangles, statistics.num_clusters, statistics.seconds,
+                    static_cast<double>(statistics.num_rays) / statistics.seconds * 1e-6,
+                    static_cast<double>(file_bytes) * 1e-6));
+    session.report({{"vertices", num_vertices},
+                    {"triangles", num_triangles},
+                    {"clusters", statistics.num_clusters},
+                    {"directions", statistics.num_directions},
+                    {"samples", statistics.num_samples},
+                    {"rays", statistics.num_rays},
+                    {"deepest_level", statistics.deepest_level},
+                    {"bias", precompute.bias},
+                    {"seconds", watch.total()},
+                    {"seconds_clustering", statistics.seconds},
+                    {"peak_bytes", peak_bytes()},
+                    {"file_bytes", file_bytes}});
+}
+
+} // namespace
+
+void add_precompute(CLI::App& program, Session& session) {
+    CLI::App& command =
+        *program.add_subcommand("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
+    auto options = std::make_shared<Options>();
+    command.add_option("MESH", options->mesh, "mesh: .obj, .ply, .off or .stl")->required();
+    command.add_option("-o,--output", options->output, "the scene file to write, .prt")->required();
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--floor",
+            [options](const std::vector<std::string>& values) {
+                std::uint32_t n = 193;
+                if (!values.empty() && !values.front().empty() &&
+                    !CLI::detail::lexical_cast(values.front(), n))
+                    throw CLI::ValidationError("--floor",
+                                               fmt::format("expected a number, got '{}'", values.front()));
+                options->floor_vertices = n;
+            },
+            "add a floor of N x N vertices under the mesh; 193 when no N is given")
+        ->expected(0, 1)
+        ->type_name("[N]");
+    command.add_option("--floor-scale", options->floor_scale, "side of the floor over the mesh's width")
+        ->capture_default_str();
+    command
+        .add_option("--normals", options->normals,
+                    "vertex normals: the file's where it has them, or always smooth")
+        ->check(CLI::IsMember({"file", "smooth"}))
+        ->capture_default_str();
+    command
+        .add_option("--tolerance", options->precompute.tolerance,
+                    "RMS error of the transfer allowed within a cluster, 1/sr")
+        ->capture_default_str();
+    command.add_option("--epsilon", options->precompute.epsilon,
+                       "the paper's form of the tolerance: grows lax with the mesh's size");
+    command
+        .add_option("--min-depth", options->precompute.min_level, "every cell is split at least this often")
+        ->capture_default_str();
+    command
+        .add_option("--face-resolution", options->precompute.face_resolution,
+                    "R: cells stop at single texels of a 6 x R x R environment")
+        ->capture_default_str();
+    command.add_option("--bias", options->bias,
+                       "lift of the rays' origins off the surface, in the mesh's unit");
+    session.add_common_options(command);
+    command.callback([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

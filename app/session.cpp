@@ -1,0 +1,146 @@
+#include "app/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <sstream>
+#include <thread>
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include "prt/precompute.h"
+
+namespace relumine::app {
+
+namespace {
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string duration(double seconds) {
+    const auto whole = static_cast<long>(seconds + 0.5);
+    return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+}
+
+} // namespace
+
+Session::Session() {
+    // Signals are taken by one thread, so that whatever it calls need not be safe inside a handler. Threads started later inherit the mask.
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+    std::thread([signals, source = stop_source_]() mutable {
+        int signal = 0;
+        sigwait(&signals, &signal);
+        source.request_stop();
+        sigwait(&signals, &signal);
+        ::_exit(1);
+    }).detach();
+}
+
+void Session::add_common_options(CLI::App& command) {
+    command.add_flag("--json", json, "print one JSON object with all figures on stdout");
+    command.add_option("--threads", num_threads, "threads to use, 0 for all")
+        ->check(CLI::Range(0, 4096))
+        ->capture_default_str();
+    command.add_flag("-q,--quiet", quiet, "print errors only");
+    command.add_flag("-v,--verbose", verbose, "print more");
+}
+
+void Session::poll() const {
+    if (stop_source_.stop_requested())
+        throw prt::Cancelled();
+}
+
+std::function<void(double)> Session::progress(const std::string& what) {
+    if (quiet)
+        return {};
+    struct State {
+        double start = now();
+        double last_shown = 0.0;
+        int last_tenth = 0;
+    };
+    const bool terminal = ::isatty(STDERR_FILENO) != 0;
+    return [this, what, terminal, state = State{}](double fraction) mutable {
+        const std::scoped_lock lock(mutex_);
+        const double time = now();
+        const double elapsed = time - state.start;
+        if (elapsed < 1.0 || fraction <= 0.0)
+            return;
+        const std::string left = duration(elapsed / fraction * (1.0 - fraction));
+        if (terminal) {
+            if (time - state.last_shown < 0.1 && fraction < 1.0)
+                return;
+            state.last_shown = time;
+            fmt::print(stderr, "\r{}: {:3.0f} %, about {} left   ", what, 100.0 * fraction, left);
+            std::fflush(stderr);
+            bar_open_ = true;
+        } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > state.last_tenth) {
+            state.last_tenth = tenth;
+            fmt::print(stderr, "{}: {} %, about {} left\n", what, 10 * tenth, left);
+        }
+    };
+}
+
+void Session::end_progress() {
+    const std::scoped_lock lock(mutex_);
+    if (bar_open_)
+        fmt::print(stderr, "\r\033[K");
+    bar_open_ = false;
+}
+
+void Session::say(const std::string& line) const {
+    if (!json && !quiet)
+        fmt::print("{}\n", line);
+}
+
+void Session::detail(const std::string& line) const {
+    if (verbose)
+        say(line);
+}
+
+void Session::report(const nlohmann::json& result) const {
+    if (json)
+        fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+}
+
+Stopwatch::Stopwatch() : start_(now()), last_(start_) {}
+
+double Stopwatch::lap() {
+    const double time = now();
+    return time - std::exchange(last_, time);
+}
+
+double Stopwatch::total() const {
+    return now() - start_;
+}
+
+glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
+    std::istringstream stream(text);
+    glm::vec3 result(0.0f);
+    char comma = ',';
+    char rest = 0;
+    for (int i = 0; i < 3; ++i)
+        if (i > 0 && (!(stream >> comma) || comma != ','))
+            throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
+        else if (!(stream >> result[i]))
+            throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
+    if (stream >> rest)
+        throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
+    return result;
+}
+
+std::uint64_t peak_bytes() {
+    struct rusage usage {};
+    ::getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+} // namespace relumine::app

@@ -1,0 +1,74 @@
+// What all subcommands share: common options, cancellation, progress, output.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <mutex>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <glm/vec3.hpp>
+#include <nlohmann/json.hpp>
+
+namespace relumine::app {
+
+/// Options and state of one run of the program.
+class Session {
+public:
+    bool json = false;
+    bool quiet = false;
+    bool verbose = false;
+    unsigned num_threads = 0; ///< 0: all
+
+    Session();
+
+    /// Adds --json, --threads, -q and -v to a subcommand.
+    void add_common_options(CLI::App& command);
+
+    /// Set by Ctrl-C and SIGTERM. A second Ctrl-C ends the program at once.
+    [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
+    /// Throws prt::Cancelled after Ctrl-C.
+    void poll() const;
+
+    /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the first second or with -q. To be called
+    /// with fractions in [0, 1].
+    [[nodiscard]] std::function<void(double)> progress(const std::string& what);
+    /// Ends the bar's line. Harmless when there is none.
+    void end_progress();
+
+    /// One line of result for people; nothing with --json or -q.
+    void say(const std::string& line) const;
+    /// One line only with -v.
+    void detail(const std::string& line) const;
+    /// The result: with --json the object on stdout.
+    void report(const nlohmann::json& result) const;
+
+private:
+    std::stop_source stop_source_;
+    std::mutex mutex_;
+    bool bar_open_ = false;
+};
+
+/// Seconds since it was made or last asked.
+class Stopwatch {
+public:
+    Stopwatch();
+    /// Seconds since the start or the last lap().
+    double lap();
+    [[nodiscard]] double total() const;
+
+private:
+    double start_;
+    double last_;
+};
+
+/// Three numbers "X,Y,Z" of an option. Throws CLI::ValidationError (wrong usage) for anything else.
+[[nodiscard]] glm::vec3 parse_vec3(const std::string& option, const std::string& text);
+
+/// Largest memory use of this process so far.
+[[nodiscard]] std::uint64_t peak_bytes();
+
+} // namespace relumine::app

@@ -1,0 +1,76 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/environment_options.h"
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+#include "relight/exact.h"
+#include "relight/relighter.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct Options {
+    std::string scene;
+    EnvironmentOptions environment;
+    std::size_t num_samples = 2000;
+    std::uint64_t seed = 1;
+};
+
+void run(const Options& options, Session& session) {
+    const prt::Scene scene = prt::load_scene(options.scene);
+    const LoadedEnvironment environment = load_environment(options.environment, session);
+    const std::vector<glm::vec3> relit = relight::relight(scene.transfer, environment.map);
+
+    Stopwatch watch;
+    const prt::RayScene rays(scene.mesh);
+    const std::vector<std::uint32_t> sample =
+        relight::random_receivers(scene.transfer, options.num_samples, options.seed);
+    const std::vector<glm::dvec3> exact =
+        relight::exact_radiance(prt::vertex_receivers(scene.mesh), sample, rays, environment.map,
+                                {.bias = scene.settings.bias,
+                                 .stop = session.stop(),
+                                 .on_progress = session.progress("exact integration")});
+    session.end_progress();
+    const relight::ErrorReport error = relight::compare(sample, exact, relit);
+    const double seconds = watch.lap();
+
+    const glm::vec3& worst = scene.mesh.positions[error.worst_receiver];
+    session.say(fmt::format("{} receivers, R = {}, exact integration in {:.1f} s", sample.size(),
+                            environment.map.resolution, seconds));
+    session.say(
+        fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} % of the mean radiance {:.4g}",
+                    error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs, error.mean_radiance));
+    session.say(
+        fmt::format("largest at vertex {} ({}, {}, {})", error.worst_receiver, worst.x, worst.y, worst.z));
+    session.report({{"relative_l2", error.relative_l2},
+                    {"mean_abs", error.mean_abs},
+                    {"max_abs", error.max_abs},
+                    {"samples", sample.size()},
+                    {"mean_radiance", error.mean_radiance},
+                    {"worst_vertex", error.worst_receiver},
+                    {"worst_position", {worst.x, worst.y, worst.z}},
+                    {"face_resolution", environment.map.resolution},
+                    {"seconds", seconds}});
+}
+
+} // namespace
+
+void add_verify(CLI::App& program, Session& session) {
+    CLI::App& command = *program.add_subcommand(
+        "verify", "compare relighting with exact integration: every texel, every shadow ray");
+    auto options = std::make_shared<Options>();
+    command.add_option("SCENE", options->scene, "scene file from `relumine precompute`")->required();
+    options->environment.add_to(command);
+    command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
+        ->capture_default_str();
+    command.add_option("--seed", options->seed, "seed of the choice")->capture_default_str();
+    session.add_common_options(command);
+    command.callback([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app
