@@ -54,7 +54,7 @@ struct EnvironmentImage {
 };
 
 struct LoadOptions {
-    std::optional<Layout> layout; ///< overrides what attribute and aspect ratio say
+    std::optional<Layout> layout = {}; ///< overrides what attribute and aspect ratio say
     bool fix_bad_pixels =
         false; ///< NaN and negative become 0, infinity the largest finite value of the image; otherwise refused
     bool refuse_bad_pixels = true; ///< false: load them as they are (for `info`)
