@@ -28,8 +28,10 @@ cubemap::CubeMap sampled(std::uint32_t resolution, const Radiance& radiance, con
             glm::dvec3 sum(0.0);
             double weights = 0.0;
             for (int sample = 0; sample < n * n; ++sample) {
-                const double s = (x + (sample % n + 0.5) / n) * texel;
-                const double t = (y + (sample / n + 0.5) / n) * texel;
+                const int column = sample % n;
+                const int line = sample / n;
+                const double s = (x + (column + 0.5) / n) * texel;
+                const double t = (y + (line + 0.5) / n) * texel;
                 const glm::dvec3 point = cubemap::cube_point(face, s, t);
                 const double length = glm::length(point);
                 const double weight = 1.0 / (length * length * length);

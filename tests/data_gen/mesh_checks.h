@@ -68,6 +68,7 @@ inline std::vector<double> volumes(const mesh::TriangleMesh& mesh) {
             glm::dot(glm::dvec3(mesh.positions[triangle[0]]), area_vector(mesh, triangle)) / 3.0;
     }
     std::vector<double> result;
+    result.reserve(volume_of.size());
     for (const auto& [part, volume] : volume_of) {
         result.push_back(volume);
     }

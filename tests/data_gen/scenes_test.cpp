@@ -12,8 +12,8 @@
 
 namespace relumine::data_gen {
 
-void PrintTo(const Scene& scene, std::ostream* out) {
-    *out << scene.name;
+std::ostream& operator<<(std::ostream& out, const Scene& scene) {
+    return out << scene.name;
 }
 
 namespace {
