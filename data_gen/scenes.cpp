@@ -109,7 +109,7 @@ mesh::TriangleMesh knot(std::size_t num_vertices) {
     for (glm::vec3& p : mesh.positions) {
         p.y += lift;
     }
-    return on_ground(std::move(mesh), 8.0, num_vertices);
+    return on_ground(std::move(mesh), 10.0, num_vertices);
 }
 
 mesh::TriangleMesh blob(std::size_t num_vertices) {
