@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <stdexcept>
@@ -16,6 +17,9 @@ namespace relumine::prt {
 namespace {
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
+
+/// Embree drops triangles with coordinates beyond this (its FLT_LARGE) without a word.
+constexpr float LargestCoordinate = 1.844e18f;
 
 struct DeviceDeleter {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
@@ -50,6 +54,12 @@ struct RayScene::Impl {
 };
 
 RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        for (const std::uint32_t vertex : triangle)
+            for (int axis = 0; axis < 3; ++axis)
+                if (const float x = mesh.positions[vertex][axis]; !(std::abs(x) < LargestCoordinate))
+                    throw std::runtime_error(
+                        fmt::format("expected coordinates within {}, got {}", LargestCoordinate, x));
     impl_->device.reset(rtcNewDevice(nullptr));
     if (!impl_->device)
         throw std::runtime_error("Embree could not start on this processor");

@@ -25,7 +25,7 @@ struct Hit {
 class RayScene final : public Blockers {
 public:
     /// Builds the accelerator: O(n log n), about 100 bytes per triangle. The mesh may go afterwards. Throws
-    /// std::runtime_error when Embree fails (out of memory, say).
+    /// std::runtime_error when Embree fails (out of memory, say) or a triangle's coordinates are beyond its range of 1.8e18.
     explicit RayScene(const mesh::TriangleMesh& mesh);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;
