@@ -117,12 +117,13 @@ private:
         right_to_left_ = signs[1] == '-';
 
         const auto [height, width] = sizes;
-        // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1.
+        // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1; the old runs could, but hardly do.
+        constexpr std::size_t AlwaysAllowed = std::size_t{1} << 22;
         const std::size_t num_bytes = bytes_.size() - position_;
         if (width == 0 || height == 0 || width > MaxPixels || height > MaxPixels ||
             width * height > MaxPixels)
             fail("a size that an environment can have", fmt::format("{}x{}", width, height));
-        if (width * height > num_bytes * 16)
+        if (width * height > std::max(AlwaysAllowed, num_bytes * 16))
             fail(fmt::format("data for {}x{} pixels", width, height), fmt::format("{} bytes", num_bytes));
         width_ = static_cast<std::uint32_t>(width);
         height_ = static_cast<std::uint32_t>(height);
@@ -206,7 +207,10 @@ private:
 
 Rgbe rgbe(const glm::vec3& radiance) {
     const float largest = std::max({radiance.x, radiance.y, radiance.z});
-    if (!(std::min({radiance.x, radiance.y, radiance.z}) >= 0.0f) || !(largest < 1.6e38f))
+    const auto fits = [](float value) {
+        return value >= 0.0f && value < 1.6e38f;
+    }; // no NaN
+    if (!fits(radiance.x) || !fits(radiance.y) || !fits(radiance.z))
         throw std::invalid_argument(
             "expected radiance from 0 to 1.6e38 for a .hdr file, got a NaN, infinite, negative "
             "or larger value");

