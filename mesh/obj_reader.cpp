@@ -1,9 +1,9 @@
 // Wavefront OBJ: v (with colours), vt, vn and f; everything else in the format (groups, materials, lines, curves) is skipped.
 //
 // Our own reader, since no library in Debian reads OBJ without silent changes: OpenMesh drops vertices with an unreadable or
-// non-finite number (all later indices then mean another vertex) and everything after a line's continuation; tinyobjloader
-// reads such numbers as 0, wraps indices at 32 bits, trips over comments behind a face and stores at most 255 corners per face;
-// Assimp splits vertices per corner; CGAL refuses lines, points and unusual white space.
+// non-finite number (later indices then mean other vertices) and faces with a continued line; tinyobjloader reads such numbers
+// as 0, wraps indices at 32 bits, takes a comment behind a face for corners and stores at most 255 corners per face; Assimp
+// makes a vertex of every corner; CGAL refuses lines and points, misreads tabs and knows no continued lines.
 #include <algorithm>
 #include <array>
 #include <limits>

@@ -1,9 +1,10 @@
 // Object File Format (Geomview): [ST][C][N]OFF, ASCII. One vertex and one face per line; comments anywhere; faces may end in up
 // to four colour values, which are skipped; colours of vertices have three or four values.
 //
-// Our own reader, since OpenMesh refuses comments and misreads polygons followed by colours and the counts on the keyword's
-// line; Assimp misreads comments between vertices and faces. CGAL reads all of these, but accepts a file with too many
-// lines or values, and would be a dependency (with Boost and GMP) for this format alone.
+// Our own reader, since OpenMesh refuses comments, misreads polygons followed by colours and counts on the keyword's line, and
+// dies of a header that declares too much; Assimp misreads comments between faces and lets indices out of range pass. CGAL is
+// right about nearly all of these, but lets surplus values and lines pass, and would bring Boost and GMP for little more than
+// the hundred lines below, which share their text reader with the other formats.
 #include <fmt/format.h>
 
 #include "mesh/polygon_soup.h"

@@ -1,10 +1,10 @@
 // Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, any number type for any property, further
 // elements, properties and lists skipped, the elements in any order.
 //
-// Our own reader, since OpenMesh misreads or refuses lists beside the index list (on vertices, faces or other elements),
-// lists with 32-bit sizes and any file that declares more than it has (it tries to allocate it); Assimp loses track in elements
-// that hold lists and would be a large dependency for this format alone; CGAL refuses 16-bit indices and checks no sizes. The
-// other small libraries (miniply, happly, tinyply) are not in Debian.
+// Our own reader, since no library in Debian reads all valid files and refuses the others: OpenMesh misreads or refuses lists
+// beside the index list (on vertices, faces or other elements) and 32-bit lengths of lists; Assimp loses track in elements that
+// hold lists and reads truncated files as whole ones; CGAL refuses 16-bit indices. None minds data that the header does not
+// declare.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -1,7 +1,8 @@
 // STL, ASCII and binary. STL has no vertices, only corners: corners at exactly the same place become one vertex, numbered in
 // the order of the file. Normals of facets are skipped: the corners' order tells them.
 //
-// Our own reader: OpenMesh drops degenerate facets; Assimp does not weld; CGAL accepts truncated files.
+// Our own reader: OpenMesh drops degenerate facets and reads truncated files as shorter ones, Assimp makes a vertex of every
+// corner; for CGAL see off_reader.cpp.
 #include <bit>
 #include <cctype>
 #include <cstring>

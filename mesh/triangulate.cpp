@@ -120,8 +120,14 @@ void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Tr
     std::size_t num_refused = 0; // corners in a row that are no ear
     std::uint32_t other_neighbour = None;
     Ear kind = Ear::Empty;
-    for (std::uint32_t corner = 1; num_left > 2;) {
-        const auto [point, previous, next, clipped] = corners_[corner];
+    std::uint32_t corner = 1;
+    while (num_left > 2) {
+        if (work_left_ < 0.0)
+            throw std::runtime_error(fmt::format("expected polygons that are soon cut into triangles, got "
+                                                 "one of {} corners that takes too long",
+                                                 polygon.size()));
+        const std::uint32_t previous = corners_[corner].previous;
+        const std::uint32_t next = corners_[corner].next;
         if (is_ear(corner, kind)) {
             triangles.push_back({polygon[previous], polygon[corner], polygon[next]});
             corners_[previous].next = next;
@@ -145,10 +151,6 @@ void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Tr
                 kind = kind == Ear::Empty ? Ear::Flat : Ear::Any;
             }
         }
-        if (work_left_ < 0.0)
-            throw std::runtime_error(fmt::format(
-                "expected simple polygons, got one of {} corners that crosses itself", polygon.size()));
-        corner = next;
     }
 }
 

@@ -29,6 +29,7 @@ TEST(SmoothNormals, CubeCornersPointAlongTheDiagonalsHoweverQuadsAreCut) {
 
 TEST(SmoothNormals, SphereIsNearlyRadial) {
     constexpr std::uint32_t N = 64;
+    constexpr std::size_t RowLength = std::size_t{2} * N;
     TriangleMesh mesh;
     for (std::uint32_t row = 0; row <= N; ++row)
         for (std::uint32_t column = 0; column < 2 * N; ++column) {
@@ -45,7 +46,7 @@ TEST(SmoothNormals, SphereIsNearlyRadial) {
             mesh.triangles.push_back({b, c, d});
         }
     const std::vector<glm::vec3> normals = smooth_normals(mesh);
-    for (std::size_t i = 2 * N; i < mesh.num_vertices() - 2 * N; ++i)
+    for (std::size_t i = RowLength; i < mesh.num_vertices() - RowLength; ++i)
         EXPECT_GT(glm::dot(normals[i], mesh.positions[i]), 0.9999f);
 }
 

@@ -18,6 +18,7 @@ glm::vec3 lifted(double x, double y) {
 
 std::vector<glm::vec3> lifted(const std::vector<glm::dvec2>& points) {
     std::vector<glm::vec3> result;
+    result.reserve(points.size());
     for (const glm::dvec2& p : points)
         result.push_back(lifted(p.x, p.y));
     return result;
@@ -139,6 +140,7 @@ std::vector<glm::dvec2> comb(int n) {
 
 std::vector<glm::dvec2> spiral(int n) {
     std::vector<glm::dvec2> points;
+    points.reserve(2 * static_cast<std::size_t>(n));
     const auto at = [](double angle, double offset) {
         return (10.0 + angle + offset) * glm::dvec2(std::cos(angle), std::sin(angle));
     };
@@ -155,10 +157,12 @@ TEST(Triangulate, CombsAndSpiralsAreCoveredExactly) {
 }
 
 TEST(Triangulate, HugePolygonsTakeNoLongTime) {
-    for (const auto& polygon : {comb(3000), spiral(3000)}) {
+    for (const auto& polygon : {comb(8000), spiral(10000)}) {
         // In a plane of two axes, so that rounding moves no corner out of it.
         TriangleMesh mesh;
         std::vector<glm::dvec2> rounded;
+        mesh.positions.reserve(polygon.size());
+        rounded.reserve(polygon.size());
         for (const glm::dvec2& point : polygon) {
             mesh.positions.emplace_back(point.y, 0.0f, point.x);
             rounded.emplace_back(mesh.positions.back().z, mesh.positions.back().x);
@@ -186,7 +190,7 @@ TEST(Triangulate, AHugeScribbleIsGivenUpQuickly) {
     for (glm::dvec2& point : scribble)
         point = {coordinate(random), coordinate(random)};
     const auto start = std::chrono::steady_clock::now();
-    expect_refusal([&] { return triangles_of(lifted(scribble)).size(); }, "crosses itself");
+    expect_refusal([&] { return triangles_of(lifted(scribble)).size(); }, "takes too long");
     EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
 }
 
