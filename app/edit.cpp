@@ -10,9 +10,9 @@
 
 #include "app/commands.h"
 #include "app/environment_options.h"
+#include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "cubemap/environment.h"
-#include "prt/scene_file.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {
@@ -20,7 +20,7 @@ namespace relumine::app {
 namespace {
 
 struct Options {
-    std::string scene;
+    SceneOptions scene;
     EnvironmentOptions environment;
     OutputOptions output;
     std::string direction;
@@ -55,9 +55,10 @@ void run(const Options& options, Session& session) {
     const glm::vec3 gain =
         parse_vec3("--gain", is_grey ? fmt::format("{0},{0},{0}", options.gain) : options.gain);
 
-    const prt::Scene scene = prt::load_scene(options.scene);
+    const LitScene lit(options.scene);
+    const prt::Scene& scene = lit.scene();
     LoadedEnvironment environment = load_environment(options.environment, session);
-    relight::Relighter relighter(scene.transfer);
+    relight::Relighter relighter(scene.transfer, lit.shadow_rays());
     const relight::RelightTimes full = relighter.set_environment(std::move(environment.map));
 
     // Multiply the disc's texels, face by face; only the clusters under them are lit again.
@@ -82,10 +83,10 @@ void run(const Options& options, Session& session) {
         total.seconds += report.seconds;
     }
 
-    options.output.save(scene, relighter.radiance(), relighter.environment());
+    options.output.save(lit, relighter.radiance(), relighter.environment());
     if (!options.saved_environment.empty())
         cubemap::save_environment(options.saved_environment, relighter.environment());
-    const double seconds_full = full.seconds_bin + full.seconds_relight;
+    const double seconds_full = full.seconds_bin + full.seconds_trace + full.seconds_relight;
     session.say(fmt::format("{}: edit touched {} of {} clusters in {:.2f} ms; a full relight took {:.1f} ms",
                             options.output.path, total.num_clusters, scene.transfer.num_clusters(),
                             1e3 * total.seconds, 1e3 * seconds_full));
@@ -101,7 +102,7 @@ void add_edit(CLI::App& program, Session& session) {
     CLI::App& command = *program.add_subcommand(
         "edit", "brighten, dim or tint a disc of the environment and update the scene");
     auto options = std::make_shared<Options>();
-    command.add_option("SCENE", options->scene, "scene file from `relumine precompute`")->required();
+    options->scene.add_to(command);
     options->environment.add_to(command);
     options->output.add_to(command);
     command

@@ -13,7 +13,6 @@
 #include "app/session.h"
 #include "files/output_file.h"
 #include "mesh/save.h"
-#include "prt/ray_scene.h"
 #include "relight/array_file.h"
 #include "relight/picture.h"
 
@@ -113,14 +112,14 @@ void OutputOptions::check() const {
             static_cast<void>(parse_vec3(option, *text));
 }
 
-void OutputOptions::save(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radiance,
                          const cubemap::CubeMap& environment) const {
+    const prt::Scene& scene = lit.scene();
     std::vector<glm::vec3> colors = coloured(albedo, scene.mesh, radiance);
     const std::string extension = std::filesystem::path(path).extension().string();
     if (extension == ".png" || extension == ".exr") {
-        const prt::RayScene rays(scene.mesh);
-        const relight::Picture picture =
-            relight::draw(scene.mesh, rays, colors, environment, camera_of(*this, scene), parse_size(size));
+        const relight::Picture picture = relight::draw(scene.mesh, lit.rays(), colors, environment,
+                                                       camera_of(*this, scene), parse_size(size));
         relight::save_picture(path, picture, exposure_ev);
         return;
     }

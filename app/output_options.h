@@ -9,8 +9,8 @@
 #include <CLI/CLI.hpp>
 #include <glm/vec3.hpp>
 
+#include "app/lit_scene.h"
 #include "cubemap/cube_map.h"
-#include "prt/scene_file.h"
 
 namespace relumine::app {
 
@@ -30,7 +30,7 @@ struct OutputOptions {
     void check() const;
 
     /// Writes by extension: .png .exr pictures, .ply .glb meshes with vertex colours, .npy numbers.
-    void save(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+    void save(const LitScene& lit, std::span<const glm::vec3> radiance,
               const cubemap::CubeMap& environment) const;
 };
 

@@ -5,8 +5,7 @@
 
 #include "app/commands.h"
 #include "app/environment_options.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "app/lit_scene.h"
 #include "relight/exact.h"
 #include "relight/relighter.h"
 
@@ -15,23 +14,23 @@ namespace relumine::app {
 namespace {
 
 struct Options {
-    std::string scene;
+    SceneOptions scene;
     EnvironmentOptions environment;
     std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
 };
 
 void run(const Options& options, Session& session) {
-    const prt::Scene scene = prt::load_scene(options.scene);
+    const LitScene lit(options.scene);
+    const prt::Scene& scene = lit.scene();
     const LoadedEnvironment environment = load_environment(options.environment, session);
-    const std::vector<glm::vec3> relit = relight::relight(scene.transfer, environment.map);
+    const std::vector<glm::vec3> relit = relight::relight(scene.transfer, environment.map, lit.shadow_rays());
 
     Stopwatch watch;
-    const prt::RayScene rays(scene.mesh);
     const std::vector<std::uint32_t> sample =
         relight::random_receivers(scene.transfer, options.num_samples, options.seed);
     const std::vector<glm::dvec3> exact =
-        relight::exact_radiance(prt::vertex_receivers(scene.mesh), sample, rays, environment.map,
+        relight::exact_radiance(prt::vertex_receivers(scene.mesh), sample, lit.rays(), environment.map,
                                 {.bias = scene.settings.bias,
                                  .stop = session.stop(),
                                  .on_progress = session.progress("exact integration")});
@@ -64,7 +63,7 @@ void add_verify(CLI::App& program, Session& session) {
     CLI::App& command = *program.add_subcommand(
         "verify", "compare relighting with exact integration: every texel, every shadow ray");
     auto options = std::make_shared<Options>();
-    command.add_option("SCENE", options->scene, "scene file from `relumine precompute`")->required();
+    options->scene.add_to(command);
     options->environment.add_to(command);
     command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
         ->capture_default_str();

@@ -51,6 +51,20 @@ glm::dvec3 to_world(cubemap::Face face, double u, double v, double one) {
 
 } // namespace
 
+VectorIrradiance& VectorIrradiance::operator+=(const VectorIrradiance& other) {
+    red += other.red;
+    green += other.green;
+    blue += other.blue;
+    return *this;
+}
+
+VectorIrradiance& VectorIrradiance::operator-=(const VectorIrradiance& other) {
+    red -= other.red;
+    green -= other.green;
+    blue -= other.blue;
+    return *this;
+}
+
 LightBinning::LightBinning(std::uint32_t face_resolution) : resolution_(face_resolution) {
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(face_resolution);
     weights_.resize(solid_angles.size());

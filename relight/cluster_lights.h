@@ -18,6 +18,12 @@ struct VectorIrradiance {
     glm::dvec3 red{0.0};
     glm::dvec3 green{0.0};
     glm::dvec3 blue{0.0};
+
+    VectorIrradiance& operator+=(const VectorIrradiance& other);
+    VectorIrradiance& operator-=(const VectorIrradiance& other);
+    bool operator==(const VectorIrradiance&) const = default;
+    /// The vector of the luminance (Rec. 709 weights).
+    [[nodiscard]] glm::dvec3 luminance() const { return 0.2126 * red + 0.7152 * green + 0.0722 * blue; }
 };
 
 /// Sums an environment's texels into cells. Keeps the texels' solid angles for one resolution, so that many sums are cheap.

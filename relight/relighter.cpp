@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -38,9 +39,13 @@ void require_radiance(std::span<const glm::vec3> texels) {
 
 } // namespace
 
-Relighter::Relighter(const prt::Transfer& transfer)
-    : transfer_(transfer), normals_(transfer.counts.num_blocks()), light_(transfer.counts.num_blocks()),
-      lights_(transfer.num_clusters()), radiance_(transfer.num_receivers()) {
+Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
+    : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),
+      normals_(transfer.counts.num_blocks()), light_(transfer.counts.num_blocks()),
+      lights_(transfer.num_clusters()), lit_by_(lights_.vectors), radiance_(transfer.num_receivers()) {
+    if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one position per receiver");
+    traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0, glm::dvec3(0.0));
     for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
         for (int axis = 0; axis < 3; ++axis)
             normals_[place / prt::BlockSize].axes[static_cast<std::size_t>(axis)][place % prt::BlockSize] =
@@ -54,13 +59,23 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     environment_ = std::move(environment);
     if (!binning_ || binning_->resolution() != environment_.resolution)
         binning_.emplace(environment_.resolution);
-    const std::span<const prt::Cell> cells = transfer_.quadtree.leaves();
-    tbb::parallel_for(std::size_t{0}, cells.size(),
-                      [&](std::size_t i) { lights_.set(i, binning_->sum(environment_, cells[i])); });
-    lights_.sum_prefix();
+    sums_ = binning_->sums(environment_, transfer_.quadtree.leaves());
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
+    if (rays_.blockers != nullptr) {
+        sharp_lights_ =
+            find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), sums_, rays_.tolerance);
+        trace_sharp_lights();
+    }
+    times.num_sharp_lights = sharp_lights_.size();
+    times.seconds_trace = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    changed_.resize(sums_.size());
+    std::iota(changed_.begin(), changed_.end(), 0u);
+    set_cluster_lights(changed_);
+    lights_.sum_prefix();
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, light_.size(), BlocksPerTask),
                       [&](const auto& blocks) {
                           for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
@@ -71,6 +86,29 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     lit_by_ = lights_.vectors;
     times.seconds_relight = seconds_since(start);
     return times;
+}
+
+/// The clusters' light is all light of their cells less the sharp lights in them. `clusters` ascend.
+void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
+    auto sharp = sharp_lights_.begin();
+    for (const std::uint32_t cluster : clusters) {
+        VectorIrradiance rest = sums_[cluster];
+        sharp = std::lower_bound(sharp, sharp_lights_.end(), cluster,
+                                 [](const SharpLight& light, std::uint32_t c) { return light.cluster < c; });
+        for (; sharp != sharp_lights_.end() && sharp->cluster == cluster; ++sharp)
+            rest -= sharp->irradiance;
+        lights_.set(cluster, rest);
+    }
+}
+
+void Relighter::trace_sharp_lights() {
+    const SharpLightPackets packets(sharp_lights_);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, traced_.size(), BlocksPerTask),
+                      [&](const auto& places) {
+                          for (std::size_t place = places.begin(); place < places.end(); ++place)
+                              traced_[place] = packets.radiance(rays_.positions[transfer_.order[place]],
+                                                                transfer_.normals[place], rays_);
+                      });
 }
 
 UpdateReport Relighter::update_region(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance) {
@@ -90,41 +128,62 @@ UpdateReport Relighter::update_region(const TexelRectangle& rectangle, std::span
                     &environment_.at(rectangle.face, rectangle.x0, y));
 
     // The clusters that the rectangle meets get their light summed anew, not by differences: nothing can drift.
-    touched_leaves_.clear();
+    changed_.clear();
     transfer_.quadtree.find_leaves({.face = rectangle.face,
                                     .s0 = static_cast<double>(rectangle.x0) / r,
                                     .t0 = static_cast<double>(rectangle.y0) / r,
                                     .s1 = static_cast<double>(rectangle.x1) / r,
                                     .t1 = static_cast<double>(rectangle.y1) / r},
-                                   touched_leaves_);
-    tbb::parallel_for(std::size_t{0}, touched_leaves_.size(), [&](std::size_t i) {
-        const std::uint32_t cluster = touched_leaves_[i];
-        lights_.set(cluster, binning_->sum(environment_, transfer_.quadtree.leaves()[cluster]));
+                                   changed_);
+    const std::size_t num_touched = changed_.size();
+    tbb::parallel_for(std::size_t{0}, num_touched, [&](std::size_t i) {
+        sums_[changed_[i]] = binning_->sum(environment_, transfer_.quadtree.leaves()[changed_[i]]);
     });
-    changes_.clear();
-    for (const std::uint32_t cluster : touched_leaves_) {
-        if (changes_.empty() || changes_.back().word != cluster / 64)
-            changes_.push_back({.word = cluster / 64});
-        changes_.back().clusters |= std::uint64_t{1} << (cluster % 64);
-    }
+    const bool sharp_changed = rays_.blockers != nullptr && update_sharp_lights();
 
+    set_cluster_lights(changed_);
+    changed_words_.clear();
+    for (const std::uint32_t cluster : changed_) {
+        if (changed_words_.empty() || changed_words_.back().word != cluster / 64)
+            changed_words_.push_back({.word = cluster / 64});
+        changed_words_.back().clusters |= std::uint64_t{1} << (cluster % 64);
+    }
     std::atomic<std::size_t> num_blocks = 0;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, light_.size(), BlocksPerTask),
-                      [&](const auto& blocks) {
-                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block)
-                              if (update_block(transfer_.counts, block, normals_[block], changes_, lit_by_,
-                                               lights_.vectors, light_[block])) {
-                                  write_radiance(block);
-                                  ++num_blocks;
-                              }
-                      });
-    for (const std::uint32_t cluster : touched_leaves_) {
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, light_.size(), BlocksPerTask), [&](const auto& blocks) {
+            for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
+                const bool touched = update_block(transfer_.counts, block, normals_[block], changed_words_,
+                                                  lit_by_, lights_.vectors, light_[block]);
+                if (touched || sharp_changed)
+                    write_radiance(block);
+                num_blocks += static_cast<std::size_t>(touched || sharp_changed);
+            }
+        });
+    for (const std::uint32_t cluster : changed_) {
         const auto first = static_cast<std::ptrdiff_t>(cluster * ClusterLights::Stride);
         std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride, lit_by_.begin() + first);
     }
-    return {.num_clusters = touched_leaves_.size(),
+    return {.num_clusters = num_touched,
             .num_receivers = std::min(num_blocks * prt::BlockSize, radiance_.size()),
+            .num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0,
             .seconds = seconds_since(start)};
+}
+
+/// Which lights are sharp depends on the whole map. Adds the clusters of those that came or went to `changed_` and traces anew
+/// when there are any; returns whether there are.
+bool Relighter::update_sharp_lights() {
+    std::vector<SharpLight> lights =
+        find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), sums_, rays_.tolerance);
+    if (lights == sharp_lights_)
+        return false;
+    for (const std::vector<SharpLight>* set : {&lights, &sharp_lights_})
+        for (const SharpLight& light : *set)
+            changed_.push_back(light.cluster);
+    std::sort(changed_.begin(), changed_.end());
+    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    sharp_lights_ = std::move(lights);
+    trace_sharp_lights();
+    return true;
 }
 
 void Relighter::write_radiance(std::size_t block) {
@@ -141,14 +200,16 @@ void Relighter::write_radiance(std::size_t block) {
                                    static_cast<double>(normals.axes[1][lane]) * e[1] +
                                    static_cast<double>(normals.axes[2][lane]) * e[2];
             // A whole cluster counts 16. Sums of nothing may round to a hair below zero.
-            const double sum = std::max(0.0, prt::FullCount * visible + light.mixed[channel][lane]);
+            const double clusters = std::max(0.0, prt::FullCount * visible + light.mixed[channel][lane]);
+            const double sum = clusters + (traced_.empty() ? 0.0 : traced_[place][static_cast<int>(channel)]);
             target[static_cast<int>(channel)] = static_cast<float>(sum);
         }
     }
 }
 
-std::vector<glm::vec3> relight(const prt::Transfer& transfer, const cubemap::CubeMap& environment) {
-    Relighter relighter(transfer);
+std::vector<glm::vec3> relight(const prt::Transfer& transfer, const cubemap::CubeMap& environment,
+                               const ShadowRays& rays) {
+    Relighter relighter(transfer, rays);
     relighter.set_environment(environment);
     return {relighter.radiance().begin(), relighter.radiance().end()};
 }

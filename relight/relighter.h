@@ -13,6 +13,7 @@
 #include "prt/transfer.h"
 #include "relight/block_kernels.h"
 #include "relight/cluster_lights.h"
+#include "relight/sharp_lights.h"
 
 namespace relumine::relight {
 
@@ -29,12 +30,16 @@ struct TexelRectangle {
 struct RelightTimes {
     double seconds_bin = 0.0;     ///< summing the environment into clusters
     double seconds_relight = 0.0; ///< summing the clusters into radiance [JN, Eq. 8]
+    double seconds_trace =
+        0.0; ///< finding sharp lights and tracing their shadow rays; next to nothing where there are none
+    std::size_t num_sharp_lights = 0;
 };
 
 /// What an update did.
 struct UpdateReport {
-    std::size_t num_clusters = 0;  ///< whose light was summed anew
-    std::size_t num_receivers = 0; ///< that see any of them (counted in whole blocks of 16)
+    std::size_t num_clusters = 0;     ///< whose light was summed anew
+    std::size_t num_receivers = 0;    ///< that see any of them (counted in whole blocks of 16)
+    std::size_t num_sharp_lights = 0; ///< traced anew; 0 where the edit changed none
     double seconds = 0.0;
 };
 
@@ -42,8 +47,9 @@ struct UpdateReport {
 /// bit for any number of threads. One thread at a time may call anything that is not const.
 class Relighter {
 public:
-    /// The transfer must outlive the Relighter. Memory: about 470 bytes per block of 16 receivers.
-    explicit Relighter(const prt::Transfer& transfer);
+    /// The transfer must outlive the Relighter. With shadow rays, lights too small for their cluster are traced; without, all
+    /// light goes through the clusters. Memory: about 1 KB per block of 16 receivers.
+    explicit Relighter(const prt::Transfer& transfer, const ShadowRays& rays = {});
 
     /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous sphere. O(6 R^2 + size of the
     /// transfer). Throws std::invalid_argument for a radiance that is negative or not finite.
@@ -61,9 +67,16 @@ public:
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
 
 private:
+    void set_cluster_lights(std::span<const std::uint32_t> clusters);
+    void trace_sharp_lights();
+    bool update_sharp_lights();
     void write_radiance(std::size_t block);
 
     const prt::Transfer& transfer_;
+    ShadowRays rays_;
+    std::vector<VectorIrradiance> sums_; ///< [num_clusters] all light of each cluster
+    std::vector<SharpLight> sharp_lights_;
+    std::vector<glm::dvec3> traced_;    ///< [num_receivers] by place: radiance from the sharp lights
     std::vector<BlockNormals> normals_; ///< [num_blocks]
     std::vector<BlockLight> light_;     ///< [num_blocks]
     ClusterLights lights_;
@@ -71,12 +84,12 @@ private:
     std::optional<LightBinning> binning_;
     cubemap::CubeMap environment_;
     std::vector<glm::vec3> radiance_;
-    std::vector<std::uint32_t> touched_leaves_; ///< scratch of update_region()
-    std::vector<ChangedWord> changes_;          ///< scratch of update_region()
+    std::vector<std::uint32_t> changed_;     ///< scratch: clusters whose light changes
+    std::vector<ChangedWord> changed_words_; ///< scratch: the same as the kernels want them
 };
 
 /// The one-call form: radiance of all receivers under an environment, albedo 1.
-[[nodiscard]] std::vector<glm::vec3> relight(const prt::Transfer& transfer,
-                                             const cubemap::CubeMap& environment);
+[[nodiscard]] std::vector<glm::vec3>
+relight(const prt::Transfer& transfer, const cubemap::CubeMap& environment, const ShadowRays& rays = {});
 
 } // namespace relumine::relight

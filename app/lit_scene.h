@@ -1,0 +1,40 @@
+// A scene file ready to be lit: shared by relight, edit and verify.
+#pragma once
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+#include "relight/sharp_lights.h"
+
+namespace relumine::app {
+
+/// The SCENE argument and its options.
+struct SceneOptions {
+    std::string path;
+    bool clusters_only = false;
+
+    void add_to(CLI::App& command);
+};
+
+/// The scene with its ray accelerator. Not movable: the shadow rays point into it.
+class LitScene {
+public:
+    explicit LitScene(const SceneOptions& options);
+    LitScene(const LitScene&) = delete;
+    LitScene& operator=(const LitScene&) = delete;
+
+    [[nodiscard]] const prt::Scene& scene() const { return scene_; }
+    [[nodiscard]] const prt::RayScene& rays() const { return rays_; }
+    /// For the Relighter: tracing of sharp lights, unless --clusters-only.
+    [[nodiscard]] relight::ShadowRays shadow_rays() const;
+
+private:
+    prt::Scene scene_;
+    prt::RayScene rays_;
+    bool clusters_only_;
+};
+
+} // namespace relumine::app
