@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -30,6 +29,9 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
             throw std::invalid_argument(message);
     };
     require(receivers.size() > 0, "expected at least one receiver");
+    require(receivers.normals.size() == receivers.size(),
+            fmt::format("expected one normal for each of {} receivers, got {}", receivers.size(),
+                        receivers.normals.size()));
     require(receivers.size() < (std::size_t{1} << 32), "expected fewer than 2^32 receivers");
     require(std::isfinite(options.tolerance) && options.tolerance >= 0.0f,
             fmt::format("expected a tolerance >= 0, got {}", options.tolerance));
@@ -54,26 +56,22 @@ double allowed_squared_distance(const PrecomputeOptions& options, std::size_t nu
 }
 
 /// Says how far the work is. Most of the time goes into the deepest levels, so a level's share of the scale is the part of the
-/// sphere that it settles; within a level the receivers traced so far move the bar.
+/// sphere that it settles; within a level the rays traced so far move the bar.
 class Progress {
 public:
-    Progress(const PrecomputeOptions& options, std::size_t num_receivers)
-        : options_(options), num_receivers_(static_cast<double>(num_receivers)) {}
+    explicit Progress(const PrecomputeOptions& options) : options_(options) {}
 
     void start_level(double begin, double end) {
         begin_ = begin;
         end_ = end;
-        num_done_ = 0;
     }
-    /// Called by the working threads; ends the work by an exception when asked to.
-    void add_receivers(std::size_t num) {
+    /// `part` of the level is traced. Called by the working threads; ends the work by an exception when asked to.
+    void report(double part) {
         poll();
-        const std::size_t done = num_done_ += num;
         if (!options_.on_progress)
             return;
         const std::scoped_lock lock(mutex_);
-        const double fraction =
-            begin_ + (end_ - begin_) * std::min(1.0, static_cast<double>(done) / num_receivers_);
+        const double fraction = begin_ + (end_ - begin_) * part;
         if (fraction > last_)
             options_.on_progress(last_ = fraction);
     }
@@ -84,11 +82,9 @@ public:
 
 private:
     const PrecomputeOptions& options_;
-    double num_receivers_;
     double begin_ = 0.0;
     double end_ = 0.0;
     double last_ = 0.0;
-    std::atomic<std::size_t> num_done_ = 0;
     std::mutex mutex_;
 };
 
@@ -96,7 +92,7 @@ private:
 class Clustering {
 public:
     Clustering(const Receivers& receivers, const Blockers& blockers, const PrecomputeOptions& options)
-        : options_(options), order_(spatial_order(receivers)), progress_(options, receivers.size()),
+        : options_(options), order_(spatial_order(receivers)), progress_(options),
           max_level_(static_cast<std::uint32_t>(std::bit_width(options.face_resolution - 1))),
           allowed_(allowed_squared_distance(options, receivers.size())) {
         for (const std::uint32_t receiver : order_) {
@@ -222,7 +218,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
         planes_->keep_only(points);
         const double level_area = 1.0 - settled;
         progress_.start_level(settled, settled + 0.5 * level_area);
-        planes_->trace(points, [this](std::size_t num) { progress_.add_receivers(num); });
+        planes_->trace(points, [this](double part) { progress_.report(part); });
 
         // Test every cell on its own.
         std::vector<Decision> decisions(cells.size());

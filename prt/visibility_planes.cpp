@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <utility>
 
-#include <tbb/blocked_range.h>
+#include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
 
 namespace relumine::prt {
@@ -14,6 +15,10 @@ namespace {
 /// Receivers of one task: eight words of 64, so that tasks write whole cache lines of each plane. Their rays through one patch
 /// start close together and meet the same blockers.
 constexpr std::size_t WordsPerTask = 8;
+
+/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Splitting the directions, too, keeps all
+/// threads busy when the receivers are few.
+constexpr std::size_t PatchesPerTask = 128;
 
 } // namespace
 
@@ -27,7 +32,7 @@ VisibilityPlanes::VisibilityPlanes(std::span<const glm::vec3> origins, const Nor
     : origins_(origins), normals_(normals), blockers_(blockers) {}
 
 void VisibilityPlanes::trace(std::span<const LatticePoint> points,
-                             const std::function<void(std::size_t)>& on_receivers) {
+                             const std::function<void(double)>& on_progress) {
     const std::size_t num_words = normals_.num_words();
     std::vector<Patch> patches;
     for (const LatticePoint point : points) {
@@ -47,18 +52,26 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points,
         ++num_directions_;
     }
 
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, (num_words + WordsPerTask - 1) / WordsPerTask, 1),
-                      [&](const tbb::blocked_range<std::size_t>& tasks) {
-                          for (std::size_t task = tasks.begin(); task < tasks.end(); ++task) {
-                              const std::size_t begin = task * WordsPerTask;
-                              const std::size_t end = std::min(begin + WordsPerTask, num_words);
-                              std::uint64_t num_rays = 0;
-                              for (const Patch& patch : patches)
-                                  for (std::size_t word = begin; word < end; ++word)
-                                      trace_word(word, patch, num_rays);
-                              num_rays_ += num_rays;
-                              on_receivers((end - begin) * WordSize);
-                          }
+    const std::size_t num_rows = (num_words + WordsPerTask - 1) / WordsPerTask;
+    const std::size_t num_columns = (patches.size() + PatchesPerTask - 1) / PatchesPerTask;
+    std::atomic<std::size_t> num_done = 0;
+    const auto trace_task = [&](std::size_t row, std::size_t column) {
+        const std::size_t begin = row * WordsPerTask;
+        const std::size_t end = std::min(begin + WordsPerTask, num_words);
+        const std::size_t last_patch = std::min((column + 1) * PatchesPerTask, patches.size());
+        std::uint64_t num_rays = 0;
+        for (std::size_t patch = column * PatchesPerTask; patch < last_patch; ++patch)
+            for (std::size_t word = begin; word < end; ++word)
+                trace_word(word, patches[patch], num_rays);
+        num_rays_ += num_rays;
+        on_progress(static_cast<double>(++num_done) / static_cast<double>(num_rows * num_columns));
+    };
+    tbb::parallel_for(tbb::blocked_range2d<std::size_t>(0, num_rows, 1, 0, num_columns, 1),
+                      [&](const tbb::blocked_range2d<std::size_t>& tasks) {
+                          for (std::size_t row = tasks.rows().begin(); row < tasks.rows().end(); ++row)
+                              for (std::size_t column = tasks.cols().begin(); column < tasks.cols().end();
+                                   ++column)
+                                  trace_task(row, column);
                       });
 }
 

@@ -25,8 +25,9 @@ public:
                      const Blockers& blockers);
 
     /// Traces those of the points that are not known yet. Points that lie close together should stand close together.
-    /// `on_receivers(n)` is called from the working threads as receivers are done; it may throw to cancel.
-    void trace(std::span<const LatticePoint> points, const std::function<void(std::size_t)>& on_receivers);
+    /// `on_progress` is called from the working threads, many times a second, with the part of the rays that is done (not
+    /// in order); it may throw to cancel.
+    void trace(std::span<const LatticePoint> points, const std::function<void(double)>& on_progress);
 
     /// Forgets all points but those given.
     void keep_only(std::span<const LatticePoint> points);
