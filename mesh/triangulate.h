@@ -48,7 +48,7 @@ private:
     std::span<const glm::vec3> positions_;
     std::vector<Corner> corners_;      ///< of the current polygon, a ring
     std::vector<ReflexCorner> reflex_; ///< those that are not convex, sorted by point.x; some are out of date
-    double work_left_ = 1e8; ///< corner-in-triangle tests, some 2 ns each, before the mesh is given up
+    double work_left_ = 5e7; ///< corner-in-triangle tests, some 2 ns each, before the mesh is given up
 };
 
 } // namespace relumine::mesh
