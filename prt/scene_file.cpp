@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <type_traits>
@@ -120,7 +121,22 @@ private:
             fail("positions", "finite positions");
         if (!std::all_of(mesh.normals.begin(), mesh.normals.end(), finite))
             fail("normals", "finite normals");
+        if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), finite))
+            fail("colors", "finite colours");
         return mesh;
+    }
+
+    // The JSON library casts numbers without a look at the range.
+    static std::uint32_t natural(const nlohmann::json& json) {
+        if (!json.is_number_unsigned() ||
+            json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+            throw std::out_of_range("expected an integer of 32 bits");
+        return json.get<std::uint32_t>();
+    }
+    static float real(const nlohmann::json& json) {
+        if (!json.is_number() || !(std::abs(json.get<double>()) <= std::numeric_limits<float>::max()))
+            throw std::out_of_range("expected a number");
+        return json.get<float>();
     }
 
     SceneSettings settings() const {
@@ -128,15 +144,15 @@ private:
         SceneSettings settings;
         try {
             const nlohmann::json json = nlohmann::json::parse(text.begin(), text.end());
-            settings.tolerance = json.at("tolerance");
-            settings.min_level = json.at("min_level");
-            settings.face_resolution = json.at("face_resolution");
-            settings.bias = json.at("bias");
-            settings.floor_vertices = json.at("floor_vertices");
+            settings.tolerance = real(json.at("tolerance"));
+            settings.min_level = natural(json.at("min_level"));
+            settings.face_resolution = natural(json.at("face_resolution"));
+            settings.bias = real(json.at("bias"));
+            settings.floor_vertices = natural(json.at("floor_vertices"));
             settings.source = json.at("source");
             settings.source_hash = std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
             if (json.contains("epsilon"))
-                settings.epsilon = json.at("epsilon").get<float>();
+                settings.epsilon = real(json.at("epsilon"));
         } catch (const std::exception&) {
             fail("settings", "JSON with the settings");
         }
@@ -193,6 +209,11 @@ private:
 } // namespace
 
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
+    if (scene.transfer.num_receivers() != scene.mesh.num_vertices() ||
+        scene.mesh.normals.size() != scene.mesh.num_vertices())
+        throw std::invalid_argument(fmt::format(
+            "{}: expected one receiver and one normal per vertex, got {} and {} for {}", path.string(),
+            scene.transfer.num_receivers(), scene.mesh.normals.size(), scene.mesh.num_vertices()));
     const VisibleCounts& counts = scene.transfer.counts;
     Sections sections;
     sections["settings"] = settings_json(scene.settings);

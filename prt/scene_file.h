@@ -30,7 +30,8 @@ struct Scene {
     SceneSettings settings;
 };
 
-/// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws std::runtime_error naming the path.
+/// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws std::runtime_error naming the path,
+/// std::invalid_argument when the receivers are not the mesh's vertices.
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a scene and checks all of it: sizes against the file before anything is allocated, checksums, indices, the tree, the counts.

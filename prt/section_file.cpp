@@ -83,7 +83,8 @@ public:
                           [&](std::size_t i) { contents[i] = content(table[i]); });
         Sections result;
         for (std::size_t i = 0; i < table.size(); ++i)
-            result[name(table[i])] = std::move(contents[i]);
+            if (!result.emplace(name(table[i]), std::move(contents[i])).second)
+                fail("sections of different names", fmt::format("'{}' twice", name(table[i])));
         return result;
     }
 
@@ -135,6 +136,8 @@ private:
         const std::byte* stored = bytes_.data() + entry.offset;
         if (XXH64(stored, entry.stored_size, 0) != entry.checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
+        if (ZSTD_getFrameContentSize(stored, entry.stored_size) != entry.size)
+            fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
         std::vector<std::byte> result(entry.size);
         const std::size_t size = ZSTD_decompress(result.data(), result.size(), stored, entry.stored_size);
         if (ZSTD_isError(size) != 0 || size != entry.size)
@@ -149,6 +152,9 @@ private:
 } // namespace
 
 std::uint64_t write_sections(const std::filesystem::path& path, const Sections& sections) {
+    if (sections.size() > MaxSections)
+        throw std::invalid_argument(
+            fmt::format("expected at most {} sections, got {}", MaxSections, sections.size()));
     files::OutputFile file(path);
     std::vector<const Sections::value_type*> in_order;
     for (const auto& section : sections)
