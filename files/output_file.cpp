@@ -32,7 +32,8 @@ struct Descriptor {
 
 /// Opens for reading and states the size; refuses everything that is not a regular file.
 std::pair<int, std::size_t> open_for_reading(const std::filesystem::path& path) {
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    // Without O_NONBLOCK, opening a pipe would wait for a writer.
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (fd < 0)
         fail(path, "read", errno);
     struct stat status {};

@@ -7,6 +7,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 namespace relumine::files {
 namespace {
@@ -91,7 +92,10 @@ TEST_F(OutputFileTest, FullDiskIsReportedAndTheOldFileStays) {
     EXPECT_EQ(num_files(), 1u);
 }
 
-TEST_F(OutputFileTest, ReadRefusesFoldersAndMissingFiles) {
+TEST_F(OutputFileTest, ReadRefusesFoldersPipesAndMissingFiles) {
+    const fs::path pipe = folder_ / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    EXPECT_THROW(static_cast<void>(read(pipe)), std::runtime_error);
     EXPECT_THROW(static_cast<void>(read(folder_)), std::runtime_error);
     EXPECT_THROW(static_cast<void>(read(folder_ / "nothing")), std::runtime_error);
     EXPECT_THROW(static_cast<void>(size(folder_)), std::runtime_error);
