@@ -68,8 +68,10 @@ struct LoadOptions {
 /// The cube-map resolution that keeps about the image's own: width / 4 of a lat-long, the face of a cube or a cross.
 [[nodiscard]] std::uint32_t natural_resolution(const EnvironmentImage& image);
 
-/// Writes a cube map as .exr (Cube: float, ZIP, `envmap` attribute; Cube or LatLong) or .hdr. LatLong is 4R x 2R. With `envmap` the samples
-/// lie on the borders, as the specification says; the file reads back to the same energy to 0.1 %. Whole or not at all.
+/// Writes a cube map as .exr (float, ZIP) or .hdr: Cube or VerticalCross at the map's resolution, or LatLong of 4R x 2R. The .exr Cube
+/// and LatLong have the `envmap` attribute and samples on the borders, as its specification says; the others sample texel
+/// centres. Reads back to the same energy (.hdr: to the 8 bits of RGBE, 0.2 % per pixel). Whole or not at all.
+/// Throws std::runtime_error or std::invalid_argument "path: ..."; .hdr cannot hold negative or infinite radiance.
 void save_environment(const std::filesystem::path& path, const CubeMap& map, Layout layout = Layout::Cube);
 
 } // namespace relumine::cubemap

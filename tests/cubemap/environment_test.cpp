@@ -140,7 +140,8 @@ TEST(Environment, SavedFilesReadBackToTheSamePowerAndPicture) {
             const bool with_attribute = extension != ".hdr" && layout != Layout::VerticalCross;
             EXPECT_EQ(image.sampling, with_attribute ? Sampling::Borders : Sampling::TexelCentres);
             const CubeMap back = resample(image, 32);
-            EXPECT_NEAR(total_power(back).x / total_power(map).x, 1.0, 1e-3);
+            // RGBE has 8 bits, and the sun is most of this power.
+            EXPECT_NEAR(total_power(back).x / total_power(map).x, 1.0, extension == ".hdr" ? 3e-3 : 1e-5);
             // Away from the sun the picture is smooth, so it must come back.
             for (const Face face :
                  {Face::NegativeX, Face::PositiveY, Face::NegativeY, Face::PositiveZ, Face::NegativeZ}) {
@@ -213,7 +214,7 @@ TEST(EnvironmentData, DamagedFilesAreRefusedAtOnceInOneLine) {
               12u);
     const BadPixels bad = load_environment(data_file("robustness/AllHalfValues.exr"), anyway).bad_pixels;
     EXPECT_EQ(bad.num_nan + bad.num_infinite, 2048u);
-    EXPECT_EQ(bad.num_negative, 31743u - 1u + 0u * bad.num_nan)
+    EXPECT_EQ(bad.num_negative, 31743u)
         << "all negative halfs but -0, NaN and infinity";
 }
 

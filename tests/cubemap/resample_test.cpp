@@ -150,16 +150,16 @@ glm::dvec3 vector_irradiance(const EnvironmentImage& image, std::size_t pixel) {
     EnvironmentImage one = image;
     one.pixels.assign(image.pixels.size(), glm::vec3(0.0f));
     one.pixels[pixel] = glm::vec3(1.0f);
-    const CubeMap fine = resample(one, 512);
-    const auto angles = texel_solid_angles(512);
+    const CubeMap fine = resample(one, 256);
+    const auto angles = texel_solid_angles(256);
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < fine.texels.size(); ++i) {
         if (fine.texels[i].x == 0.0f)
             continue;
-        const std::size_t texel = i % (512 * 512);
+        const std::size_t texel = i % (256 * 256);
         sum += double{fine.texels[i].x} * angles[texel] *
-               texel_direction(AllFaces[i / (512 * 512)], static_cast<std::uint32_t>(texel % 512),
-                               static_cast<std::uint32_t>(texel / 512), 512);
+               texel_direction(AllFaces[i / (256 * 256)], static_cast<std::uint32_t>(texel % 256),
+                               static_cast<std::uint32_t>(texel / 256), 256);
     }
     return sum;
 }
@@ -192,7 +192,7 @@ TEST(Resample, AOnePixelSunKeepsPowerAndIrradiance) {
                                                places.size() / 2 + size,
                                                places.size() - 1,
                                                places.size() - size / 2};
-            for (std::size_t i = 1; i < 10; ++i)
+            for (std::size_t i = 1; i < 5; ++i)
                 chosen.push_back(i * 7919 % places.size());
             for (const std::size_t i : chosen) {
                 const auto& [index, place] = places[i];
