@@ -214,8 +214,7 @@ TEST(EnvironmentData, DamagedFilesAreRefusedAtOnceInOneLine) {
               12u);
     const BadPixels bad = load_environment(data_file("robustness/AllHalfValues.exr"), anyway).bad_pixels;
     EXPECT_EQ(bad.num_nan + bad.num_infinite, 2048u);
-    EXPECT_EQ(bad.num_negative, 31743u)
-        << "all negative halfs but -0, NaN and infinity";
+    EXPECT_EQ(bad.num_negative, 31743u) << "all negative halfs but -0, NaN and infinity";
 }
 
 TEST(EnvironmentData, NegativePixelsOfRealFilesAreCounted) {
