@@ -33,24 +33,8 @@ relight::PictureOptions parse_size(const std::string& text) {
     return options;
 }
 
-/// The part of the mesh that a picture should show: all of it but the floor that precompute added.
-mesh::Bounds subject_bounds(const prt::Scene& scene) {
-    const std::size_t num_floor = std::size_t{scene.settings.floor_vertices} * scene.settings.floor_vertices;
-    if (num_floor == 0 || num_floor >= scene.mesh.num_vertices())
-        return mesh::bounds(scene.mesh);
-    mesh::TriangleMesh subject;
-    subject.positions = scene.mesh.positions;
-    const std::size_t first_floor_vertex = scene.mesh.num_vertices() - num_floor;
-    for (const mesh::Triangle& triangle : scene.mesh.triangles)
-        if (triangle[0] < first_floor_vertex)
-            subject.triangles.push_back(triangle);
-    return mesh::bounds(subject);
-}
-
-relight::Camera camera_of(const OutputOptions& options, const prt::Scene& scene) {
-    relight::Camera camera = options.fov_degrees
-                                 ? relight::automatic_camera(subject_bounds(scene), *options.fov_degrees)
-                                 : relight::automatic_camera(subject_bounds(scene));
+relight::Camera camera_of(const OutputOptions& options, const mesh::TriangleMesh& mesh) {
+    relight::Camera camera = relight::automatic_camera(mesh, parse_size(options.size), options.fov_degrees);
     if (!options.target.empty()) {
         const glm::vec3 target = parse_vec3("--target", options.target);
         camera.eye += target - camera.target;
@@ -95,7 +79,7 @@ void OutputOptions::add_to(CLI::App& command) {
         ->capture_default_str();
     command.add_option("--eye", eye, "camera position X,Y,Z (automatic)");
     command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)");
-    command.add_option("--fov", fov_degrees, "vertical field of view in degrees (35)");
+    command.add_option("--fov", fov_degrees, "vertical field of view in degrees")->capture_default_str();
     command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str();
 }
 
@@ -119,7 +103,7 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
     const std::string extension = std::filesystem::path(path).extension().string();
     if (extension == ".png" || extension == ".exr") {
         const relight::Picture picture = relight::draw(scene.mesh, lit.rays(), colors, environment,
-                                                       camera_of(*this, scene), parse_size(size));
+                                                       camera_of(*this, scene.mesh), parse_size(size));
         relight::save_picture(path, picture, exposure_ev);
         return;
     }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 
@@ -21,7 +20,7 @@ struct OutputOptions {
     double exposure_ev = 0.0;
     std::string eye;    ///< empty: automatic
     std::string target; ///< empty: automatic
-    std::optional<float> fov_degrees;
+    float fov_degrees = 35.0f;
     std::string size = "1024x768";
 
     void add_to(CLI::App& command);

@@ -52,6 +52,19 @@ Frame frame_of(const Camera& camera, const PictureOptions& options) {
             .forward = forward};
 }
 
+/// Box around what stands on the ground: triangles wholly in the lowest horizontal plane are left out.
+mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh) {
+    const mesh::Bounds all = mesh::bounds(mesh);
+    const float ground = all.min.y + 1e-3f * all.size().y;
+    mesh::TriangleMesh subject;
+    subject.positions = mesh.positions;
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        if (std::any_of(triangle.begin(), triangle.end(),
+                        [&](std::uint32_t v) { return mesh.positions[v].y > ground; }))
+            subject.triangles.push_back(triangle);
+    return subject.triangles.empty() ? all : mesh::bounds(subject);
+}
+
 std::uint8_t srgb_byte(float linear) {
     const float x = std::clamp(linear, 0.0f, 1.0f);
     const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1.0f / 2.4f) - 0.055f;
@@ -79,13 +92,25 @@ std::vector<std::byte> encode_png(const Picture& picture, float scale) {
 
 } // namespace
 
-Camera automatic_camera(const mesh::Bounds& bounds, float fov_degrees) {
+Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& options, float fov_degrees) {
+    const mesh::Bounds box = subject_bounds(mesh);
     const glm::vec3 from_target = glm::normalize(glm::vec3(0.45f, 0.4f, 1.0f));
-    const float radius = std::max(0.5f * bounds.diagonal(), 1e-20f);
-    const float distance = radius / std::sin(0.5f * std::clamp(fov_degrees, 1.0f, 179.0f) * RadiansPerDegree);
-    return {.eye = bounds.center() + distance * from_target,
-            .target = bounds.center(),
-            .fov_degrees = fov_degrees};
+    Camera camera{.eye = box.center() + from_target, .target = box.center(), .fov_degrees = fov_degrees};
+    const Frame frame = frame_of(camera, options);
+
+    // Every corner of the box must lie within the picture's pyramid, with a margin of an eighth.
+    constexpr float Margin = 1.125f;
+    float distance = 1e-20f;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::vec3 sign((corner & 1) != 0 ? 0.5f : -0.5f, (corner & 2) != 0 ? 0.5f : -0.5f,
+                             (corner & 4) != 0 ? 0.5f : -0.5f);
+        const glm::vec3 offset = sign * box.size();
+        const float across = std::abs(glm::dot(offset, frame.right)) / glm::dot(frame.right, frame.right);
+        const float upwards = std::abs(glm::dot(offset, frame.up)) / glm::dot(frame.up, frame.up);
+        distance = std::max(distance, Margin * std::max(across, upwards) - glm::dot(offset, frame.forward));
+    }
+    camera.eye = box.center() + distance * from_target;
+    return camera;
 }
 
 Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,

@@ -21,9 +21,6 @@ struct Camera {
     float fov_degrees = 35.0f; ///< vertical
 };
 
-/// A camera that sees the whole box from the front, a little from the right and from above.
-[[nodiscard]] Camera automatic_camera(const mesh::Bounds& bounds, float fov_degrees = 35.0f);
-
 /// Linear radiance, [height * width] row by row from the top.
 struct Picture {
     std::uint32_t width = 0;
@@ -36,6 +33,11 @@ struct PictureOptions {
     std::uint32_t height = 768;
     std::uint32_t samples_per_axis = 3; ///< n x n rays per pixel, box filter
 };
+
+/// A camera that looks at the mesh from the front, a little from the right and from above, as near as shows all of it but the ground:
+/// triangles that lie in the lowest horizontal plane do not count, unless there is nothing else.
+[[nodiscard]] Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& options = {},
+                                      float fov_degrees = 35.0f);
 
 /// The mesh seen by the camera, radiance interpolated between its vertices [num_vertices], the environment behind it.
 /// Throws std::invalid_argument for a camera without a direction, a field of view outside (0, 180) or a size outside 1..16384.
