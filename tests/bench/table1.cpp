@@ -1,0 +1,216 @@
+// Table 1 of Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", measured here beside the paper's row: the
+// diffuse scenes at the paper's own epsilon and resolution, with the error against exact integration that the paper shows as a picture.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cubemap/environment.h"
+#include "cubemap/resample.h"
+#include "mesh/floor.h"
+#include "mesh/load.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+#include "relight/exact.h"
+#include "relight/relighter.h"
+
+namespace fs = std::filesystem;
+using namespace relumine;
+
+namespace {
+
+constexpr float Epsilon = 5e-5f; // the paper's threshold, Section 6
+constexpr std::array<const char*, 5> Crosses = {"grace", "stpeters", "galileo", "kitchen", "beach"};
+
+/// A row of the paper's table (Pentium 4, 3.4 GHz).
+struct PaperRow {
+    const char* name;
+    const char* mesh;
+    int vertices, clusters, megabytes;
+    double precompute_minutes, relight_seconds;
+};
+constexpr std::array<PaperRow, 2> Paper = {
+    {{"Bunny", "bun_zipper.ply", 73196, 9831, 405, 50.0, 6.5},
+     {"Dragon", "dragon_vrip_res2.ply", 137499, 5337, 326, 35.0, 8.0}}};
+
+struct Settings {
+    fs::path data = RELUMINE_DATA_DIR;
+    fs::path json = "table1.json";
+    std::size_t num_samples = 1000;
+    bool with_4096 = true;
+};
+
+prt::Scene precomputed(const fs::path& mesh, std::uint32_t face_resolution,
+                       prt::PrecomputeStatistics& statistics) {
+    prt::Scene scene;
+    scene.mesh = mesh::load(mesh);
+    mesh::append_floor(scene.mesh);
+    const prt::RayScene rays(scene.mesh);
+    scene.settings.bias = prt::automatic_bias(scene.mesh);
+    scene.settings.epsilon = Epsilon;
+    scene.transfer = prt::precompute(
+        prt::vertex_receivers(scene.mesh), rays,
+        {.epsilon = Epsilon, .face_resolution = face_resolution, .bias = scene.settings.bias}, &statistics);
+    return scene;
+}
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+/// The experiment of Section 6: a disc added to the beach map, its intensity rising over 60 steps. `radius` is a part of the map's width.
+double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, double radius) {
+    const std::uint32_t r = relighter.environment().resolution;
+    const double min_cosine = std::cos(radius * std::numbers::pi / 2.0); // a face is a right angle wide
+    const cubemap::FacePoint centre = cubemap::face_point(axis);
+    relight::TexelRectangle box{.face = centre.face, .x0 = r, .y0 = r};
+    for (std::uint32_t y = 0; y < r; ++y)
+        for (std::uint32_t x = 0; x < r; ++x)
+            if (glm::dot(cubemap::texel_direction(centre.face, x, y, r), axis) >= min_cosine) {
+                box.x0 = std::min(box.x0, x);
+                box.x1 = std::max(box.x1, x + 1);
+                box.y0 = std::min(box.y0, y);
+                box.y1 = std::max(box.y1, y + 1);
+            }
+    std::vector<double> seconds;
+    for (int step = 0; step < 60; ++step) {
+        std::vector<glm::vec3> radiance;
+        for (std::uint32_t y = box.y0; y < box.y1; ++y)
+            for (std::uint32_t x = box.x0; x < box.x1; ++x) {
+                const bool inside = glm::dot(cubemap::texel_direction(box.face, x, y, r), axis) >= min_cosine;
+                radiance.push_back(inside ? glm::vec3(0.2f * static_cast<float>(step + 1))
+                                          : relighter.environment().at(box.face, x, y));
+            }
+        seconds.push_back(relighter.update_region(box, radiance).seconds);
+    }
+    return median(seconds);
+}
+
+nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
+    prt::PrecomputeStatistics statistics;
+    fmt::print(stderr, "{}: precompute at R = 1024\n", paper.name);
+    const prt::Scene scene = precomputed(settings.data / "meshes/stanford" / paper.mesh, 1024, statistics);
+    const fs::path file = fs::temp_directory_path() / fmt::format("relumine_table1_{}.prt", paper.name);
+    const std::uint64_t file_bytes = prt::save_scene(file, scene);
+    fs::remove(file);
+
+    const prt::RayScene rays(scene.mesh);
+    const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
+    const relight::ShadowRays shadow_rays{
+        .blockers = &rays, .positions = scene.mesh.positions, .bias = scene.settings.bias, .tolerance = rms};
+    relight::Relighter relighter(scene.transfer, shadow_rays);
+    nlohmann::json errors;
+    std::vector<double> relight_seconds;
+    const std::vector<std::uint32_t> sample =
+        relight::random_receivers(scene.transfer, settings.num_samples, 1);
+    for (const char* name : Crosses) {
+        fmt::print(stderr, "{}: exact integration under {}\n", paper.name, name);
+        const cubemap::EnvironmentImage image =
+            cubemap::load_environment(settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name));
+        const cubemap::CubeMap map = cubemap::resample(image, cubemap::natural_resolution(image));
+        for (int i = 0; i < 5; ++i) {
+            const relight::RelightTimes times = relighter.set_environment(map);
+            relight_seconds.push_back(times.seconds_trace + times.seconds_relight);
+        }
+        const std::vector<glm::dvec3> exact = relight::exact_radiance(
+            prt::vertex_receivers(scene.mesh), sample, rays, map, {.bias = scene.settings.bias});
+        errors[name] = relight::compare(sample, exact, relighter.radiance()).relative_l2;
+    }
+
+    // The light sources of the experiment stand in front of the model and at its side.
+    const cubemap::EnvironmentImage beach =
+        cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr");
+    relighter.set_environment(cubemap::resample(beach, 1024));
+    const double edit_front = seconds_per_edit(relighter, glm::normalize(glm::dvec3(0.15, 0.35, 1.0)), 0.05);
+    const double edit_side = seconds_per_edit(relighter, glm::normalize(glm::dvec3(1.0, 0.35, 0.15)), 0.10);
+
+    nlohmann::json row = {{"scene", paper.name},
+                          {"vertices", scene.mesh.num_vertices()},
+                          {"clusters", statistics.num_clusters},
+                          {"file_bytes", file_bytes},
+                          {"seconds_precompute", statistics.seconds},
+                          {"seconds_relight", median(relight_seconds)},
+                          {"seconds_edit_5_percent", edit_front},
+                          {"seconds_edit_10_percent", edit_side},
+                          {"samples_verified", sample.size()},
+                          {"relative_l2", errors}};
+    if (settings.with_4096) {
+        fmt::print(stderr, "{}: precompute at R = 4096\n", paper.name);
+        static_cast<void>(precomputed(settings.data / "meshes/stanford" / paper.mesh, 4096, statistics));
+        row["clusters_4096"] = statistics.num_clusters;
+    }
+    return row;
+}
+
+void print_markdown(const nlohmann::json& rows) {
+    fmt::print("| | vertices | clusters | MB | precompute | relight | edit, disc 5 % / 10 % "
+               "|\n|---|---|---|---|---|---|---|\n");
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const nlohmann::json& row = rows[i];
+        const PaperRow& paper = *std::find_if(Paper.begin(), Paper.end(),
+                                              [&](const PaperRow& p) { return row["scene"] == p.name; });
+        fmt::print("| {}, paper | {} | {} | {} | {:.0f} min | {:.1f} s | {} |\n", paper.name, paper.vertices,
+                   paper.clusters, paper.megabytes, paper.precompute_minutes, paper.relight_seconds,
+                   paper.name == std::string("Bunny") ? "0.06 s" : "-");
+        fmt::print("| {}, Relumine | {} | {} | {:.1f} | {:.1f} s | {:.1f} ms | {:.2f} / {:.2f} ms |\n",
+                   paper.name, row["vertices"].get<int>(), row["clusters"].get<int>(),
+                   row["file_bytes"].get<double>() * 1e-6, row["seconds_precompute"].get<double>(),
+                   1e3 * row["seconds_relight"].get<double>(),
+                   1e3 * row["seconds_edit_5_percent"].get<double>(),
+                   1e3 * row["seconds_edit_10_percent"].get<double>());
+    }
+    fmt::print("\n| relative L2 error |");
+    for (const char* name : Crosses)
+        fmt::print(" {} |", name);
+    fmt::print(" clusters at R = 4096 |\n|---|---|---|---|---|---|---|\n");
+    for (const nlohmann::json& row : rows) {
+        fmt::print("| {} |", row["scene"].get<std::string>());
+        for (const char* name : Crosses)
+            fmt::print(" {:.4f} |", row["relative_l2"][name].get<double>());
+        fmt::print(" {} |\n",
+                   row.contains("clusters_4096") ? std::to_string(row["clusters_4096"].get<int>()) : "-");
+    }
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    CLI::App program{"Measures Table 1 of Johan and Nishita; Markdown on stdout, JSON in a file"};
+    program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
+        ->capture_default_str();
+    program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
+    program.add_option("--samples", settings.num_samples, "receivers to verify")->capture_default_str();
+    program.add_flag("!--skip-4096", settings.with_4096, "leave out the Bunny and Dragon at R = 4096");
+    CLI11_PARSE(program, argc, argv);
+
+    nlohmann::json rows = nlohmann::json::array();
+    try {
+        for (const PaperRow& paper : Paper) {
+            const fs::path mesh = settings.data / "meshes/stanford" / paper.mesh;
+            if (fs::exists(mesh))
+                rows.push_back(measure(paper, settings));
+            else
+                fmt::print("{}: skipped, no {}; name the folder with --data\n", paper.name, mesh.string());
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "table1: {}\n", error.what());
+        return 1;
+    }
+    if (rows.empty())
+        return 0;
+    print_markdown(rows);
+    std::ofstream(settings.json) << rows.dump(2) << '\n';
+    return 0;
+}
