@@ -1,0 +1,44 @@
+// A scene with hard and soft shadows, precomputed, for the tests of relighting.
+#pragma once
+
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "prt/receivers.h"
+#include "relight/sharp_lights.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::scenes {
+
+struct RelitScene {
+    mesh::TriangleMesh mesh = sphere_and_box_on_floor();
+    prt::Receivers receivers = prt::vertex_receivers(mesh);
+    prt::RayScene rays{mesh};
+    prt::PrecomputeOptions options;
+    prt::Transfer transfer;
+
+    explicit RelitScene(float tolerance = 0.02f, std::uint32_t face_resolution = 64)
+        : options{.tolerance = tolerance,
+                  .face_resolution = face_resolution,
+                  .bias = prt::automatic_bias(mesh)},
+          transfer(prt::precompute(receivers, rays, options)) {}
+
+    [[nodiscard]] relight::ShadowRays shadow_rays() const {
+        return {.blockers = &rays,
+                .positions = receivers.positions,
+                .bias = options.bias,
+                .tolerance = options.tolerance};
+    }
+};
+
+/// One for all tests that only read it.
+[[nodiscard]] inline const RelitScene& relit_scene() {
+    static const RelitScene scene;
+    return scene;
+}
+
+} // namespace relumine::scenes
