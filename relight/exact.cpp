@@ -153,10 +153,12 @@ ErrorReport compare(std::span<const std::uint32_t> receiver_indices, std::span<c
             report.worst_receiver = receiver_indices[i];
         }
     }
-    if (receiver_indices.empty() || error_sum == 0.0)
+    if (receiver_indices.empty())
         return report;
     const double num_values = 3.0 * static_cast<double>(receiver_indices.size());
     report.mean_radiance = exact_sum / num_values;
+    if (error_sum == 0.0)
+        return report;
     report.relative_l2 = std::sqrt(error_squares / exact_squares);
     report.mean_abs = error_sum / exact_sum;
     report.max_abs = largest / report.mean_radiance;

@@ -53,6 +53,10 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
 }
 
 RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
+    const std::size_t r = environment.resolution;
+    if (r == 0 || environment.texels.size() != cubemap::NumFaces * r * r)
+        throw std::invalid_argument(
+            fmt::format("expected 6 x {0} x {0} texels, got {1}", r, environment.texels.size()));
     require_radiance(environment.texels);
     RelightTimes times;
     auto start = std::chrono::steady_clock::now();

@@ -52,7 +52,7 @@ public:
     explicit Relighter(const prt::Transfer& transfer, const ShadowRays& rays = {});
 
     /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous sphere. O(6 R^2 + size of the
-    /// transfer). Throws std::invalid_argument for a radiance that is negative or not finite.
+    /// transfer). Throws std::invalid_argument for a radiance that is negative or not finite, or a map without texels.
     RelightTimes set_environment(cubemap::CubeMap environment);
 
     /// Replaces a rectangle of the environment's texels by `radiance`, row by row [(x1 - x0) * (y1 - y0)], and updates what the clusters it
