@@ -95,8 +95,8 @@ std::vector<std::byte> encode_png(const Picture& picture, float scale) {
 Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& options, float fov_degrees) {
     const mesh::Bounds box = subject_bounds(mesh);
     const glm::vec3 from_target = glm::normalize(glm::vec3(0.45f, 0.4f, 1.0f));
-    Camera camera{.eye = box.center() + from_target, .target = box.center(), .fov_degrees = fov_degrees};
-    const Frame frame = frame_of(camera, options);
+    // About the origin: far from it floats would not hold so short a way from target to eye.
+    const Frame frame = frame_of({.eye = from_target, .fov_degrees = fov_degrees}, options);
 
     // Every corner of the box must lie within the picture's pyramid, with a margin of an eighth.
     constexpr float Margin = 1.125f;
@@ -109,8 +109,7 @@ Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& op
         const float upwards = std::abs(glm::dot(offset, frame.up)) / glm::dot(frame.up, frame.up);
         distance = std::max(distance, Margin * std::max(across, upwards) - glm::dot(offset, frame.forward));
     }
-    camera.eye = box.center() + distance * from_target;
-    return camera;
+    return {.eye = box.center() + distance * from_target, .target = box.center(), .fov_degrees = fov_degrees};
 }
 
 Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
@@ -125,6 +124,8 @@ Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
         throw std::invalid_argument(fmt::format("expected a picture of 1 to {} pixels a side", MaxSize));
     if (vertex_radiance.size() != mesh.num_vertices())
         throw std::invalid_argument("expected one radiance per vertex");
+    if (background.resolution == 0)
+        throw std::invalid_argument("expected a background with texels");
     const Frame frame = frame_of(camera, options);
 
     const auto seen = [&](float x, float y) { // picture coordinates in pixels from the top left corner
@@ -158,6 +159,9 @@ Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
 }
 
 void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev) {
+    if (picture.width == 0 || picture.pixels.size() != std::size_t{picture.width} * picture.height)
+        throw std::invalid_argument(fmt::format("{}: expected {} x {} pixels, got {}", path.string(),
+                                                picture.width, picture.height, picture.pixels.size()));
     const auto scale = static_cast<float>(std::exp2(exposure_ev));
     std::vector<std::byte> bytes;
     if (path.extension() == ".png") {

@@ -40,13 +40,14 @@ struct PictureOptions {
                                       float fov_degrees = 35.0f);
 
 /// The mesh seen by the camera, radiance interpolated between its vertices [num_vertices], the environment behind it.
-/// Throws std::invalid_argument for a camera without a direction, a field of view outside (0, 180) or a size outside 1..16384.
+/// Throws std::invalid_argument for a camera without a direction, a field of view outside (0, 180), a size outside 1..16384 or
+/// a background without texels.
 [[nodiscard]] Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
                            std::span<const glm::vec3> vertex_radiance, const cubemap::CubeMap& background,
                            const Camera& camera, const PictureOptions& options = {});
 
 /// Writes .png (times 2^exposure_ev, sRGB curve, clipped, 8 bit) or .exr (linear float, exposure applied too).
-/// Whole or not at all. Throws std::runtime_error naming the path, std::invalid_argument for another extension.
+/// Whole or not at all. Throws std::runtime_error naming the path, std::invalid_argument for another extension or a picture short of pixels.
 void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev = 0.0);
 
 } // namespace relumine::relight
