@@ -15,11 +15,11 @@ step() { # step NAME COMMAND...: shows the command, keeps its figures in NAME.js
 }
 
 environments=(sun_sky soft_boxes small_light)
-step scene generate colonnade -o "$folder" --vertices 60000
+step scene generate colonnade -o "$folder" --vertices 50000
 for environment in "${environments[@]}"; do
     step "$environment" generate "$environment" -o "$folder"
 done
-step precompute precompute "$folder/colonnade.ply" -o "$folder/colonnade.prt"
+step precompute precompute "$folder/colonnade.ply" -o "$folder/colonnade.prt" --tolerance 0.02
 for environment in "${environments[@]}"; do
     step "relight_$environment" relight "$folder/colonnade.prt" "$folder/$environment.exr" -o "$folder/$environment.png"
     step "verify_$environment" verify "$folder/colonnade.prt" "$folder/$environment.exr" --samples 300
