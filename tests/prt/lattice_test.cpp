@@ -91,8 +91,9 @@ TEST(Lattice, DirectionIsThatOfTheNamedPointExactly) {
         const Cell cell = random_cell(random, static_cast<std::uint32_t>(round) % (MaxLevel + 1));
         const auto points = lattice_points(cell);
         for (std::uint32_t i = 0; i < SamplesPerCell; ++i) {
-            const double s = (cell.x + 0.5 * (i % 3)) * cell.size();
-            const double t = (cell.y + 0.5 * (i / 3)) * cell.size();
+            const std::uint32_t column = i % 3, row = i / 3;
+            const double s = (cell.x + 0.5 * column) * cell.size();
+            const double t = (cell.y + 0.5 * row) * cell.size();
             EXPECT_EQ(direction(points[i]), glm::vec3(cubemap::direction(cell.face, s, t)));
         }
     }
@@ -105,8 +106,10 @@ TEST(Lattice, WeightsAreTheTrapezoidRule) {
     EXPECT_EQ(sum, FullCount);
     // Exact for what is linear along both axes: the mean of s t over [0, 1]^2 is 1/4.
     double mean = 0.0;
-    for (std::size_t i = 0; i < SamplesPerCell; ++i)
-        mean += SampleWeights[i] * (0.5 * static_cast<double>(i % 3)) * (0.5 * static_cast<double>(i / 3));
+    for (std::size_t i = 0; i < SamplesPerCell; ++i) {
+        const std::size_t column = i % 3, row = i / 3;
+        mean += SampleWeights[i] * 0.5 * static_cast<double>(column) * 0.5 * static_cast<double>(row);
+    }
     EXPECT_EQ(mean / FullCount, 0.25);
 }
 

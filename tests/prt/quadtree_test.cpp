@@ -50,14 +50,14 @@ TEST(Quadtree, LeavesTileEachFaceExactly) {
     constexpr std::uint32_t MaxDepth = 6;
     for (int round = 0; round < 20; ++round) {
         const Quadtree tree(scenes::random_split_flags(random, MaxDepth, 0.6));
-        constexpr std::uint32_t Side = 1u << MaxDepth;
+        constexpr std::size_t Side = std::size_t{1} << MaxDepth;
         std::vector<int> covered(cubemap::NumFaces * Side * Side, 0);
         std::vector<double> area(cubemap::NumFaces, 0.0);
         for (const Cell& cell : tree.leaves()) {
             area[static_cast<std::size_t>(cell.face)] += cell.size() * cell.size();
-            const std::uint32_t n = Side >> cell.level;
-            for (std::uint32_t y = cell.y * n; y < (cell.y + 1) * n; ++y)
-                for (std::uint32_t x = cell.x * n; x < (cell.x + 1) * n; ++x)
+            const std::size_t n = Side >> cell.level;
+            for (std::size_t y = cell.y * n; y < (cell.y + 1) * n; ++y)
+                for (std::size_t x = cell.x * n; x < (cell.x + 1) * n; ++x)
                     ++covered[(static_cast<std::size_t>(cell.face) * Side + y) * Side + x];
         }
         EXPECT_THAT(area, testing::Each(1.0)); // dyadic areas add up without rounding

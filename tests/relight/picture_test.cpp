@@ -293,7 +293,7 @@ protected:
             return {};
         }
         EXPECT_EQ(channels, 3);
-        std::vector<std::uint8_t> result(bytes, bytes + width * height * 3);
+        std::vector<std::uint8_t> result(bytes, bytes + std::ptrdiff_t{width} * height * 3);
         stbi_image_free(bytes);
         return result;
     }

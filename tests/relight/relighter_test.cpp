@@ -173,7 +173,8 @@ struct Edit {
             rectangle.x1 = rectangle.x0 + 1;
             rectangle.y1 = rectangle.y0 + 1;
         }
-        const std::size_t num_texels = (rectangle.x1 - rectangle.x0) * (rectangle.y1 - rectangle.y0);
+        const std::size_t num_texels =
+            std::size_t{rectangle.x1 - rectangle.x0} * (rectangle.y1 - rectangle.y0);
         for (std::size_t i = 0; i < num_texels; ++i)
             radiance.push_back((kind == 0   ? 1e6f
                                 : kind == 1 ? 0.0f
@@ -284,7 +285,7 @@ TEST(RelighterUpdate, EditsThatNothingSeesChangeNothing) {
     Relighter relighter(transfer);
     relighter.set_environment(scenes::random_environment(32, 13));
     const auto before = copy(relighter.radiance());
-    const std::vector<glm::vec3> sun(32 * 16, glm::vec3(1e6f));
+    const std::vector<glm::vec3> sun(512, glm::vec3(1e6f));
     for (const TexelRectangle& below :
          {TexelRectangle{.face = cubemap::Face::NegativeY, .x1 = 32, .y1 = 16},
           TexelRectangle{.face = cubemap::Face::PositiveX, .y0 = 16, .x1 = 32, .y1 = 32}}) {
