@@ -28,8 +28,10 @@ std::array<LatticePoint, SamplesPerCell> lattice_points(const Cell& cell) {
     std::array<LatticePoint, SamplesPerCell> points;
     const double half = 0.5 * cell.size();
     for (std::uint32_t i = 0; i < SamplesPerCell; ++i) {
+        const std::uint32_t column = i % 3;
+        const std::uint32_t row = i / 3;
         const glm::dvec3 point =
-            cubemap::cube_point(cell.face, (2 * cell.x + i % 3) * half, (2 * cell.y + i / 3) * half);
+            cubemap::cube_point(cell.face, (2 * cell.x + column) * half, (2 * cell.y + row) * half);
         points[i] =
             packed(point.x) | packed(point.y) << BitsPerCoordinate | packed(point.z) << 2 * BitsPerCoordinate;
     }

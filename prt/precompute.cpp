@@ -131,6 +131,7 @@ private:
 
 std::vector<Cell> Clustering::first_cells() const {
     std::vector<Cell> cells;
+    cells.reserve(cubemap::NumFaces);
     for (const cubemap::Face face : cubemap::AllFaces)
         cells.push_back({.face = face});
     for (std::uint32_t level = 0; level < std::min(options_.min_level, max_level_); ++level) {

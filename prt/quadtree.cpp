@@ -49,7 +49,8 @@ std::vector<bool> Quadtree::split_flags() const {
 void Quadtree::find_leaves(const FaceRectangle& rectangle, std::vector<std::uint32_t>& leaf_indices) const {
     const bool has_area = rectangle.s0 < rectangle.s1 && rectangle.t0 < rectangle.t1;
     if (has_area)
-        find(static_cast<std::uint32_t>(rectangle.face), Cell{.face = rectangle.face}, rectangle, leaf_indices);
+        find(static_cast<std::uint32_t>(rectangle.face), Cell{.face = rectangle.face}, rectangle,
+             leaf_indices);
 }
 
 void Quadtree::find(std::uint32_t node, const Cell& cell, const FaceRectangle& rectangle,

@@ -20,7 +20,7 @@ namespace {
 // A packet is a 4 x 4 tile of texels; 64 receivers of one task share the work of setting it up.
 constexpr std::uint32_t TileSize = 4;
 constexpr std::size_t ReceiversPerTask = 64;
-static_assert(TileSize * TileSize == prt::PacketSize);
+static_assert(std::size_t{TileSize} * TileSize == prt::PacketSize);
 
 struct Tile {
     prt::DirectionPacket packet;

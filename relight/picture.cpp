@@ -148,8 +148,10 @@ Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
         for (std::uint32_t x = 0; x < options.width; ++x) {
             glm::vec3 sum(0.0f);
             for (std::uint32_t i = 0; i < n * n; ++i) {
-                const float dx = (static_cast<float>(i % n) + 0.5f) / static_cast<float>(n);
-                const float dy = (static_cast<float>(i / n) + 0.5f) / static_cast<float>(n);
+                const std::uint32_t column = i % n;
+                const std::uint32_t row = i / n;
+                const float dx = (static_cast<float>(column) + 0.5f) / static_cast<float>(n);
+                const float dy = (static_cast<float>(row) + 0.5f) / static_cast<float>(n);
                 sum += seen(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
             }
             picture.pixels[std::size_t{y} * options.width + x] = sum / static_cast<float>(n * n);
@@ -159,7 +161,7 @@ Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
 }
 
 void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev) {
-    if (picture.width == 0 || picture.pixels.size() != std::size_t{picture.width} * picture.height)
+    if (picture.pixels.empty() || picture.pixels.size() != std::size_t{picture.width} * picture.height)
         throw std::invalid_argument(fmt::format("{}: expected {} x {} pixels, got {}", path.string(),
                                                 picture.width, picture.height, picture.pixels.size()));
     const auto scale = static_cast<float>(std::exp2(exposure_ev));
