@@ -1,0 +1,226 @@
+#include "tests/app/command.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <system_error>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace relumine::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double MaxSeconds = 60.0;
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string content(const fs::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::size_t num_lines(const std::string& text) {
+    return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string line = "relumine";
+    for (const std::string& word : words)
+        line += ' ' + word;
+    return line;
+}
+
+/// Between fork and exec, so with nothing but system calls.
+void become_program(const char* folder, const char* out, const char* err, const RunOptions& options,
+                    char* const* arguments) {
+    const int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int err_fd = ::open(err, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+    const int in_fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    ::dup2(in_fd, STDIN_FILENO);
+    ::dup2(out_fd, STDOUT_FILENO);
+    ::dup2(err_fd, STDERR_FILENO);
+    if (::chdir(folder) != 0)
+        ::_exit(126);
+    // A shell that started the tests in the background may have these ignored.
+    ::signal(SIGINT, SIG_DFL);
+    ::signal(SIGTERM, SIG_DFL);
+    if (options.max_file_bytes) {
+        // With SIGXFSZ ignored a write beyond the limit fails, like one on a full disk.
+        ::signal(SIGXFSZ, SIG_IGN);
+        const struct rlimit limit = {*options.max_file_bytes, *options.max_file_bytes};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    }
+    ::execv(RELUMINE_BINARY, arguments);
+    ::_exit(127);
+}
+
+} // namespace
+
+std::string Result::described() const {
+    return fmt::format("exit code {}, signal {}, {:.2f} s, {} bytes\nstdout: {}\nstderr: {}\n", exit_code,
+                       signal, seconds, peak_bytes, out, err);
+}
+
+nlohmann::json Result::json() const {
+    nlohmann::json result = nlohmann::json::parse(out, nullptr, false);
+    EXPECT_TRUE(result.is_object()) << "expected one JSON object on stdout\n" << described();
+    return result.is_object() ? result : nlohmann::json::object();
+}
+
+Process::Process(const fs::path& folder, const std::vector<std::string>& arguments, const RunOptions& options)
+    : start_(now()) {
+    static int count = 0;
+    const fs::path captured =
+        fs::path(testing::TempDir()) / fmt::format("relumine_app_{}_{}", ::getpid(), count++);
+    out_ = options.stdout_path.empty() ? fs::path(captured.string() + ".out") : fs::path(options.stdout_path);
+    err_ = captured.string() + ".err";
+    std::vector<std::string> words = {"relumine"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> pointers;
+    for (std::string& word : words)
+        pointers.push_back(word.data());
+    pointers.push_back(nullptr);
+
+    pid_ = ::fork();
+    if (pid_ < 0)
+        throw std::system_error(errno, std::generic_category(), "fork");
+    if (pid_ == 0)
+        become_program(folder.c_str(), out_.c_str(), err_.c_str(), options, pointers.data());
+}
+
+Process::~Process() {
+    if (!ended_) {
+        ::kill(pid_, SIGKILL);
+        poll(true);
+    }
+    if (fs::is_regular_file(out_))
+        fs::remove(out_);
+    fs::remove(err_);
+}
+
+void Process::send(int signal) const {
+    ::kill(pid_, signal);
+}
+
+bool Process::poll(bool block) {
+    struct rusage usage {};
+    if (!ended_ && ::wait4(pid_, &status_, block ? 0 : WNOHANG, &usage) == pid_) {
+        ended_ = true;
+        result_.seconds = now() - start_;
+        result_.peak_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+        if (WIFEXITED(status_))
+            result_.exit_code = WEXITSTATUS(status_);
+        if (WIFSIGNALED(status_))
+            result_.signal = WTERMSIG(status_);
+    }
+    return ended_;
+}
+
+bool Process::is_running() {
+    return !poll(false);
+}
+
+Result Process::wait() {
+    while (!poll(false)) {
+        if (now() - start_ > MaxSeconds) {
+            ADD_FAILURE() << "the program did not end within " << MaxSeconds << " s";
+            ::kill(pid_, SIGKILL);
+            poll(true);
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    if (fs::is_regular_file(out_))
+        result_.out = content(out_);
+    result_.err = content(err_);
+    return result_;
+}
+
+AppTest::AppTest() {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    std::string name = fmt::format("relumine_{}_{}_{}", ::getpid(), test.test_suite_name(), test.name());
+    std::replace(name.begin(), name.end(), '/', '_');
+    folder_ = fs::path(testing::TempDir()) / name;
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+}
+
+AppTest::~AppTest() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+}
+
+Result AppTest::relumine(const std::vector<std::string>& arguments, const RunOptions& options) const {
+    return Process(folder_, arguments, options).wait();
+}
+
+Result AppTest::succeed(const std::vector<std::string>& arguments) const {
+    Result result = relumine(arguments);
+    EXPECT_EQ(result.exit_code, 0) << joined(arguments) << "\n" << result.described();
+    return result;
+}
+
+Result AppTest::fail(const std::vector<std::string>& arguments, const std::vector<std::string>& parts,
+                     const RunOptions& options) const {
+    const std::vector<std::string> before = files();
+    Result result = relumine(arguments, options);
+    const std::string what = joined(arguments) + "\n" + result.described();
+    EXPECT_EQ(result.exit_code, 1) << what;
+    EXPECT_EQ(num_lines(result.err), 1u) << what;
+    EXPECT_EQ(result.err.rfind("relumine: ", 0), 0u) << what;
+    EXPECT_EQ(result.out, "") << what;
+    for (const std::string& part : parts)
+        EXPECT_NE(result.err.find(part), std::string::npos) << "without '" << part << "': " << what;
+    EXPECT_EQ(files(), before) << what;
+    return result;
+}
+
+Result AppTest::misuse(const std::vector<std::string>& arguments, const std::string& part) const {
+    const std::vector<std::string> before = files();
+    Result result = relumine(arguments);
+    const std::string what = joined(arguments) + "\n" + result.described();
+    EXPECT_EQ(result.exit_code, 2) << what;
+    EXPECT_EQ(num_lines(result.err), 1u) << what;
+    EXPECT_EQ(result.err.rfind("relumine: ", 0), 0u) << what;
+    EXPECT_EQ(result.out, "") << what;
+    EXPECT_NE(result.err.find(part), std::string::npos) << "without '" << part << "': " << what;
+    EXPECT_EQ(files(), before) << what;
+    return result;
+}
+
+std::vector<std::string> AppTest::files() const {
+    std::vector<std::string> result;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_)) {
+        const std::string name = fs::relative(entry.path(), folder_).string();
+        if (entry.is_symlink())
+            result.push_back(name + " -> " + fs::read_symlink(entry.path()).string());
+        else if (entry.is_regular_file())
+            result.push_back(fmt::format("{} {:x}", name, std::hash<std::string>{}(content(entry.path()))));
+        else
+            result.push_back(fmt::format("{} type {}", name, static_cast<int>(entry.status().type())));
+    }
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+void AppTest::write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+}
+
+std::string AppTest::read(const std::string& name) const {
+    return content(folder_ / name);
+}
+
+} // namespace relumine::app

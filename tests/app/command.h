@@ -1,0 +1,92 @@
+// Runs the program as a user would and tells all that it did.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/types.h>
+
+namespace relumine::app {
+
+/// What a command did.
+struct Result {
+    int exit_code = -1; ///< -1 when a signal ended it
+    int signal = 0;     ///< the signal that ended it
+    std::string out;
+    std::string err;
+    double seconds = 0.0;
+    std::uint64_t peak_bytes = 0; ///< largest resident set
+
+    /// For messages of failed tests.
+    [[nodiscard]] std::string described() const;
+    /// The object on stdout. A test failure and an empty object when stdout holds anything else.
+    [[nodiscard]] nlohmann::json json() const;
+};
+
+struct RunOptions {
+    std::optional<std::uint64_t> max_file_bytes = {}; ///< writing beyond fails, as on a full disk
+    std::string stdout_path = {};                     ///< where stdout goes instead of Result::out
+};
+
+/// A running `relumine`. Killed, with a test failure, after a minute.
+class Process {
+public:
+    Process(const std::filesystem::path& folder, const std::vector<std::string>& arguments,
+            const RunOptions& options = {});
+    ~Process();
+    Process(const Process&) = delete;
+    Process& operator=(const Process&) = delete;
+
+    void send(int signal) const;
+    /// False when it ended.
+    [[nodiscard]] bool is_running();
+    [[nodiscard]] Result wait();
+
+private:
+    bool poll(bool block);
+
+    pid_t pid_ = -1;
+    double start_ = 0.0;
+    int status_ = 0;
+    bool ended_ = false;
+    std::filesystem::path out_;
+    std::filesystem::path err_;
+    Result result_;
+};
+
+/// A folder of the test's own, in which the program runs and which goes away with the test.
+class AppTest : public testing::Test {
+protected:
+    AppTest();
+    ~AppTest() override;
+
+    [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
+
+    /// `relumine ARGUMENTS...` with the test's folder as the current one.
+    [[nodiscard]] Result relumine(const std::vector<std::string>& arguments,
+                                  const RunOptions& options = {}) const;
+    /// The same, expected to succeed.
+    Result succeed(const std::vector<std::string>& arguments) const;
+    /// Expected to end with exit code 1 and one line that begins "relumine: " and holds all of `parts`, within `max_seconds`, and to
+    /// leave every file of the folder as it was and no new one.
+    Result fail(const std::vector<std::string>& arguments, const std::vector<std::string>& parts = {},
+                const RunOptions& options = {}) const;
+    /// Expected to end with exit code 2, one line on stderr and nothing done.
+    Result misuse(const std::vector<std::string>& arguments, const std::string& part = {}) const;
+
+    /// Names (relative) and content hashes of all files below the folder.
+    [[nodiscard]] std::vector<std::string> files() const;
+
+    void write(const std::string& name, const std::string& content) const;
+    [[nodiscard]] std::string read(const std::string& name) const;
+
+private:
+    std::filesystem::path folder_;
+};
+
+} // namespace relumine::app

@@ -1,0 +1,276 @@
+// `relumine relight`: directions, options and what it refuses.
+#include <algorithm>
+#include <cmath>
+
+#include <sys/stat.h>
+
+#include "tests/app/command.h"
+#include "tests/app/formats.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Values = std::vector<std::array<float, 3>>;
+
+/// Vertices of the octahedron.
+enum Vertex { PlusX, MinusX, PlusY, MinusY, PlusZ, MinusZ };
+
+class Relight : public AppTest {
+protected:
+    Relight() {
+        write("mesh.obj", octahedron_obj());
+        write("white.hdr", white_hdr());
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "32", "-q"});
+    }
+    /// Radiance of the six vertices.
+    [[nodiscard]] Values lit(const std::string& environment,
+                             const std::vector<std::string>& options = {}) const {
+        std::vector<std::string> arguments = {"relight", "scene.prt", environment, "-o", "lit.npy"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        succeed(arguments);
+        Values values = npy_values(read("lit.npy"));
+        EXPECT_EQ(values.size(), 6u);
+        values.resize(6);
+        return values;
+    }
+    /// Refused as wrong usage or as a failure; either way in one line and with nothing left behind.
+    void refuse(const std::vector<std::string>& options, int exit_code) const {
+        std::vector<std::string> arguments = {"relight", "scene.prt", "white.hdr", "-o", "new.png"};
+        if (std::find(options.begin(), options.end(), "--size") == options.end())
+            arguments.insert(arguments.end(), {"--size", "8x8"});
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        if (exit_code == 2)
+            misuse(arguments);
+        else
+            fail(arguments);
+    }
+};
+
+std::size_t brightest(const Values& values) {
+    return static_cast<std::size_t>(
+        std::max_element(values.begin(), values.end(),
+                         [](const auto& a, const auto& b) { return a[0] < b[0]; }) -
+        values.begin());
+}
+
+TEST_F(Relight, WhiteFurnace) {
+    for (const auto& value : lit("white.hdr"))
+        for (const float channel : value)
+            EXPECT_NEAR(channel, 1.0f, 2e-3f);
+}
+
+TEST_F(Relight, LightComesFromWhereItIs) {
+    const std::vector<std::pair<std::uint32_t, std::size_t>> columns = {
+        {64, PlusZ}, {32, PlusX}, {96, MinusX}};
+    for (const auto& [column, vertex] : columns) {
+        write("lamp.hdr", lamp_hdr(column));
+        const Values values = lit("lamp.hdr");
+        EXPECT_EQ(brightest(values), vertex) << column;
+        // pi / 64 square radians of radiance 512, seen face on; the neighbours see it edge on.
+        const double side = 2.0 * 3.14159265 / 64.0;
+        EXPECT_NEAR(values[vertex][0], 512.0 * side * side / 3.14159265, 0.03) << column;
+        for (std::size_t other = 0; other < 6; ++other)
+            EXPECT_LT(values[other][0], (other == vertex ? 1.01f : 0.05f) * values[vertex][0])
+                << column << other;
+    }
+}
+
+TEST_F(Relight, UpIsUp) {
+    write("sky.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t y) {
+              return y < 16 ? Rgb{1.0f, 2.0f, 4.0f} : Rgb{0.25f, 0.25f, 0.25f};
+          }));
+    const Values values = lit("sky.hdr");
+    EXPECT_NEAR(values[PlusY][2], 4.0f, 0.02f);
+    EXPECT_NEAR(values[PlusY][0], 1.0f, 0.02f);
+    EXPECT_NEAR(values[MinusY][2], 0.25f, 0.02f);
+    for (const std::size_t side : {PlusX, MinusX, PlusZ, MinusZ})
+        EXPECT_NEAR(values[side][1], 1.125f, 0.03f);
+}
+
+TEST_F(Relight, RotateBy90TakesPlusZToPlusX) {
+    write("ahead.hdr", lamp_hdr(64));
+    write("left.hdr", lamp_hdr(32));
+    const Values turned = lit("ahead.hdr", {"--rotate", "90"});
+    EXPECT_EQ(brightest(turned), PlusX);
+    EXPECT_LT(relative_l2(turned, lit("left.hdr")), 1e-3);
+    EXPECT_EQ(brightest(lit("ahead.hdr", {"--rotate", "180"})), MinusZ);
+    EXPECT_EQ(brightest(lit("ahead.hdr", {"--rotate", "-90"})), MinusX);
+    EXPECT_EQ(brightest(lit("ahead.hdr", {"--rotate", "270"})), MinusX);
+    EXPECT_LT(relative_l2(lit("ahead.hdr", {"--rotate", "360"}), lit("ahead.hdr")), 1e-3);
+    EXPECT_LT(relative_l2(lit("ahead.hdr", {"--rotate", "450"}), turned), 1e-3);
+}
+
+TEST_F(Relight, RotationByAnyAngleKeepsTheLight) {
+    write("lamp.hdr", lamp_hdr(64));
+    const Values values = lit("lamp.hdr", {"--rotate", "30"});
+    const float full = lit("lamp.hdr")[PlusZ][0];
+    EXPECT_NEAR(values[PlusZ][0] / full, std::cos(30.0 * 3.14159265 / 180.0), 0.02);
+    EXPECT_NEAR(values[PlusX][0] / full, std::sin(30.0 * 3.14159265 / 180.0), 0.02);
+}
+
+TEST_F(Relight, ExposureAndAlbedoAreFactors) {
+    const Values plain = lit("white.hdr");
+    const Values brighter = lit("white.hdr", {"--exposure", "2"});
+    const Values darker = lit("white.hdr", {"--exposure", "-1"});
+    const Values grey = lit("white.hdr", {"--albedo", "0.5"});
+    const Values tinted = lit("white.hdr", {"--albedo", "1,0.5,0.25"});
+    for (std::size_t i = 0; i < 6; ++i) {
+        EXPECT_FLOAT_EQ(brighter[i][0], 4.0f * plain[i][0]);
+        EXPECT_FLOAT_EQ(darker[i][1], 0.5f * plain[i][1]);
+        EXPECT_FLOAT_EQ(grey[i][2], 0.5f * plain[i][2]);
+        EXPECT_FLOAT_EQ(tinted[i][0], plain[i][0]);
+        EXPECT_FLOAT_EQ(tinted[i][2], 0.25f * plain[i][2]);
+    }
+}
+
+TEST_F(Relight, AlbedoOfTheMeshIsItsVertexColours) {
+    write("red.obj", "v 0 0 0 1 0 0\nv 1 0 0 0.5 0.5 0.5\nv 0 0 -1 0 0 1\nf 1 2 3\n");
+    succeed({"precompute", "red.obj", "-o", "red.prt", "--face-resolution", "16"});
+    succeed({"relight", "red.prt", "white.hdr", "-o", "red.npy", "--albedo", "mesh"});
+    const Values values = npy_values(read("red.npy"));
+    ASSERT_EQ(values.size(), 3u);
+    EXPECT_NEAR(values[0][0], 1.0f, 2e-3f);
+    EXPECT_EQ(values[0][1], 0.0f);
+    EXPECT_NEAR(values[1][1], 0.5f, 2e-3f);
+    EXPECT_EQ(values[2][0], 0.0f);
+    fail({"relight", "scene.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, {"colours"});
+}
+
+TEST_F(Relight, PictureHasTheSizeAskedFor) {
+    for (const char* size : {"1x1", "7x5", "300x2"}) {
+        const std::vector<std::string> arguments = {"relight", "scene.prt", "white.hdr", "-o",
+                                                    "lit.png", "--size",    size};
+        succeed(arguments);
+        const Size got = png_size(read("lit.png"));
+        EXPECT_EQ(std::to_string(got.width) + "x" + std::to_string(got.height), size);
+    }
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--size", "20x10", "--eye", "3,1,2",
+             "--target", "0,0,0", "--fov", "60"});
+    EXPECT_EQ(exr_size(read("lit.exr")), (Size{20, 10}));
+}
+
+TEST_F(Relight, BadOptionsAreRefused) {
+    for (const char* size : {"abc", "10", "10x", "x10", "10x10x10", "10X10", "1e2x5", "10x10 ", ""})
+        refuse({"--size", size}, 2);
+    for (const char* size : {"0x0", "0x5", "16385x1", "99999x99999"})
+        refuse({"--size", size}, 1);
+    for (const char* vector : {"1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "1,2,", ","}) {
+        refuse({"--eye", vector}, 2);
+        refuse({"--target", vector}, 2);
+    }
+    refuse({"--eye", "1,1,1", "--target", "1,1,1"}, 1);
+    for (const char* fov : {"0", "180", "-10", "nan", "inf"})
+        refuse({"--fov", fov}, 1);
+    for (const char* albedo : {"red", "1,2", "nan", "inf", "1,2,3,4", "Mesh"})
+        refuse({"--albedo", albedo}, 2);
+    refuse({"--layout", "octahedral"}, 2);
+    refuse({"--face-resolution", "-1"}, 2);
+    refuse({"--face-resolution", "3.5"}, 2);
+    for (const char* resolution : {"16385", "4000000000"})
+        refuse({"--face-resolution", resolution}, 1);
+    refuse({"--rotate", "north"}, 2);
+    refuse({"--exposure", "bright"}, 2);
+}
+
+TEST_F(Relight, NumbersThatCannotBeMeantAreRefused) {
+    const auto refused = [&](const std::string& option, const std::string& value) {
+        const std::vector<std::string> before = files();
+        const Result result = relumine({"relight", "scene.prt", "white.hdr", "-o", "new.npy", option, value});
+        EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << option << value << '\n'
+                                                                    << result.described();
+        EXPECT_NE(result.err.find(option.substr(2)), std::string::npos) << result.described();
+        EXPECT_EQ(files(), before) << option << value;
+    };
+    for (const char* value : {"nan", "inf", "-inf"}) {
+        refused("--rotate", value);
+        refused("--exposure", value);
+    }
+    refused("--exposure", "1e9");
+    refused("--albedo", "-1");
+    refused("--albedo", "1,1,-0.5");
+}
+
+TEST_F(Relight, UnknownKindsOfOutputAreRefused) {
+    for (const char* name :
+         {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", "", ".npy", "sub/new.npy/"})
+        fail({"relight", "scene.prt", "white.hdr", "-o", name}, {"expected"});
+}
+
+TEST_F(Relight, OutputsThatCannotBeWrittenAreFoundOutAndNothingIsLost) {
+    fail({"relight", "scene.prt", "white.hdr", "-o", "missing/new.npy"}, {"missing/new.npy", "cannot write"});
+    fail({"relight", "scene.prt", "white.hdr", "-o", "scene.prt/new.npy"},
+         {"scene.prt/new.npy", "cannot write"});
+    fail({"relight", "scene.prt", "white.hdr", "-o", "/proc/new.npy"}, {"/proc/new.npy", "cannot write"});
+    fail({"relight", "scene.prt", "white.hdr", "-o", std::string(300, 'a') + ".npy"}, {"cannot write"});
+    fs::create_directory(folder() / "folder.npy");
+    fail({"relight", "scene.prt", "white.hdr", "-o", "folder.npy"}, {"folder.npy", "cannot write"});
+}
+
+TEST_F(Relight, AFullDiskLeavesTheOldFile) {
+    for (const char* name : {"old.npy", "old.png", "old.exr", "old.ply", "old.glb"}) {
+        write(name, "precious");
+        fail({"relight", "scene.prt", "white.hdr", "-o", name, "--size", "64x64"}, {name, "cannot write"},
+             {.max_file_bytes = 60});
+    }
+}
+
+TEST_F(Relight, InputsAreNotOverwritten) {
+    succeed({"generate", "constant", "-o", ".", "--face-resolution", "8", "-q"});
+    fail({"relight", "scene.prt", "constant.exr", "-o", "constant.exr"}, {"constant.exr"});
+    fail({"relight", "scene.prt", "constant.exr", "-o", "./constant.exr"}, {"constant.exr"});
+    fs::create_symlink("constant.exr", folder() / "link.exr");
+    fail({"relight", "scene.prt", "link.exr", "-o", "constant.exr"}, {"constant.exr"});
+    fail({"relight", "scene.prt", "constant.exr", "-o", "link.exr"}, {"link.exr"});
+}
+
+TEST_F(Relight, OnlyPlainFilesAreReplaced) {
+    ASSERT_EQ(::mkfifo((folder() / "pipe.npy").c_str(), 0600), 0);
+    fail({"relight", "scene.prt", "white.hdr", "-o", "pipe.npy"}, {"pipe.npy"});
+}
+
+TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
+    fail({"relight", "missing.prt", "white.hdr", "-o", "new.npy"}, {"missing.prt", "cannot read"});
+    fail({"relight", "scene.prt", "missing.hdr", "-o", "new.npy"}, {"missing.hdr", "cannot read"});
+    fail({"relight", ".", "white.hdr", "-o", "new.npy"}, {"cannot read"});
+    fail({"relight", "scene.prt", ".", "-o", "new.npy"}, {"cannot read"});
+    fail({"relight", "scene.prt", "/dev/zero", "-o", "new.npy"}, {"/dev/zero", "not a regular file"});
+    fail({"relight", "", "white.hdr", "-o", "new.npy"}, {"cannot read"});
+    ASSERT_EQ(::mkfifo((folder() / "pipe.hdr").c_str(), 0600), 0);
+    EXPECT_LT(fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"}).seconds, 5.0);
+}
+
+TEST_F(Relight, AnotherKindOfFileIsToldApart) {
+    fail({"relight", "mesh.obj", "white.hdr", "-o", "new.npy"}, {"mesh.obj", "expected a .prt scene"});
+    fail({"relight", "white.hdr", "scene.prt", "-o", "new.npy"}, {"white.hdr", "expected a .prt scene"});
+    fail({"relight", "scene.prt", "mesh.obj", "-o", "new.npy"}, {"mesh.obj", "expected"});
+    fail({"relight", "scene.prt", "scene.prt", "-o", "new.npy"}, {"scene.prt", "expected"});
+}
+
+TEST_F(Relight, DamagedScenesAreRefused) {
+    const std::string whole = read("scene.prt");
+    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 25) {
+        write("short.prt", whole.substr(0, size));
+        fail({"relight", "short.prt", "white.hdr", "-o", "new.npy"}, {"short.prt"});
+    }
+    write("short.prt", whole.substr(0, whole.size() - 1));
+    fail({"relight", "short.prt", "white.hdr", "-o", "new.npy"}, {"short.prt"});
+    write("long.prt", whole + "x");
+    fail({"relight", "long.prt", "white.hdr", "-o", "new.npy"}, {"long.prt"});
+    // docs/prt-format.md: the version is a little-endian number at byte 12.
+    std::string newer = whole;
+    newer[12] = 77;
+    write("newer.prt", newer);
+    fail({"relight", "newer.prt", "white.hdr", "-o", "new.npy"}, {"newer.prt", "version", "77"});
+    fail({"info", "newer.prt"}, {"newer.prt", "version", "77"});
+    fail({"verify", "newer.prt", "white.hdr"}, {"newer.prt", "version", "77"});
+    std::string flipped = whole;
+    flipped[whole.size() / 2] = static_cast<char>(flipped[whole.size() / 2] ^ 4);
+    write("flipped.prt", flipped);
+    fail({"relight", "flipped.prt", "white.hdr", "-o", "new.npy"}, {"flipped.prt"});
+}
+
+} // namespace
+} // namespace relumine::app
