@@ -34,7 +34,7 @@ std::vector<std::uint32_t> found_by_looking_at_all(const Quadtree& tree, const F
 /// Flags of a tree whose first face goes down to `level` along its first children.
 std::vector<bool> chain(std::uint32_t level) {
     std::vector<bool> flags(level, true);
-    flags.resize(flags.size() + 1 + 3 * level + 5, false);
+    flags.resize(flags.size() + 1 + std::size_t{3} * level + 5, false);
     return flags;
 }
 
