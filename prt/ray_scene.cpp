@@ -42,7 +42,7 @@ template<typename Element>
 void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
                  const std::vector<Element>& elements) {
     void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
-    if (buffer != nullptr)
+    if (buffer != nullptr && !elements.empty())
         std::memcpy(buffer, elements.data(), elements.size() * sizeof(Element));
 }
 
