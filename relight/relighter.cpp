@@ -26,6 +26,11 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+void sort_unique(std::vector<std::uint32_t>& values) {
+    std::sort(values.begin(), values.end());
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
 void require_radiance(std::span<const glm::vec3> texels) {
     // One branch per texel: NaN fails both comparisons.
     const auto good = [](float value) {
@@ -76,6 +81,12 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     times.seconds_trace = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
+    resum();
+    times.seconds_relight = seconds_since(start);
+    return times;
+}
+
+void Relighter::resum() {
     changed_.resize(sums_.size());
     std::iota(changed_.begin(), changed_.end(), 0u);
     set_cluster_lights(changed_);
@@ -88,8 +99,6 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
                           }
                       });
     lit_by_ = lights_.vectors;
-    times.seconds_relight = seconds_since(start);
-    return times;
 }
 
 /// The clusters' light is all light of their cells less the sharp lights in them. `clusters` ascend.
@@ -115,30 +124,46 @@ void Relighter::trace_sharp_lights() {
                       });
 }
 
-UpdateReport Relighter::update_region(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance) {
-    const auto start = std::chrono::steady_clock::now();
+void Relighter::check(const TexelRectangle& rectangle) const {
     const std::uint32_t r = environment_.resolution;
     if (r == 0)
         throw std::invalid_argument("expected an environment before its first update");
     if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r || rectangle.y1 > r)
         throw std::invalid_argument(fmt::format("expected a rectangle inside the {0} x {0} face", r));
+}
+
+UpdateReport Relighter::update_region(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance) {
+    check(rectangle);
     const std::size_t width = rectangle.x1 - rectangle.x0;
     if (radiance.size() != width * (rectangle.y1 - rectangle.y0))
         throw std::invalid_argument("expected one radiance per texel of the rectangle");
     require_radiance(radiance);
 
-    for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
-        std::copy_n(radiance.data() + (y - rectangle.y0) * width, width,
-                    &environment_.at(rectangle.face, rectangle.x0, y));
+    return update_regions({&rectangle, 1}, [&](cubemap::CubeMap& environment) {
+        for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
+            std::copy_n(radiance.data() + (y - rectangle.y0) * width, width,
+                        &environment.at(rectangle.face, rectangle.x0, y));
+    });
+}
 
-    // The clusters that the rectangle meets get their light summed anew, not by differences: nothing can drift.
+UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangles,
+                                       const std::function<void(cubemap::CubeMap&)>& edit) {
+    const auto start = std::chrono::steady_clock::now();
+    for (const TexelRectangle& rectangle : rectangles)
+        check(rectangle);
+    edit(environment_);
+
+    // The clusters that the rectangles meet get their light summed anew, not by differences: nothing can drift.
     changed_.clear();
-    transfer_.quadtree.find_leaves({.face = rectangle.face,
-                                    .s0 = static_cast<double>(rectangle.x0) / r,
-                                    .t0 = static_cast<double>(rectangle.y0) / r,
-                                    .s1 = static_cast<double>(rectangle.x1) / r,
-                                    .t1 = static_cast<double>(rectangle.y1) / r},
-                                   changed_);
+    const auto r = static_cast<double>(environment_.resolution);
+    for (const TexelRectangle& rectangle : rectangles)
+        transfer_.quadtree.find_leaves({.face = rectangle.face,
+                                        .s0 = rectangle.x0 / r,
+                                        .t0 = rectangle.y0 / r,
+                                        .s1 = rectangle.x1 / r,
+                                        .t1 = rectangle.y1 / r},
+                                       changed_);
+    sort_unique(changed_);
     const std::size_t num_touched = changed_.size();
     tbb::parallel_for(std::size_t{0}, num_touched, [&](std::size_t i) {
         sums_[changed_[i]] = binning_->sum(environment_, transfer_.quadtree.leaves()[changed_[i]]);
@@ -183,8 +208,7 @@ bool Relighter::update_sharp_lights() {
     for (const std::vector<SharpLight>* set : {&lights, &sharp_lights_})
         for (const SharpLight& light : *set)
             changed_.push_back(light.cluster);
-    std::sort(changed_.begin(), changed_.end());
-    changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
+    sort_unique(changed_);
     sharp_lights_ = std::move(lights);
     trace_sharp_lights();
     return true;

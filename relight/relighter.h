@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -61,12 +62,28 @@ public:
     /// wrong size, a radiance as above, or no environment; nothing has changed then.
     UpdateReport update_region(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance);
 
+    /// The general form: `edit` changes texels of the environment, inside the rectangles only (they may overlap), and what the clusters under them
+    /// contribute is updated once. Radiance must stay finite and >= 0; it is not looked at here.
+    UpdateReport update_regions(std::span<const TexelRectangle> rectangles,
+                                const std::function<void(cubemap::CubeMap&)>& edit);
+
+    /// Sums all clusters anew. Updates leave the radiance equal to a full relighting but for the last bits; after this it is
+    /// bit by bit what set_environment() of the same map gives. Costs a relighting without the binning.
+    void resum();
+
     /// Outgoing radiance for albedo 1, [num_receivers] in the receivers' own order; the unit of the environment's radiance.
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
 
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
 
+    [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
+    /// Clusters' light without the sharp lights.
+    [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
+    [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
+    [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
+
 private:
+    void check(const TexelRectangle& rectangle) const;
     void set_cluster_lights(std::span<const std::uint32_t> clusters);
     void trace_sharp_lights();
     bool update_sharp_lights();

@@ -51,8 +51,10 @@ private:
         const VectorIrradiance sum = binning_.sum(environment_, cell);
         const glm::dvec3 luminance = sum.luminance();
         if (luminance != glm::dvec3(0.0))
-            lights_.push_back(
-                {.cluster = cluster, .direction = glm::normalize(luminance), .irradiance = sum});
+            lights_.push_back({.cluster = cluster,
+                               .cell = cell,
+                               .direction = glm::normalize(luminance),
+                               .irradiance = sum});
     }
 
     const cubemap::CubeMap& environment_;

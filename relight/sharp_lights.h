@@ -30,6 +30,7 @@ struct ShadowRays {
 /// One such light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel).
 struct SharpLight {
     std::uint32_t cluster = 0;
+    prt::Cell cell = {};
     glm::dvec3 direction{0.0, 0.0, 1.0}; ///< unit
     VectorIrradiance irradiance;         ///< taken out of the cluster's own
     bool operator==(const SharpLight&) const = default;

@@ -1,0 +1,146 @@
+#include "relight/contribution.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+namespace relumine::relight {
+
+namespace {
+
+/// Texels whose centres lie in a cell; where there is none, the texel that the cell's centre lies in.
+struct TexelSpan {
+    std::uint32_t x0, y0, x1, y1;
+};
+
+std::pair<std::uint32_t, std::uint32_t> centres_between(double low, double high, std::uint32_t resolution) {
+    const double r = resolution;
+    const auto begin = static_cast<std::uint32_t>(std::ceil(low * r - 0.5));
+    const auto end = static_cast<std::uint32_t>(std::ceil(high * r - 0.5));
+    if (begin < end)
+        return {begin, end};
+    const auto middle = std::min(static_cast<std::uint32_t>(0.5 * (low + high) * r), resolution - 1);
+    return {middle, middle + 1};
+}
+
+TexelSpan texels_of(const prt::Cell& cell, std::uint32_t resolution) {
+    const double size = cell.size();
+    const auto [x0, x1] = centres_between(cell.x * size, (cell.x + 1) * size, resolution);
+    const auto [y0, y1] = centres_between(cell.y * size, (cell.y + 1) * size, resolution);
+    return {x0, y0, x1, y1};
+}
+
+/// Spreads contributions over the texels they come from.
+class Spreader {
+public:
+    explicit Spreader(const cubemap::CubeMap& environment)
+        : environment_(environment), map_(environment.resolution), taken_(environment.texels.size()),
+          solid_angles_(cubemap::texel_solid_angles(environment.resolution)) {}
+
+    /// Adds `radiance`, which came from the cell, to its texels that are not taken yet, by their radiance.
+    void spread(const prt::Cell& cell, const glm::dvec3& radiance, bool take) {
+        if (radiance == glm::dvec3(0.0))
+            return;
+        const TexelSpan span = texels_of(cell, environment_.resolution);
+        glm::dvec3 power(0.0);
+        double solid_angle = 0.0;
+        for_each(cell.face, span, [&](std::size_t texel, double dw) {
+            power += glm::dvec3(environment_.texels[texel]) * dw;
+            solid_angle += dw;
+        });
+        for_each(cell.face, span, [&](std::size_t texel, double) {
+            for (int channel = 0; channel < 3; ++channel) {
+                // A cell smaller than a texel may have its light from a texel whose centre is elsewhere.
+                const double share =
+                    power[channel] > 0.0
+                        ? static_cast<double>(environment_.texels[texel][channel]) / power[channel]
+                        : 1.0 / solid_angle;
+                map_.texels[texel][channel] += static_cast<float>(radiance[channel] * share);
+            }
+        });
+        if (take)
+            for_each(cell.face, span, [&](std::size_t texel, double) { taken_[texel] = true; });
+    }
+
+    cubemap::CubeMap take() { return std::move(map_); }
+
+private:
+    template<class Visit>
+    void for_each(cubemap::Face face, const TexelSpan& span, const Visit& visit) const {
+        // When sharp lights took all texels of the cluster, what is left of it goes to all.
+        for (const bool all : {false, true}) {
+            bool any = false;
+            for (std::uint32_t y = span.y0; y < span.y1; ++y)
+                for (std::uint32_t x = span.x0; x < span.x1; ++x) {
+                    const std::size_t texel = environment_.index(face, x, y);
+                    if (taken_[texel] && !all)
+                        continue;
+                    visit(texel, solid_angles_[std::size_t{y} * environment_.resolution + x]);
+                    any = true;
+                }
+            if (any)
+                return;
+        }
+    }
+
+    const cubemap::CubeMap& environment_;
+    cubemap::CubeMap map_;
+    std::vector<bool> taken_;
+    std::vector<double> solid_angles_;
+};
+
+} // namespace
+
+cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const std::uint32_t> receivers) {
+    const prt::Transfer& transfer = relighter.transfer();
+    if (receivers.empty())
+        throw std::invalid_argument("expected at least one receiver");
+    std::vector<std::size_t> place_of(transfer.num_receivers());
+    for (std::size_t place = 0; place < place_of.size(); ++place)
+        place_of[transfer.order[place]] = place;
+
+    const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
+    const std::span<const SharpLight> sharp = relighter.sharp_lights();
+    std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
+    std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
+    const double share = 1.0 / static_cast<double>(receivers.size());
+    for (const std::uint32_t receiver : receivers) {
+        if (receiver >= place_of.size())
+            throw std::invalid_argument("expected an index of a receiver");
+        const std::size_t place = place_of[receiver];
+        const glm::dvec3 normal = transfer.normals[place];
+        for (std::size_t cluster = 0; cluster < cells.size(); ++cluster) {
+            const double count = share * transfer.counts.count(place, cluster);
+            const float* e = relighter.cluster_lights().vectors.data() + cluster * ClusterLights::Stride;
+            for (int channel = 0; channel < 3; ++channel, e += 3)
+                from_cluster[cluster][channel] +=
+                    count * std::max(0.0, normal.x * static_cast<double>(e[0]) +
+                                              normal.y * static_cast<double>(e[1]) +
+                                              normal.z * static_cast<double>(e[2]));
+        }
+        const ShadowRays& rays = relighter.shadow_rays();
+        for (std::size_t i = 0; i < sharp.size(); ++i)
+            from_sharp[i] +=
+                share *
+                SharpLightPackets(sharp.subspan(i, 1)).radiance(rays.positions[receiver], normal, rays);
+    }
+
+    Spreader spreader(relighter.environment());
+    for (std::size_t i = 0; i < sharp.size(); ++i)
+        spreader.spread(sharp[i].cell, from_sharp[i], true);
+    for (std::size_t cluster = 0; cluster < cells.size(); ++cluster)
+        spreader.spread(cells[cluster], from_cluster[cluster], false);
+    return spreader.take();
+}
+
+std::vector<glm::vec3> radiance_from(const Relighter& relighter, std::span<const float> weights) {
+    cubemap::CubeMap part = relighter.environment();
+    if (weights.size() != part.texels.size())
+        throw std::invalid_argument("expected one weight per texel");
+    for (std::size_t texel = 0; texel < weights.size(); ++texel)
+        part.texels[texel] *= weights[texel];
+    return relight(relighter.transfer(), part, relighter.shadow_rays());
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,88 @@
+// Lighting design: a base environment, light layers over it, and a scene that follows every change.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <shared_mutex>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/layer_composite.h"
+#include "cubemap/light_layer.h"
+#include "prt/transfer.h"
+#include "relight/relighter.h"
+
+namespace relumine::relight {
+
+/// Keeps a scene lit by base + layers. A change of layers is composited and relit only where it falls: dirty rectangles per face, the
+/// quadtree's clusters under them, B += (L' - L) T_C [JN, Section 5.2]. In steady state (same sizes as before) an edit of a
+/// layer allocates nothing.
+///
+/// Threads: one writer at a time may call what is not const. snapshot() may be called from any thread at any moment, while the writer
+/// works too; it never sees half an update.
+class LightEditor {
+public:
+    /// Arguments as for Relighter; the transfer must outlive the editor.
+    explicit LightEditor(const prt::Transfer& transfer, const ShadowRays& rays = {});
+
+    /// Replaces the base environment and relights everything. Layers and history stay.
+    RelightTimes set_base(cubemap::CubeMap base);
+
+    /// Turns base and layers together about +Y, from their unturned state, and relights everything. Layers keep the directions they were
+    /// given; those are before the turn.
+    RelightTimes set_rotation(double degrees_about_y);
+    [[nodiscard]] double rotation() const { return rotation_degrees_; }
+
+    /// The layers, bottom first.
+    [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return layers_; }
+
+    /// Replaces the list: added, removed, reordered or changed layers, any number, in one update.
+    /// Throws std::invalid_argument for a layer that is not valid; nothing has changed then.
+    UpdateReport set_layers(std::vector<cubemap::LightLayer> layers);
+
+    /// Replaces one layer, as while it is dragged. Throws std::invalid_argument as above, std::out_of_range for an index.
+    UpdateReport set_layer(std::size_t index, const cubemap::LightLayer& layer);
+
+    /// Marks the present layers as a state that undo() comes back to. An edit without a mark is not in the history.
+    void mark();
+    /// Back to the mark before, or forward again; the radiance is bitwise what it was at the mark. An empty report when there is none.
+    UpdateReport undo();
+    UpdateReport redo();
+    [[nodiscard]] bool can_undo() const { return at_ > 0; }
+    [[nodiscard]] bool can_redo() const { return at_ + 1 < history_.size(); }
+
+    /// Radiance (albedo 1) of all receivers after the last complete update, [num_receivers] in the receivers' order. For the writer's thread.
+    [[nodiscard]] std::span<const glm::vec3> radiance() const { return relighter_.radiance(); }
+    /// Copies it, from any thread. `radiance` is resized to [num_receivers].
+    void snapshot(std::vector<glm::vec3>& radiance) const;
+
+    /// Base and layers together, as they light the scene (turned).
+    [[nodiscard]] const cubemap::CubeMap& environment() const { return relighter_.environment(); }
+    [[nodiscard]] const Relighter& relighter() const { return relighter_; }
+
+private:
+    UpdateReport apply(std::span<const cubemap::LightLayer> layers);
+    RelightTimes relight_all();
+    void turn(std::span<const cubemap::LightLayer> layers, std::vector<cubemap::LightLayer>& turned) const;
+    void publish();
+
+    Relighter relighter_;
+    cubemap::CubeMap base_;        ///< as given
+    cubemap::CubeMap turned_base_; ///< empty while there is no rotation
+    double rotation_degrees_ = 0.0;
+    std::vector<cubemap::LightLayer> layers_;        ///< as given
+    std::vector<cubemap::LightLayer> turned_layers_; ///< as they are composited
+    std::vector<cubemap::LightLayer> next_layers_;   ///< scratch: the same after an edit
+    std::vector<cubemap::TexelRectangle> dirty_;     ///< scratch
+    std::vector<std::vector<cubemap::LightLayer>> history_;
+    std::size_t at_ = 0; ///< the history's present
+
+    mutable std::shared_mutex published_mutex_;
+    std::vector<glm::vec3> published_; ///< what snapshot() copies
+    std::vector<glm::vec3> back_;      ///< filled outside of the lock, then swapped in
+};
+
+} // namespace relumine::relight
