@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/texel_rectangle.h"
 #include "prt/transfer.h"
 #include "relight/block_kernels.h"
 #include "relight/cluster_lights.h"
@@ -18,14 +19,7 @@
 
 namespace relumine::relight {
 
-/// Texels [x0, x1) x [y0, y1) of a face.
-struct TexelRectangle {
-    cubemap::Face face = cubemap::Face::PositiveX;
-    std::uint32_t x0 = 0;
-    std::uint32_t y0 = 0;
-    std::uint32_t x1 = 0;
-    std::uint32_t y1 = 0;
-};
+using cubemap::TexelRectangle;
 
 /// Where the time of set_environment() went.
 struct RelightTimes {
