@@ -1,7 +1,9 @@
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -46,14 +48,31 @@ std::optional<relight::TexelRectangle> texels_in_disc(cubemap::Face face, std::u
     return box;
 }
 
+/// Refuses what cannot be written before any work is done.
+void check_saved_environment(const Options& options) {
+    const std::string& path = options.saved_environment;
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (extension != ".exr" && extension != ".hdr")
+        throw std::runtime_error(
+            fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path, extension));
+    if (std::filesystem::path(path).lexically_normal() ==
+        std::filesystem::path(options.output.path).lexically_normal())
+        throw std::runtime_error(fmt::format("{}: expected another name than the output's", path));
+    check_output(path, {options.scene.path, options.environment.path});
+}
+
 void run(const Options& options, Session& session) {
-    options.output.check();
+    options.output.check({options.scene.path, options.environment.path});
+    if (!options.saved_environment.empty())
+        check_saved_environment(options);
     const glm::vec3 direction = parse_vec3("--disc", options.direction);
     if (!(glm::length(direction) > 0.0f))
         throw CLI::ValidationError("--disc", "expected a direction, got 0,0,0");
     const bool is_grey = options.gain.find(',') == std::string::npos;
     const glm::vec3 gain =
         parse_vec3("--gain", is_grey ? fmt::format("{0},{0},{0}", options.gain) : options.gain);
+    if (!(gain.r >= 0.0f && gain.g >= 0.0f && gain.b >= 0.0f))
+        throw CLI::ValidationError("--gain", fmt::format("expected numbers >= 0, got '{}'", options.gain));
 
     const LitScene lit(options.scene);
     const prt::Scene& scene = lit.scene();
@@ -110,7 +129,7 @@ void add_edit(CLI::App& program, Session& session) {
                     "centre of the disc: direction X,Y,Z from the scene to the light")
         ->required();
     command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
-        ->check(CLI::Range(0.0, 180.0))
+        ->check(number_between(0.0, 180.0))
         ->capture_default_str();
     command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
         ->capture_default_str();

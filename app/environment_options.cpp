@@ -37,6 +37,7 @@ void EnvironmentOptions::add_to(CLI::App& command) {
                      "replace NaN and negative radiance by 0, infinite by the largest finite");
     command
         .add_option("--rotate", rotate_degrees, "turn the environment about +Y, degrees: +Z goes to +X at 90")
+        ->check(number_between(-36000.0, 36000.0))
         ->capture_default_str();
 }
 

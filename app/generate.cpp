@@ -1,6 +1,8 @@
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,10 +24,18 @@ struct Options {
     std::uint32_t face_resolution = 256;
 };
 
+void make_folder(const std::string& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        throw std::runtime_error(fmt::format("{}: cannot make the folder: {}", path, error.message()));
+}
+
 void write_scene(const data_gen::Scene& scene, const Options& options, Session& session,
                  nlohmann::json& files) {
     const mesh::TriangleMesh mesh = scene.make(options.num_vertices);
     session.poll();
+    make_folder(options.folder);
     const std::filesystem::path path =
         std::filesystem::path(options.folder) / fmt::format("{}.ply", scene.name);
     mesh::save(path, mesh, std::vector<glm::vec3>(mesh.num_vertices(), glm::vec3(1.0f)));
@@ -39,6 +49,7 @@ void write_environment(const data_gen::Environment& environment, const Options& 
                        nlohmann::json& files) {
     const cubemap::CubeMap map = environment.make(options.face_resolution);
     session.poll();
+    make_folder(options.folder);
     const std::filesystem::path folder = options.folder;
     for (const auto& [path, layout] :
          {std::pair{folder / fmt::format("{}.exr", environment.name), cubemap::Layout::Cube},
@@ -50,7 +61,6 @@ void write_environment(const data_gen::Environment& environment, const Options& 
 }
 
 void run(const Options& options, Session& session) {
-    std::filesystem::create_directories(options.folder);
     nlohmann::json files = nlohmann::json::array();
     for (const data_gen::Scene& scene : data_gen::scenes())
         if (options.name == scene.name || options.name == "all")
@@ -85,6 +95,7 @@ void add_generate(CLI::App& program, Session& session) {
     command.add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
         ->required();
     command.add_option("--vertices", options->num_vertices, "vertices of a scene, met within a few per cent")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
     command
         .add_option("--face-resolution", options->face_resolution,

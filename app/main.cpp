@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
@@ -49,13 +50,24 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "relumine: {}\n", one_line(message));
         return 1;
     };
+    // What was printed may still be in the buffer: a full disk behind `> file` shows only here.
+    const auto done = [&] {
+        if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0)
+            return fail("cannot write to standard output");
+        return 0;
+    };
     try {
         program.parse(argc, argv);
-        return 0;
+        return done();
     } catch (const CLI::Success& success) { // --help, --version
-        return program.exit(success);
+        program.exit(success);
+        return done();
     } catch (const CLI::ParseError& error) {
-        fmt::print(stderr, "relumine: {} (see relumine --help)\n", one_line(error.what()));
+        const std::vector<std::string> rest = program.remaining();
+        const bool no_subcommand = program.get_subcommands().empty() && !rest.empty();
+        fmt::print(stderr, "relumine: {} (see relumine --help)\n",
+                   one_line(no_subcommand ? fmt::format("expected a subcommand, got '{}'", rest.front())
+                                          : error.what()));
         return 2;
     } catch (const prt::Cancelled&) {
         return fail("cancelled; nothing was written");

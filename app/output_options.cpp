@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,21 +47,31 @@ relight::Camera camera_of(const OutputOptions& options, const mesh::TriangleMesh
     return camera;
 }
 
+/// The factor of --albedo, nothing for the mesh's own colours.
+std::optional<glm::vec3> parse_albedo(const std::string& text) {
+    if (text == "mesh")
+        return std::nullopt;
+    const bool is_grey = text.find(',') == std::string::npos;
+    const glm::vec3 factor = parse_vec3("--albedo", is_grey ? fmt::format("{0},{0},{0}", text) : text);
+    if (!(factor.r >= 0.0f && factor.g >= 0.0f && factor.b >= 0.0f))
+        throw CLI::ValidationError("--albedo", fmt::format("expected numbers >= 0, got '{}'", text));
+    return factor;
+}
+
 /// Radiance times albedo: one factor for all, or the mesh's own colours.
 std::vector<glm::vec3> coloured(const std::string& albedo, const mesh::TriangleMesh& mesh,
                                 std::span<const glm::vec3> radiance) {
     std::vector<glm::vec3> result(radiance.begin(), radiance.end());
-    if (albedo == "mesh") {
+    const std::optional<glm::vec3> factor = parse_albedo(albedo);
+    if (!factor) {
         if (mesh.colors.empty())
             throw std::runtime_error("--albedo mesh: expected a mesh with vertex colours, got one without");
         for (std::size_t i = 0; i < result.size(); ++i)
             result[i] *= mesh.colors[i];
         return result;
     }
-    const bool is_grey = albedo.find(',') == std::string::npos;
-    const glm::vec3 factor = parse_vec3("--albedo", is_grey ? fmt::format("{0},{0},{0}", albedo) : albedo);
     for (glm::vec3& value : result)
-        value *= factor;
+        value *= *factor;
     return result;
 }
 
@@ -76,6 +88,7 @@ void OutputOptions::add_to(CLI::App& command) {
                     "reflectance: a number, R,G,B, or `mesh` for the mesh's vertex colours")
         ->capture_default_str();
     command.add_option("--exposure", exposure_ev, "brighten pictures and colours by this many stops")
+        ->check(number_between(-100.0, 100.0))
         ->capture_default_str();
     command.add_option("--eye", eye, "camera position X,Y,Z (automatic)");
     command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)");
@@ -83,14 +96,15 @@ void OutputOptions::add_to(CLI::App& command) {
     command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str();
 }
 
-void OutputOptions::check() const {
+void OutputOptions::check(const std::vector<std::string>& inputs) const {
     constexpr std::array<const char*, 5> Known = {".png", ".exr", ".ply", ".glb", ".npy"};
     const std::string extension = std::filesystem::path(path).extension().string();
     if (std::find(Known.begin(), Known.end(), extension) == Known.end())
         throw std::runtime_error(
             fmt::format("{}: expected .png, .exr, .ply, .glb or .npy, got '{}'", path, extension));
-    files::OutputFile{std::filesystem::path(path)};
+    check_output(path, inputs);
     static_cast<void>(parse_size(size));
+    static_cast<void>(parse_albedo(albedo));
     for (const auto& [option, text] : {std::pair{"--eye", &eye}, std::pair{"--target", &target}})
         if (!text->empty())
             static_cast<void>(parse_vec3(option, *text));
@@ -114,6 +128,16 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
         relight::save_npy(path, colors);
     else
         mesh::save(path, scene.mesh, colors);
+}
+
+void check_output(const std::string& path, const std::vector<std::string>& inputs) {
+    for (const std::string& input : inputs) {
+        std::error_code missing;
+        if (std::filesystem::equivalent(path, input, missing))
+            throw std::runtime_error(
+                fmt::format("{}: expected an output other than the input {}", path, input));
+    }
+    files::OutputFile{std::filesystem::path(path)};
 }
 
 } // namespace relumine::app

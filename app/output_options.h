@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <glm/vec3.hpp>
@@ -25,12 +26,15 @@ struct OutputOptions {
 
     void add_to(CLI::App& command);
 
-    /// Refuses what cannot be written before any work is done.
-    void check() const;
+    /// Refuses what cannot be written, or is one of the inputs, before any work is done.
+    void check(const std::vector<std::string>& inputs) const;
 
     /// Writes by extension: .png .exr pictures, .ply .glb meshes with vertex colours, .npy numbers.
     void save(const LitScene& lit, std::span<const glm::vec3> radiance,
               const cubemap::CubeMap& environment) const;
 };
+
+/// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever name.
+void check_output(const std::string& path, const std::vector<std::string>& inputs);
 
 } // namespace relumine::app

@@ -3,12 +3,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "files/output_file.h"
+#include "app/output_options.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
 #include "prt/ray_scene.h"
@@ -31,7 +32,9 @@ struct Options {
 void run(const Options& options, Session& session) {
     Stopwatch watch;
     // Found out now, not after a minute of work.
-    files::OutputFile(options.output);
+    if (std::filesystem::path(options.output).extension() != ".prt")
+        throw std::runtime_error(fmt::format("{}: expected a name that ends in .prt", options.output));
+    check_output(options.output, {options.mesh});
 
     prt::Scene scene;
     scene.mesh = mesh::load(options.mesh, options.normals == "smooth" ? mesh::NormalSource::Smooth
@@ -105,6 +108,7 @@ void add_precompute(CLI::App& program, Session& session) {
         ->expected(0, 1)
         ->type_name("[N]");
     command.add_option("--floor-scale", options->floor_scale, "side of the floor over the mesh's width")
+        ->needs("--floor")
         ->capture_default_str();
     command
         .add_option("--normals", options->normals,

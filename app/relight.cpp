@@ -22,7 +22,7 @@ struct Options {
 };
 
 void run(const Options& options, Session& session) {
-    options.output.check();
+    options.output.check({options.scene.path, options.environment.path});
     Stopwatch watch;
     const LitScene lit(options.scene);
     const prt::Scene& scene = lit.scene();

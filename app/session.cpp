@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <sstream>
@@ -23,7 +24,7 @@ double now() {
 }
 
 std::string duration(double seconds) {
-    const auto whole = static_cast<long>(seconds + 0.5);
+    const long whole = std::lround(seconds);
     return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }
 
@@ -128,13 +129,20 @@ glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
     char comma = ',';
     char rest = 0;
     for (int i = 0; i < 3; ++i)
-        if (i > 0 && (!(stream >> comma) || comma != ','))
-            throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
-        else if (!(stream >> result[i]))
+        if ((i > 0 && !(stream >> comma && comma == ',')) || !(stream >> result[i]))
             throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
     if (stream >> rest)
         throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
     return result;
+}
+
+CLI::Validator number_between(double min, double max) {
+    return {[min, max](const std::string& text) {
+                double value = 0.0;
+                const bool inside = CLI::detail::lexical_cast(text, value) && value >= min && value <= max;
+                return inside ? std::string() : fmt::format("expected {} to {}, got '{}'", min, max, text);
+            },
+            fmt::format("{} to {}", min, max)};
 }
 
 std::uint64_t peak_bytes() {

@@ -66,8 +66,11 @@ void add_verify(CLI::App& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command);
     command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
+        ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command.add_option("--seed", options->seed, "seed of the choice")->capture_default_str();
+    command.add_option("--seed", options->seed, "seed of the choice")
+        ->check(CLI::NonNegativeNumber)
+        ->capture_default_str();
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -42,6 +43,8 @@ CubeMap permuted(const CubeMap& map, const Turn& source_from_destination) {
 } // namespace
 
 CubeMap rotated(const CubeMap& map, double degrees_about_y) {
+    if (!std::isfinite(degrees_about_y))
+        throw std::invalid_argument("rotation: expected a finite number of degrees");
     const double quarters = degrees_about_y / 90.0;
     if (quarters == std::round(quarters)) {
         const int quarter = static_cast<int>(std::fmod(std::fmod(quarters, 4.0) + 4.0, 4.0));

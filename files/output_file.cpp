@@ -47,8 +47,13 @@ std::pair<int, std::size_t> open_for_reading(const std::filesystem::path& path) 
 } // namespace
 
 OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
-    if (std::filesystem::is_directory(target_))
-        fail(target_, "write", EISDIR);
+    // Renaming over a pipe or a device would put a file in its place.
+    struct stat status {};
+    if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
+        if (S_ISDIR(status.st_mode))
+            fail(target_, "write", EISDIR);
+        throw std::runtime_error(fmt::format("{}: cannot write: not a regular file", target_.string()));
+    }
     // mkstemp chooses a name that no other process has; the extension is kept for writers that look at it.
     const std::string extension = target_.extension().string();
     std::string name =
