@@ -18,8 +18,8 @@
 namespace relumine::relight {
 
 /// Keeps a scene lit by base + layers. A change of layers is composited and relit only where it falls: dirty rectangles per face, the
-/// quadtree's clusters under them, B += (L' - L) T_C [JN, Section 5.2]. In steady state (same sizes as before) an edit of a
-/// layer allocates nothing.
+/// quadtree's clusters under them, B += (L' - L) T_C [JN, Section 5.2]. An edit of a layer allocates kilobytes at most (the
+/// layers' geometry), nothing per texel, cluster or receiver.
 ///
 /// Threads: one writer at a time may call what is not const. snapshot() may be called from any thread at any moment, while the writer
 /// works too; it never sees half an update.
@@ -66,6 +66,10 @@ public:
 private:
     UpdateReport apply(std::span<const cubemap::LightLayer> layers);
     RelightTimes relight_all();
+    UpdateReport go_to(std::size_t mark);
+    [[nodiscard]] const cubemap::CubeMap& turned_base() const {
+        return rotation_degrees_ == 0.0 ? base_ : turned_base_;
+    }
     void turn(std::span<const cubemap::LightLayer> layers, std::vector<cubemap::LightLayer>& turned) const;
     void publish();
 

@@ -1,0 +1,168 @@
+#include "relight/light_editor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+namespace relumine::relight {
+
+namespace {
+
+glm::dvec3 turned(const glm::dvec3& w, double degrees) {
+    const double angle = degrees * std::numbers::pi / 180.0;
+    return {std::cos(angle) * w.x + std::sin(angle) * w.z, w.y,
+            std::cos(angle) * w.z - std::sin(angle) * w.x};
+}
+
+struct TurnRegion {
+    double degrees;
+    void operator()(cubemap::Disc& disc) const { disc.direction = turned(disc.direction, degrees); }
+    void operator()(cubemap::Rectangle& box) const {
+        // An upright box stays upright; straight above or below, where upright is a convention, it turns on the spot.
+        if (box.direction.x == 0.0 && box.direction.z == 0.0)
+            box.roll_degrees += box.direction.y > 0.0 ? -degrees : degrees;
+        box.direction = turned(box.direction, degrees);
+    }
+    void operator()(cubemap::Lasso& lasso) const { turn_points(lasso.points); }
+    void operator()(cubemap::Stroke& stroke) const { turn_points(stroke.points); }
+    void turn_points(std::vector<glm::dvec3>& points) const {
+        for (glm::dvec3& point : points)
+            point = turned(point, degrees);
+    }
+};
+
+} // namespace
+
+LightEditor::LightEditor(const prt::Transfer& transfer, const ShadowRays& rays)
+    : relighter_(transfer, rays), history_(1) {}
+
+RelightTimes LightEditor::set_base(cubemap::CubeMap base) {
+    base_ = std::move(base);
+    return relight_all();
+}
+
+RelightTimes LightEditor::set_rotation(double degrees_about_y) {
+    if (!std::isfinite(degrees_about_y))
+        throw std::invalid_argument("expected a finite rotation");
+    rotation_degrees_ = degrees_about_y;
+    return relight_all();
+}
+
+RelightTimes LightEditor::relight_all() {
+    if (base_.resolution == 0)
+        return {};
+    turned_base_ = rotation_degrees_ == 0.0 ? cubemap::CubeMap() : cubemap::rotated(base_, rotation_degrees_);
+    turn(layers_, turned_layers_);
+    cubemap::CubeMap environment = turned_base();
+    cubemap::composite(turned_base(), turned_layers_, cubemap::all_texels(environment.resolution),
+                       environment);
+    const RelightTimes times = relighter_.set_environment(std::move(environment));
+    publish();
+    return times;
+}
+
+void LightEditor::turn(std::span<const cubemap::LightLayer> layers,
+                       std::vector<cubemap::LightLayer>& turned) const {
+    turned.assign(layers.begin(), layers.end());
+    if (rotation_degrees_ != 0.0)
+        for (cubemap::LightLayer& layer : turned)
+            std::visit(TurnRegion{rotation_degrees_}, layer.region);
+}
+
+UpdateReport LightEditor::set_layers(std::vector<cubemap::LightLayer> layers) {
+    for (const cubemap::LightLayer& layer : layers)
+        cubemap::validate(layer);
+    const UpdateReport report = apply(layers);
+    layers_ = std::move(layers);
+    return report;
+}
+
+UpdateReport LightEditor::set_layer(std::size_t index, const cubemap::LightLayer& layer) {
+    cubemap::LightLayer& target = layers_.at(index);
+    cubemap::validate(layer);
+    target = layer;
+    return apply(layers_);
+}
+
+UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
+    turn(layers, next_layers_);
+    if (base_.resolution == 0) {
+        std::swap(turned_layers_, next_layers_);
+        return {};
+    }
+    // Layers at the same place in both lists that are equal change nothing; all others dirty what they cover, before and after. A layer that
+    // moved within the list is compared with its new neighbour, and so dirtied.
+    dirty_.clear();
+    const auto add = [&](const cubemap::LightLayer& layer) {
+        const std::vector<cubemap::TexelRectangle> touched = cubemap::touched_texels(layer, base_.resolution);
+        dirty_.insert(dirty_.end(), touched.begin(), touched.end());
+    };
+    const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
+    for (std::size_t i = 0; i < num_places; ++i) {
+        const bool both = i < turned_layers_.size() && i < next_layers_.size();
+        if (both && turned_layers_[i] == next_layers_[i])
+            continue;
+        if (i < turned_layers_.size())
+            add(turned_layers_[i]);
+        if (i < next_layers_.size())
+            add(next_layers_[i]);
+    }
+    std::swap(turned_layers_, next_layers_);
+    if (dirty_.empty())
+        return {};
+    const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
+        cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
+    });
+    publish();
+    return report;
+}
+
+void LightEditor::mark() {
+    history_.resize(at_ + 1);
+    if (!std::equal(layers_.begin(), layers_.end(), history_[at_].begin(), history_[at_].end())) {
+        history_.push_back(layers_);
+        ++at_;
+    }
+    // A mark is a state to come back to bit by bit, however one came there.
+    if (base_.resolution != 0) {
+        relighter_.resum();
+        publish();
+    }
+}
+
+UpdateReport LightEditor::undo() {
+    return can_undo() ? go_to(at_ - 1) : UpdateReport{};
+}
+
+UpdateReport LightEditor::redo() {
+    return can_redo() ? go_to(at_ + 1) : UpdateReport{};
+}
+
+UpdateReport LightEditor::go_to(std::size_t mark) {
+    at_ = mark;
+    layers_ = history_[at_];
+    const UpdateReport report = apply(layers_);
+    if (base_.resolution != 0) {
+        relighter_.resum();
+        publish();
+    }
+    return report;
+}
+
+void LightEditor::publish() {
+    const std::span<const glm::vec3> radiance = relighter_.radiance();
+    back_.assign(radiance.begin(), radiance.end());
+    const std::unique_lock lock(published_mutex_);
+    std::swap(published_, back_);
+}
+
+void LightEditor::snapshot(std::vector<glm::vec3>& radiance) const {
+    const std::shared_lock lock(published_mutex_);
+    radiance.assign(published_.begin(), published_.end());
+}
+
+} // namespace relumine::relight
