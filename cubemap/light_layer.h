@@ -11,6 +11,8 @@
 
 #include <glm/vec3.hpp>
 
+#include "cubemap/picture.h"
+
 namespace relumine::cubemap {
 
 /// Directions within an angle of one. Coverage is 1 within radius (1 - softness) and falls smoothly (a smoothstep of the
@@ -68,31 +70,6 @@ struct Gain {
     glm::vec3 tint{1.0f};
     bool operator==(const Gain&) const = default;
 };
-
-/// A decoded picture and its halved copies, for filtering. Immutable, so layers and their history share it.
-class Picture {
-public:
-    struct Level {
-        std::uint32_t width = 0;
-        std::uint32_t height = 0;
-        std::vector<glm::vec3> pixels; ///< [height * width] row by row from the top; linear RGB radiance
-        bool operator==(const Level&) const = default;
-    };
-
-    /// Throws std::invalid_argument for a wrong number of pixels or radiance that is negative or not finite.
-    Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels);
-
-    [[nodiscard]] const std::vector<Level>& levels() const {
-        return levels_;
-    } ///< full size first, 1 x 1 last
-    bool operator==(const Picture&) const = default;
-
-private:
-    std::vector<Level> levels_;
-};
-
-/// Reads an .exr or .hdr file as a picture, whatever its shape. Throws std::runtime_error "path: expected X, got Y".
-[[nodiscard]] std::shared_ptr<const Picture> load_picture(const std::filesystem::path& path);
 
 /// A picture placed on a Rectangle (no other region), seen upright from the centre of the sphere.
 struct ImagePatch {

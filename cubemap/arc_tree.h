@@ -1,0 +1,56 @@
+// Great-circle arcs in the order of a line, in a tree of balls: the distance to the nearest in logarithmic time.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace relumine::cubemap {
+
+/// Distances are chords (straight through the sphere), so they obey the triangle inequality and need no arctangents.
+class ArcTree {
+public:
+    /// Arcs between neighbours of unit points, and from the last to the first if closed. One point is an arc of no length.
+    ArcTree(std::span<const glm::dvec3> points, bool closed);
+
+    /// Squared chord from a unit direction to the nearest arc, or `limit` if none is nearer.
+    [[nodiscard]] double squared_distance(const glm::dvec3& w,
+                                          double limit = std::numeric_limits<double>::max()) const;
+
+    /// Whether two or more arcs come within a chord of a unit direction.
+    [[nodiscard]] bool several_within(const glm::dvec3& w, double chord) const;
+
+    /// Sets plane coordinates of the arcs' ends, [number of arcs] starts; arc i ends where arc i + 1 starts.
+    void set_plane(std::span<const glm::dvec2> starts);
+
+    /// Even-odd rule for a point of that plane. Only for closed lines.
+    [[nodiscard]] bool encloses(const glm::dvec2& point) const;
+
+private:
+    struct Arc {
+        glm::dvec3 from{0.0}, to{0.0};
+        glm::dvec3 normal{0.0}; ///< unit, of the great circle; zero for an arc of no length
+        glm::dvec3 after_from{0.0}, before_to{0.0}; ///< normals of the planes that bound the arc's lune
+        glm::dvec3 middle{0.0};
+        double half_chord = 0.0; ///< from the middle to an end
+        glm::dvec2 plane_from{0.0}, plane_to{0.0};
+        [[nodiscard]] double squared_distance(const glm::dvec3& w) const;
+    };
+    /// Arcs [begin, end) within a ball; its first child follows it, the second is at `second` (0: a leaf).
+    struct Node {
+        glm::dvec3 centre{0.0};
+        double radius = 0.0;
+        double low = 0.0, high = 0.0; ///< range of the second plane coordinate
+        std::uint32_t begin = 0, end = 0, second = 0;
+    };
+    void build(std::uint32_t begin, std::uint32_t end);
+
+    std::vector<Arc> arcs_;
+    std::vector<Node> nodes_;
+};
+
+} // namespace relumine::cubemap

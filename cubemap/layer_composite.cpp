@@ -1,0 +1,205 @@
+#include "cubemap/layer_composite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+
+#include <fmt/format.h>
+#include <tbb/blocked_range2d.h>
+#include <tbb/parallel_for.h>
+
+#include "cubemap/texel_range.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+/// Tiles are cut from the whole face, not from the rectangles, so that every texel meets the same tests wherever rectangles begin.
+/// 32 x 32: a disc of 100 texels' radius has about as many tiles at its rim as inside it.
+constexpr std::uint32_t TileSize = 32;
+
+/// A layer's effect with its gain multiplied in.
+struct Light {
+    glm::vec3 radiance;
+    void operator()(glm::vec3& texel, float coverage) const { texel += coverage * radiance; }
+};
+struct Filter {
+    glm::vec3 factor;
+    void operator()(glm::vec3& texel, float coverage) const {
+        texel *= 1.0f + coverage * (factor - 1.0f);
+    }
+};
+struct Patch {
+    const Picture* picture;
+    bool replace;
+    float gain;
+};
+using PreparedEffect = std::variant<Light, Filter, Patch>;
+
+struct PreparedLayer {
+    RegionShape region;
+    PreparedEffect effect;
+};
+
+PreparedLayer prepared(const LightLayer& layer) {
+    validate(layer);
+    const auto gain = static_cast<float>(std::exp2(layer.gain_ev));
+    struct Prepare {
+        float gain;
+        PreparedEffect operator()(const Emit& emit) const { return Light{gain * emit.radiance}; }
+        PreparedEffect operator()(const Gain& effect) const {
+            return Filter{gain * effect.factor * effect.tint};
+        }
+        PreparedEffect operator()(const ImagePatch& patch) const {
+            return Patch{patch.picture.get(), patch.blend == ImagePatch::Blend::Replace, gain};
+        }
+    };
+    return {shape(layer.region), std::visit(Prepare{gain}, layer.effect)};
+}
+
+/// Calls texel(x, y, coverage) for the covered texels of a range that lie in the rectangle.
+template<typename Shape, typename Texel>
+void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& range,
+                 const TexelRectangle& rectangle, const Texel& texel) {
+    const TexelRange part = range.within(rectangle);
+    if (part.empty())
+        return;
+    const Overlap overlap = bound(shape, grid, range);
+    if (overlap == Overlap::None)
+        return;
+    if (overlap == Overlap::All) {
+        for (std::uint32_t y = part.y0; y < part.y1; ++y) {
+            for (std::uint32_t x = part.x0; x < part.x1; ++x)
+                texel(x, y, 1.0);
+        }
+    } else if (range.is_texel()) {
+        const double mean = mean_coverage(shape, grid.plane, grid.cell(range.x0, range.y0));
+        if (mean > 0.0)
+            texel(range.x0, range.y0, mean);
+    } else {
+        for (int i = 0; i < 4; ++i)
+            for_covered(shape, grid, range.quarter(i), rectangle, texel);
+    }
+}
+
+/// Mean over a texel of coverage times the picture, without gain: the picture at a level of about the texel's fineness, over
+/// 4 x 4 parts of it.
+glm::dvec3 mean_picture(const RectangleShape& rectangle, const Picture& picture, const FaceGrid& grid,
+                        const Cell& texel, double coverage) {
+    constexpr int NumParts = 4;
+    const glm::dvec3 middle = grid.plane.direction(texel.u, texel.v);
+    // Half a texel's side as a part of the picture's, and the level whose pixels are just larger.
+    const double side = 0.5 * std::sqrt(texel.solid_angle() / rectangle.solid_angle_of_picture(middle));
+    const Picture::Level& full = picture.levels().front();
+    const double pixels = std::max(1.0, side * std::max(full.width, full.height));
+    const std::size_t level =
+        std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))), picture.levels().size() - 1);
+    glm::dvec3 sum(0.0);
+    for (int row = 0; row < NumParts; ++row) {
+        for (int column = 0; column < NumParts; ++column) {
+            const Cell part{texel.u + texel.half * ((2 * column + 1.0) / NumParts - 1.0),
+                            texel.v + texel.half * ((2 * row + 1.0) / NumParts - 1.0), texel.half / NumParts};
+            const double covered = coverage == 1.0
+                                       ? part.solid_angle()
+                                       : detail::covered_solid_angle(rectangle, grid.plane, part);
+            if (covered > 0.0)
+                sum += covered * picture.sample(level, rectangle.picture_position(
+                                                           grid.plane.direction(part.u, part.v)));
+        }
+    }
+    return sum / texel.solid_angle();
+}
+
+void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& tile,
+           const TexelRectangle& rectangle, CubeMap& target) {
+    if (const auto* patch = std::get_if<Patch>(&layer.effect)) {
+        const auto& region = std::get<RectangleShape>(layer.region);
+        for_covered(region, grid, tile, rectangle, [&](std::uint32_t x, std::uint32_t y, double coverage) {
+            const glm::dvec3 light =
+                mean_picture(region, *patch->picture, grid, grid.cell(x, y), coverage);
+            glm::vec3& texel = target.at(grid.face, x, y);
+            texel = texel * static_cast<float>(patch->replace ? 1.0 - coverage : 1.0) +
+                    patch->gain * glm::vec3(light);
+        });
+        return;
+    }
+    const auto change = [&](const auto& effect) {
+        const auto texel = [&](std::uint32_t x, std::uint32_t y, double coverage) {
+            effect(target.at(grid.face, x, y), static_cast<float>(coverage));
+        };
+        std::visit([&](const auto& region) { for_covered(region, grid, tile, rectangle, texel); }, layer.region);
+    };
+    if (const auto* light = std::get_if<Light>(&layer.effect))
+        change(*light);
+    else
+        change(std::get<Filter>(layer.effect));
+}
+
+void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> layers,
+                         const TexelRectangle& rectangle, CubeMap& target) {
+    const FaceGrid grid(rectangle.face, base.resolution);
+    const auto end_tile = [](std::uint32_t texel) {
+        return (texel + TileSize - 1) / TileSize;
+    };
+    const tbb::blocked_range2d<std::uint32_t> tiles(rectangle.y0 / TileSize, end_tile(rectangle.y1),
+                                                    rectangle.x0 / TileSize, end_tile(rectangle.x1));
+    tbb::parallel_for(tiles, [&](const tbb::blocked_range2d<std::uint32_t>& some) {
+        for (std::uint32_t row = some.rows().begin(); row < some.rows().end(); ++row) {
+            for (std::uint32_t column = some.cols().begin(); column < some.cols().end(); ++column) {
+                const TexelRange tile(column * TileSize, row * TileSize, TileSize, base.resolution);
+                const TexelRange part = tile.within(rectangle);
+                for (std::uint32_t y = part.y0; y < part.y1 && &base != &target; ++y)
+                    std::copy_n(&base.at(rectangle.face, part.x0, y), part.x1 - part.x0,
+                                &target.at(rectangle.face, part.x0, y));
+                for (const PreparedLayer& layer : layers)
+                    apply(layer, grid, tile, rectangle, target);
+            }
+        }
+    });
+}
+
+} // namespace
+
+std::vector<TexelRectangle> all_texels(std::uint32_t resolution) {
+    std::vector<TexelRectangle> rectangles;
+    for (const Face face : AllFaces)
+        rectangles.push_back({.face = face, .x0 = 0, .y0 = 0, .x1 = resolution, .y1 = resolution});
+    return rectangles;
+}
+
+void composite(const CubeMap& base, std::span<const LightLayer> layers,
+               std::span<const TexelRectangle> rectangles, CubeMap& target) {
+    if (base.resolution != target.resolution || base.texels.size() != target.texels.size() ||
+        base.texels.size() != NumFaces * std::size_t{base.resolution} * base.resolution)
+        throw std::invalid_argument(fmt::format(
+            "composite: expected maps of one resolution, got {} and {}", base.resolution, target.resolution));
+    for (const TexelRectangle& r : rectangles) {
+        if (r.x0 > r.x1 || r.y0 > r.y1 || r.x1 > base.resolution || r.y1 > base.resolution ||
+            static_cast<std::size_t>(r.face) >= NumFaces)
+            throw std::invalid_argument(
+                fmt::format("composite: expected a rectangle within {0} x {0} texels, got [{1}, {2}) x [{3}, {4})",
+                            base.resolution, r.x0, r.x1, r.y0, r.y1));
+    }
+    std::vector<PreparedLayer> ready;
+    ready.reserve(layers.size());
+    for (const LightLayer& layer : layers) {
+        if (layer.on)
+            ready.push_back(prepared(layer));
+        else
+            validate(layer);
+    }
+    // One rectangle after the other, so that texels of two are never written at the same time.
+    for (const TexelRectangle& rectangle : rectangles) {
+        if (rectangle.x0 < rectangle.x1 && rectangle.y0 < rectangle.y1)
+            composite_rectangle(base, ready, rectangle, target);
+    }
+}
+
+CubeMap composite(const CubeMap& base, std::span<const LightLayer> layers) {
+    CubeMap target(base.resolution);
+    composite(base, layers, all_texels(base.resolution), target);
+    return target;
+}
+
+} // namespace relumine::cubemap
