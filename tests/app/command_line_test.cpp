@@ -68,6 +68,23 @@ TEST_F(CommandLine, WrongUsageExitsWithTwoAndOneLine) {
     misuse({"info", "mesh.obj", "--threads"}, "--threads");
 }
 
+TEST_F(CommandLine, EmptyValuesAreWrongUsage) {
+    // What a script passes when a variable is not set. An empty tolerance must not mean 0.
+    misuse({"precompute", "", "-o", "new.prt"}, "MESH");
+    misuse({"precompute", "mesh.obj", "-o", ""}, "--output");
+    for (const char* option :
+         {"--tolerance", "--epsilon", "--bias", "--min-depth", "--face-resolution", "--threads"})
+        misuse({"precompute", "mesh.obj", "-o", "new.prt", option, ""}, option);
+    misuse({"relight", "", "env.hdr", "-o", "new.npy"}, "SCENE");
+    misuse({"relight", "scene.prt", "", "-o", "new.npy"}, "ENV");
+    for (const char* option :
+         {"--rotate", "--exposure", "--albedo", "--eye", "--target", "--fov", "--size", "--layout"})
+        misuse({"relight", "scene.prt", "env.hdr", "-o", "new.npy", option, ""}, option);
+    misuse({"verify", "scene.prt", "env.hdr", "--samples", ""}, "--samples");
+    misuse({"info", ""}, "FILE");
+    misuse({"generate", "blob", "-o", ""}, "--output");
+}
+
 TEST_F(CommandLine, JsonIsOneObjectOnStdoutAndNothingElse) {
     precompute();
     for (const std::vector<std::string>& arguments : all_) {

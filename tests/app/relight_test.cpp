@@ -194,8 +194,7 @@ TEST_F(Relight, NumbersThatCannotBeMeantAreRefused) {
 }
 
 TEST_F(Relight, UnknownKindsOfOutputAreRefused) {
-    for (const char* name :
-         {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", "", ".npy", "sub/new.npy/"})
+    for (const char* name : {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", ".npy", "sub/new.npy/"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, {"expected"});
 }
 
@@ -237,7 +236,6 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
     fail({"relight", ".", "white.hdr", "-o", "new.npy"}, {"cannot read"});
     fail({"relight", "scene.prt", ".", "-o", "new.npy"}, {"cannot read"});
     fail({"relight", "scene.prt", "/dev/zero", "-o", "new.npy"}, {"/dev/zero", "not a regular file"});
-    fail({"relight", "", "white.hdr", "-o", "new.npy"}, {"cannot read"});
     ASSERT_EQ(::mkfifo((folder() / "pipe.hdr").c_str(), 0600), 0);
     EXPECT_LT(fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"}).seconds, 5.0);
 }

@@ -1,0 +1,75 @@
+// `relumine info`: what it tells.
+#include "tests/app/command.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+class Info : public AppTest {
+protected:
+    Info() { write("mesh.obj", octahedron_obj()); }
+};
+
+TEST_F(Info, Mesh) {
+    const nlohmann::json info = succeed({"info", "mesh.obj", "--json"}).json();
+    EXPECT_EQ(info["kind"], "mesh");
+    EXPECT_EQ(info["vertices"], 6);
+    EXPECT_EQ(info["triangles"], 8);
+    EXPECT_EQ(info["min"], (nlohmann::json{-1.0, -1.0, -1.0}));
+    EXPECT_EQ(info["max"], (nlohmann::json{1.0, 1.0, 1.0}));
+    EXPECT_EQ(info["vertices_without_face"], 0);
+    EXPECT_EQ(info["colors"], false);
+    EXPECT_NE(succeed({"info", "mesh.obj"}).out.find("6 vertices, 8 triangles"), std::string::npos);
+}
+
+TEST_F(Info, ExtensionsInCapitals) {
+    write("MESH.OBJ", octahedron_obj());
+    write("ENV.HDR", white_hdr());
+    EXPECT_EQ(succeed({"info", "MESH.OBJ", "--json"}).json()["kind"], "mesh");
+    EXPECT_EQ(succeed({"info", "ENV.HDR", "--json"}).json()["kind"], "environment");
+}
+
+TEST_F(Info, Scene) {
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--tolerance", "0.25",
+             "--min-depth", "2", "--bias", "0.125", "--floor", "4"});
+    const nlohmann::json info = succeed({"info", "scene.prt", "--json"}).json();
+    EXPECT_EQ(info["kind"], "scene");
+    EXPECT_EQ(info["vertices"], 22);
+    EXPECT_EQ(info["tolerance"], 0.25);
+    EXPECT_EQ(info["min_depth"], 2);
+    EXPECT_EQ(info["face_resolution"], 16);
+    EXPECT_EQ(info["bias"], 0.125);
+    EXPECT_EQ(info["floor"], 4);
+    EXPECT_EQ(info["source"], "mesh.obj");
+    EXPECT_FALSE(info.contains("epsilon"));
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--epsilon", "0.5"});
+    EXPECT_EQ(succeed({"info", "scene.prt", "--json"}).json()["epsilon"], 0.5);
+}
+
+TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
+    write("lamp.hdr", lamp_hdr(32)); // +X
+    const nlohmann::json info = succeed({"info", "lamp.hdr", "--json"}).json();
+    EXPECT_EQ(info["width"], 128);
+    EXPECT_EQ(info["height"], 64);
+    EXPECT_EQ(info["face_resolution"], 32);
+    EXPECT_GT(info["brightest_direction"][0], 0.99);
+    EXPECT_EQ(info["max_luminance"], 512.0);
+    EXPECT_EQ(info["samples_on_borders"], false);
+    for (const char* key : {"assumptions", "mean_radiance", "mean_luminance", "dynamic_range_ev", "num_nan",
+                            "num_infinite", "num_negative"})
+        EXPECT_TRUE(info.contains(key)) << key;
+    const Result told = succeed({"info", "lamp.hdr"});
+    for (const char* part : {"lat-long", "assumed", "mean radiance", "brightest", "bad pixels"})
+        EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
+}
+
+TEST_F(Info, LayoutOnRequest) {
+    write("odd.hdr", hdr_file(30, 30, [](std::uint32_t, std::uint32_t) { return Rgb{1.0f, 1.0f, 1.0f}; }));
+    fail({"info", "odd.hdr"}, {"30x30"});
+    EXPECT_EQ(succeed({"info", "odd.hdr", "--layout", "latlong", "--json"}).json()["layout"], "lat-long");
+    fail({"info", "odd.hdr", "--layout", "cube"}, {"odd.hdr", "30x30"});
+    misuse({"info", "odd.hdr", "--layout", "dodecahedron"}, "--layout");
+}
+
+} // namespace
+} // namespace relumine::app

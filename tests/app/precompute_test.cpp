@@ -1,0 +1,152 @@
+// `relumine precompute`: options and what it refuses.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include "tests/app/command.h"
+#include "tests/app/formats.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Precompute : public AppTest {
+protected:
+    Precompute() {
+        write("mesh.obj", octahedron_obj());
+        write("white.hdr", white_hdr());
+    }
+    /// The command line for new.prt, at R = 16 unless the options say otherwise.
+    [[nodiscard]] static std::vector<std::string> command(const std::vector<std::string>& options) {
+        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", "new.prt"};
+        if (options.empty() || options[0] != "--face-resolution")
+            arguments.insert(arguments.end(), {"--face-resolution", "16"});
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        return arguments;
+    }
+    [[nodiscard]] nlohmann::json made(std::vector<std::string> options) const {
+        options.emplace_back("--json");
+        return succeed(command(options)).json();
+    }
+};
+
+TEST_F(Precompute, AllKeysOfTheReport) {
+    const nlohmann::json report = made({});
+    for (const char* key :
+         {"vertices", "triangles", "clusters", "samples", "rays", "seconds", "peak_bytes", "file_bytes"}) {
+        ASSERT_TRUE(report.contains(key)) << key;
+        EXPECT_TRUE(report[key].is_number()) << key;
+    }
+    EXPECT_EQ(report["vertices"], 6);
+    EXPECT_EQ(report["triangles"], 8);
+    EXPECT_EQ(report["file_bytes"], fs::file_size(folder() / "new.prt"));
+}
+
+TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
+    EXPECT_EQ(made({"--floor", "5"})["vertices"], 6 + 25);
+    EXPECT_EQ(made({"--floor", "5"})["triangles"], 8 + 32);
+    EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["floor"], 5);
+    // Without a number, last on the line or before another option.
+    EXPECT_EQ(made({"--min-depth", "1", "--tolerance", "0.2", "--floor"})["vertices"], 6 + 193 * 193);
+    EXPECT_EQ(made({"--floor", "3", "--floor-scale", "8"})["vertices"], 6 + 9);
+}
+
+TEST_F(Precompute, ToleranceAndDepthChangeTheClusters) {
+    EXPECT_EQ(made({"--tolerance", "1", "--min-depth", "0"})["clusters"], 6);
+    EXPECT_EQ(made({"--tolerance", "1", "--min-depth", "2"})["clusters"], 6 * 16);
+    EXPECT_EQ(made({"--tolerance", "0", "--min-depth", "0"})["clusters"], 6 * 16 * 16)
+        << "down to single texels";
+    EXPECT_EQ(made({"--epsilon", "0"})["clusters"], 6 * 16 * 16);
+    EXPECT_EQ(made({"--face-resolution", "1", "--tolerance", "0", "--min-depth", "0"})["clusters"], 6);
+}
+
+TEST_F(Precompute, SmoothNormalsReplaceTheFiles) {
+    write("mesh.obj", "v 0 0 0\nv 1 0 0\nv 0 0 -1\nvn 0 -1 0\nf 1//1 2//1 3//1\n");
+    const auto radiance = [&](const std::string& normals) {
+        succeed(command({"--normals", normals}));
+        write("sky.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t y) {
+                  const float sky = y < 16 ? 1.0f : 0.0f;
+                  return Rgb{sky, sky, sky};
+              }));
+        succeed({"relight", "new.prt", "sky.hdr", "-o", "lit.npy"});
+        return npy_values(read("lit.npy")).at(0)[0];
+    };
+    EXPECT_NEAR(radiance("smooth"), 1.0f, 0.01f);
+    EXPECT_NEAR(radiance("file"), 0.0f, 0.01f);
+}
+
+TEST_F(Precompute, BadOptionsAreRefused) {
+    for (const char* option : {"--tolerance", "--epsilon", "--bias"}) {
+        for (const char* value : {"nan", "-1", "inf", "-inf"})
+            fail(command({option, value}), {"expected", std::string(option).substr(2)});
+        for (const char* value : {"much", "1x", "", "1,2"})
+            misuse(command({option, value}), option);
+    }
+    fail(command({"--min-depth", "15"}), {"minimum depth", "15"});
+    misuse(command({"--min-depth", "-1"}), "--min-depth");
+    misuse(command({"--min-depth", "1.5"}), "--min-depth");
+    fail(command({"--face-resolution", "0"}), {"resolution"});
+    fail(command({"--face-resolution", "16385"}), {"resolution"});
+    fail(command({"--face-resolution", "4294967295"}), {"resolution"});
+    misuse(command({"--face-resolution", "4294967296"}));
+    misuse(command({"--face-resolution", "-16"}));
+    misuse(command({"--face-resolution", "sixteen"}));
+    misuse(command({"--normals", "flat"}), "--normals");
+    misuse(command({"--tolerance", "1", "--tolerance", "2"}), "--tolerance");
+}
+
+TEST_F(Precompute, BadFloorsAreRefused) {
+    for (const char* n : {"0", "1", "100000", "4294967295"})
+        fail(command({"--floor", n}), {"floor: expected"});
+    misuse(command({"--floor", "-3"}), "--floor");
+    misuse(command({"--floor", "tiles"}), "--floor");
+    for (const char* scale : {"0", "-1", "nan", "inf", "1e38"})
+        fail(command({"--floor", "3", "--floor-scale", scale}), {"expected"});
+    misuse(command({"--floor-scale", "2"}), "--floor");
+}
+
+TEST_F(Precompute, TheOutputIsNeverTheInputNorAnythingButAScene) {
+    fail({"precompute", "mesh.obj", "-o", "mesh.obj"}, {"mesh.obj", ".prt"});
+    fail({"precompute", "mesh.obj", "-o", "new.ply"}, {"new.ply", ".prt"});
+    fail({"precompute", "mesh.obj", "-o", "new"}, {".prt"});
+    fs::create_symlink("mesh.obj", folder() / "link.prt");
+    fail({"precompute", "mesh.obj", "-o", "link.prt"}, {"link.prt"});
+    fs::create_hard_link(folder() / "mesh.obj", folder() / "hard.prt");
+    fail({"precompute", "mesh.obj", "-o", "hard.prt"}, {"hard.prt"});
+    ASSERT_EQ(::mkfifo((folder() / "pipe.prt").c_str(), 0600), 0);
+    fail({"precompute", "mesh.obj", "-o", "pipe.prt"}, {"pipe.prt", "not a regular file"});
+}
+
+TEST_F(Precompute, OutputsThatCannotBeWrittenAreFoundOutAtOnce) {
+    fail({"precompute", "mesh.obj", "-o", "missing/new.prt"}, {"missing/new.prt", "cannot write"});
+    fail({"precompute", "mesh.obj", "-o", "mesh.obj/new.prt"}, {"mesh.obj/new.prt", "cannot write"});
+    fail({"precompute", "mesh.obj", "-o", "/proc/new.prt"}, {"/proc/new.prt", "cannot write"});
+    fs::create_directory(folder() / "folder.prt");
+    fail({"precompute", "mesh.obj", "-o", "folder.prt"}, {"folder.prt", "cannot write"});
+    // Before the mesh is even looked at.
+    fail({"precompute", "missing.obj", "-o", "missing/new.prt"}, {"missing/new.prt"});
+}
+
+TEST_F(Precompute, AFullDiskLeavesTheOldScene) {
+    succeed(command({}));
+    fail(command({"--tolerance", "0.001"}), {"new.prt", "cannot write"}, {.max_file_bytes = 200});
+    EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["face_resolution"], 16);
+}
+
+TEST_F(Precompute, ASecondRunReplacesTheFirst) {
+    EXPECT_EQ(made({"--floor", "3"})["vertices"], 15);
+    EXPECT_EQ(made({})["vertices"], 6);
+    EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["vertices"], 6);
+    EXPECT_EQ(files().size(), 3u) << "the mesh, the environment and the scene";
+}
+
+TEST_F(Precompute, TheSameInputGivesTheSameBytes) {
+    succeed(command({"--floor", "9"}));
+    const std::string first = read("new.prt");
+    succeed(command({"--floor", "9"}));
+    EXPECT_TRUE(read("new.prt") == first);
+}
+
+} // namespace
+} // namespace relumine::app

@@ -1,0 +1,105 @@
+// Ctrl-C and SIGTERM: a soon end, one line, nothing left behind. And a real full disk.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <thread>
+
+#include <sys/mount.h>
+
+#include "tests/app/command.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+class Signals : public AppTest {
+protected:
+    /// Sends the signal after `delay` and expects the end within a second or so.
+    void interrupt(const std::vector<std::string>& arguments, int signal,
+                   std::chrono::milliseconds delay) const {
+        const std::vector<std::string> before = files();
+        Process process(folder(), arguments);
+        std::this_thread::sleep_for(delay);
+        ASSERT_TRUE(process.is_running()) << "done before it could be stopped";
+        const Clock::time_point sent = Clock::now();
+        process.send(signal);
+        const Result result = process.wait();
+        EXPECT_LT(Clock::now() - sent, std::chrono::milliseconds(1500)) << result.described();
+        EXPECT_EQ(result.exit_code, 1) << result.described();
+        EXPECT_EQ(result.out, "");
+        EXPECT_EQ(result.err, "relumine: cancelled; nothing was written\n");
+        EXPECT_EQ(files(), before);
+    }
+};
+
+TEST_F(Signals, PrecomputeStopsAtOnce) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    write("scene.prt", "the old one");
+    // Every texel of 6 x 1024 x 1024: hours.
+    const std::vector<std::string> endless = {"precompute",  "knot.ply", "-o", "scene.prt",
+                                              "--tolerance", "0",        "-q"};
+    interrupt(endless, SIGINT, std::chrono::milliseconds(300));
+    interrupt(endless, SIGTERM, std::chrono::milliseconds(700));
+    // While it starts and loads.
+    interrupt(endless, SIGINT, std::chrono::milliseconds(30));
+}
+
+TEST_F(Signals, VerifyStopsAtOnce) {
+    succeed({"generate", "blob", "-o", ".", "--vertices", "20000", "-q"});
+    write("white.hdr", white_hdr());
+    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.2", "--min-depth", "2", "-q"});
+    interrupt({"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
+              SIGINT, std::chrono::milliseconds(1500));
+}
+
+TEST_F(Signals, ProgressIsPlainLinesWithTheTimeLeft) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
+    const Result result =
+        succeed({"precompute", "knot.ply", "-o", "scene.prt", "--tolerance", "0.0135", "--json"});
+    EXPECT_FALSE(result.json().empty());
+    EXPECT_EQ(result.err.find('\r'), std::string::npos) << result.described();
+    if (result.seconds > 3.0) {
+        EXPECT_NE(result.err.find("left\n"), std::string::npos) << result.described();
+    }
+}
+
+/// A file system of 64 KiB, where the system lets us have one.
+class FullDisk : public AppTest {
+protected:
+    void SetUp() override {
+        const fs::path disk = folder() / "disk";
+        fs::create_directory(disk);
+        mounted_ = ::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=64k") == 0;
+        if (!mounted_)
+            GTEST_SKIP() << "a small file system cannot be mounted here";
+    }
+    void TearDown() override {
+        if (mounted_)
+            ::umount((folder() / "disk").c_str());
+    }
+
+private:
+    bool mounted_ = false;
+};
+
+TEST_F(FullDisk, LeavesTheOldFile) {
+    write("mesh.obj", octahedron_obj());
+    write("white.hdr", white_hdr());
+    succeed({"precompute", "mesh.obj", "-o", "disk/scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"relight", "disk/scene.prt", "white.hdr", "-o", "disk/lit.npy"});
+    const std::vector<std::string> no_space = {"cannot write", "No space left"};
+    fail({"generate", "blob", "-o", "disk", "--vertices", "3000"}, no_space);
+
+    succeed({"generate", "blob", "-o", ".", "--vertices", "7000", "-q"});
+    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--face-resolution", "16"});
+    for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
+        fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
+    fail({"precompute", "blob.ply", "-o", "disk/scene.prt", "--face-resolution", "16"}, no_space);
+    succeed({"info", "disk/scene.prt"});
+}
+
+} // namespace
+} // namespace relumine::app
