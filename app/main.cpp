@@ -38,6 +38,17 @@ int main(int argc, char** argv) {
     app::add_info(program, session);
     app::add_generate(program, session);
 
+    // A script's unset variable must not read as 0 or as the current folder.
+    const CLI::Validator not_empty(
+        [](const std::string& text) {
+            return text.empty() ? std::string("expected a value, got ''") : std::string();
+        },
+        "");
+    for (CLI::App* command : program.get_subcommands({}))
+        for (CLI::Option* option : command->get_options())
+            if (option->get_expected_min() > 0)
+                option->check(not_empty);
+
     // The subcommand runs after parsing, so that wrong usage and failed work cannot be confused.
     std::unique_ptr<tbb::global_control> thread_limit;
     program.parse_complete_callback([&] {
