@@ -35,6 +35,29 @@ struct TurnRegion {
     }
 };
 
+/// The tiles of 16 x 16 texels in which two maps of one resolution differ.
+void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
+                          std::vector<cubemap::TexelRectangle>& tiles) {
+    constexpr std::uint32_t TileSize = 16;
+    const std::uint32_t r = before.resolution;
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t y = 0; y < r; y += TileSize)
+            for (std::uint32_t x = 0; x < r; x += TileSize) {
+                const cubemap::TexelRectangle tile{.face = face,
+                                                   .x0 = x,
+                                                   .y0 = y,
+                                                   .x1 = std::min(x + TileSize, r),
+                                                   .y1 = std::min(y + TileSize, r)};
+                bool equal = true;
+                for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
+                    const glm::vec3* of_before = &before.at(face, x, row);
+                    equal = std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
+                }
+                if (!equal)
+                    tiles.push_back(tile);
+            }
+}
+
 } // namespace
 
 LightEditor::LightEditor(const prt::Transfer& transfer, const ShadowRays& rays)
@@ -43,6 +66,20 @@ LightEditor::LightEditor(const prt::Transfer& transfer, const ShadowRays& rays)
 RelightTimes LightEditor::set_base(cubemap::CubeMap base) {
     base_ = std::move(base);
     return relight_all();
+}
+
+UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
+    if (base.resolution != base_.resolution || rotation_degrees_ != 0.0) {
+        const RelightTimes times = set_base(std::move(base));
+        return {.num_clusters = relighter_.transfer().num_clusters(),
+                .num_receivers = relighter_.transfer().num_receivers(),
+                .num_sharp_lights = times.num_sharp_lights,
+                .seconds = times.seconds_bin + times.seconds_trace + times.seconds_relight};
+    }
+    dirty_.clear();
+    append_changed_tiles(base_, base, dirty_);
+    base_ = std::move(base);
+    return update_dirty();
 }
 
 RelightTimes LightEditor::set_rotation(double degrees_about_y) {
@@ -112,6 +149,10 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
             add(next_layers_[i]);
     }
     std::swap(turned_layers_, next_layers_);
+    return update_dirty();
+}
+
+UpdateReport LightEditor::update_dirty() {
     if (dirty_.empty())
         return {};
     const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {

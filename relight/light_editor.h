@@ -31,6 +31,10 @@ public:
     /// Replaces the base environment and relights everything. Layers and history stay.
     RelightTimes set_base(cubemap::CubeMap base);
 
+    /// Replaces the base by another of the same resolution and updates only what differs, as found by comparing tiles of 16 x 16 texels (where
+    /// a rotation or another resolution stands in the way: everything). For files that another program saves again and again.
+    UpdateReport update_base(cubemap::CubeMap base);
+
     /// Turns base and layers together about +Y, from their unturned state, and relights everything. Layers keep the directions they were
     /// given; those are before the turn.
     RelightTimes set_rotation(double degrees_about_y);
@@ -66,6 +70,7 @@ public:
 private:
     UpdateReport apply(std::span<const cubemap::LightLayer> layers);
     RelightTimes relight_all();
+    UpdateReport update_dirty();
     UpdateReport go_to(std::size_t mark);
     [[nodiscard]] const cubemap::CubeMap& turned_base() const {
         return rotation_degrees_ == 0.0 ? base_ : turned_base_;
