@@ -33,7 +33,7 @@ struct RunOptions {
     std::string stdout_path = {};                     ///< where stdout goes instead of Result::out
 };
 
-/// A running `relumine`. Killed, with a test failure, after a minute.
+/// A running `relumine`. Killed, with a test failure, when it does not end.
 class Process {
 public:
     Process(const std::filesystem::path& folder, const std::vector<std::string>& arguments,

@@ -50,7 +50,7 @@ TEST_F(Signals, PrecomputeStopsAtOnce) {
 TEST_F(Signals, VerifyStopsAtOnce) {
     succeed({"generate", "blob", "-o", ".", "--vertices", "20000", "-q"});
     write("white.hdr", white_hdr());
-    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.2", "--min-depth", "2", "-q"});
+    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.05", "-q"});
     interrupt({"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
               SIGINT, std::chrono::milliseconds(1500));
 }
