@@ -7,6 +7,8 @@
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
+#include "relight/row_kernel.h"
+
 namespace relumine::relight {
 
 namespace {
@@ -107,14 +109,9 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment, const pr
         for (std::uint32_t x = columns.begin; x < std::min(whole_begin, columns.end); ++x)
             add_part(x, y);
         if (whole_begin < whole_end) {
-            FaceSums row;
-            const glm::vec3* radiance = &environment.at(cell.face, 0, y);
-            const float* weights = weights_.data() + std::size_t{y} * resolution_;
-            for (std::uint32_t x = whole_begin; x < whole_end; ++x) {
-                const glm::dvec3 weighted = glm::dvec3(radiance[x]) * static_cast<double>(weights[x]);
-                row.one += weighted;
-                row.u += weighted * ((x + 0.5) * step - 1.0);
-            }
+            const RowSums row = row_sums(&environment.at(cell.face, whole_begin, y),
+                                         weights_.data() + std::size_t{y} * resolution_ + whole_begin,
+                                         whole_end - whole_begin, (whole_begin + 0.5) * step - 1.0, step);
             sums.one += row.one;
             sums.u += row.u;
             sums.v += row.one * ((y + 0.5) * step - 1.0);

@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "relight/row_kernel.h"
+#include "tests/prt/every_target.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/environments.h"
 
@@ -167,9 +169,35 @@ TEST(LightBinning, ALightOfOneTexelIsItsDirectionTimesItsPower) {
     expect_near(sum.red, power * cubemap::texel_direction(cubemap::Face::NegativeX, 7, 30, 32),
                 FloatWeights * power, "");
     EXPECT_EQ(sum.green, glm::dvec3(0.0));
-    expect_near(sum.blue, 0.01 * sum.red, 1e-12 * power, "");
+    // Products with the weights are in float: half a unit of 2^-24 each.
+    expect_near(sum.blue, 0.01 * sum.red, 1e-7 * glm::length(sum.blue), "");
     EXPECT_EQ(LightBinning(32).sum(environment, {.face = cubemap::Face::NegativeX, .level = 1}),
               VectorIrradiance{});
+}
+
+TEST(RowSums, EqualAPlainLoopForAnyLengthOnEveryTarget) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<float> value(0.0f, 2.0f);
+    for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 255u, 256u, 257u, 1024u}) {
+        std::vector<glm::vec3> radiance(count);
+        std::vector<float> weights(count);
+        RowSums expected;
+        for (std::size_t i = 0; i < count; ++i) {
+            radiance[i] = {value(random), value(random), i == count / 2 ? 1e5f : value(random)};
+            weights[i] = value(random);
+            const glm::dvec3 weighted = glm::dvec3(radiance[i]) * static_cast<double>(weights[i]);
+            expected.one += weighted;
+            expected.u += weighted * (0.25 + 0.001 * static_cast<double>(i));
+        }
+        scenes::on_every_target([&] {
+            const RowSums sums = row_sums(radiance.data(), weights.data(), count, 0.25, 0.001);
+            // At most 256 additions in float, errors half a unit of 2^-24 each that mostly cancel.
+            for (int channel = 0; channel < 3; ++channel) {
+                EXPECT_NEAR(sums.one[channel], expected.one[channel], 2e-6 * expected.one[channel]);
+                EXPECT_NEAR(sums.u[channel], expected.u[channel], 2e-6 * expected.u[channel]);
+            }
+        });
+    }
 }
 
 TEST(LightBinning, AnyNumberOfThreadsGivesTheSameBits) {
