@@ -78,8 +78,8 @@ struct RampFit {
 template<typename Shape>
 std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane, const Cell& cell) {
     constexpr std::size_t N = Shape::NumRamps;
-    // Beyond this size the density of solid angle varies too much within a cell (by a tenth).
-    constexpr double LargestHalf = 1.0 / 32.0;
+    // Beyond this size the density of solid angle varies too much within a cell (by a percent).
+    constexpr double LargestHalf = 1.0 / 256.0;
     const bool smallest = cell.chord() <= shape.smallest_feature();
     if (!smallest && cell.half > LargestHalf)
         return std::nullopt;

@@ -193,8 +193,10 @@ std::array<double, 1> LassoShape::ramps(const glm::dvec3& w) const {
 }
 
 bool LassoShape::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
-    // Corners are where two edges come near; below 1/64 of the size what they hide is below 1/4096.
-    return chord_radius > extent_ / 64.0 && outline_.several_within(w, chord_radius);
+    // Corners are where two edges come near; below 1/64 of the size what they hide is below 1/4096. Cells of more than 1/16 may have a
+    // sample beyond a corner that lies outside the cell.
+    return chord_radius > extent_ / 64.0 &&
+           (chord_radius > extent_ / 16.0 || outline_.several_within(w, chord_radius));
 }
 
 StrokeShape::StrokeShape(const Stroke& stroke)
