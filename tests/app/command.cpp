@@ -90,6 +90,7 @@ Process::Process(const fs::path& folder, const std::vector<std::string>& argumen
     std::vector<std::string> words = {"relumine"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> pointers;
+    pointers.reserve(words.size() + 1);
     for (std::string& word : words)
         pointers.push_back(word.data());
     pointers.push_back(nullptr);
