@@ -60,8 +60,7 @@ void ArcTree::build(std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i)
         node.centre += arcs_[i].middle / static_cast<double>(end - begin);
     for (std::uint32_t i = begin; i < end; ++i)
-        node.radius =
-            std::max(node.radius, glm::length(arcs_[i].middle - node.centre) + arcs_[i].half_chord);
+        node.radius = std::max(node.radius, glm::length(arcs_[i].middle - node.centre) + arcs_[i].half_chord);
     if (end - begin > LeafSize) {
         const std::uint32_t middle = begin + (end - begin) / 2;
         build(begin, middle);

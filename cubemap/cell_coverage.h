@@ -88,8 +88,8 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
     };
     const double u0 = cell.u - cell.half, u1 = cell.u + cell.half;
     const double v0 = cell.v - cell.half, v1 = cell.v + cell.half;
-    const std::array<std::array<double, N>, 4> corners = {ramps_at(u0, v0), ramps_at(u1, v0), ramps_at(u0, v1),
-                                                          ramps_at(u1, v1)};
+    const std::array<std::array<double, N>, 4> corners = {ramps_at(u0, v0), ramps_at(u1, v0),
+                                                          ramps_at(u0, v1), ramps_at(u1, v1)};
     const glm::dvec3 middle = plane.direction(cell.u, cell.v);
     const std::array<double, N> centre = shape.ramps(middle);
     double product = 1.0;

@@ -26,9 +26,7 @@ struct Light {
 };
 struct Filter {
     glm::vec3 factor;
-    void operator()(glm::vec3& texel, float coverage) const {
-        texel *= 1.0f + coverage * (factor - 1.0f);
-    }
+    void operator()(glm::vec3& texel, float coverage) const { texel *= 1.0f + coverage * (factor - 1.0f); }
 };
 struct Patch {
     const Picture* picture;
@@ -100,12 +98,11 @@ glm::dvec3 mean_picture(const RectangleShape& rectangle, const Picture& picture,
         for (int column = 0; column < NumParts; ++column) {
             const Cell part{texel.u + texel.half * ((2 * column + 1.0) / NumParts - 1.0),
                             texel.v + texel.half * ((2 * row + 1.0) / NumParts - 1.0), texel.half / NumParts};
-            const double covered = coverage == 1.0
-                                       ? part.solid_angle()
-                                       : detail::covered_solid_angle(rectangle, grid.plane, part);
+            const double covered = coverage == 1.0 ? part.solid_angle()
+                                                   : detail::covered_solid_angle(rectangle, grid.plane, part);
             if (covered > 0.0)
-                sum += covered * picture.sample(level, rectangle.picture_position(
-                                                           grid.plane.direction(part.u, part.v)));
+                sum += covered * picture.sample(
+                                     level, rectangle.picture_position(grid.plane.direction(part.u, part.v)));
         }
     }
     return sum / texel.solid_angle();
@@ -116,8 +113,7 @@ void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& t
     if (const auto* patch = std::get_if<Patch>(&layer.effect)) {
         const auto& region = std::get<RectangleShape>(layer.region);
         for_covered(region, grid, tile, rectangle, [&](std::uint32_t x, std::uint32_t y, double coverage) {
-            const glm::dvec3 light =
-                mean_picture(region, *patch->picture, grid, grid.cell(x, y), coverage);
+            const glm::dvec3 light = mean_picture(region, *patch->picture, grid, grid.cell(x, y), coverage);
             glm::vec3& texel = target.at(grid.face, x, y);
             texel = texel * static_cast<float>(patch->replace ? 1.0 - coverage : 1.0) +
                     patch->gain * glm::vec3(light);
@@ -128,7 +124,8 @@ void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& t
         const auto texel = [&](std::uint32_t x, std::uint32_t y, double coverage) {
             effect(target.at(grid.face, x, y), static_cast<float>(coverage));
         };
-        std::visit([&](const auto& region) { for_covered(region, grid, tile, rectangle, texel); }, layer.region);
+        std::visit([&](const auto& region) { for_covered(region, grid, tile, rectangle, texel); },
+                   layer.region);
     };
     if (const auto* light = std::get_if<Light>(&layer.effect))
         change(*light);
@@ -172,14 +169,14 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
                std::span<const TexelRectangle> rectangles, CubeMap& target) {
     if (base.resolution != target.resolution || base.texels.size() != target.texels.size() ||
         base.texels.size() != NumFaces * std::size_t{base.resolution} * base.resolution)
-        throw std::invalid_argument(fmt::format(
-            "composite: expected maps of one resolution, got {} and {}", base.resolution, target.resolution));
+        throw std::invalid_argument(fmt::format("composite: expected maps of one resolution, got {} and {}",
+                                                base.resolution, target.resolution));
     for (const TexelRectangle& r : rectangles) {
         if (r.x0 > r.x1 || r.y0 > r.y1 || r.x1 > base.resolution || r.y1 > base.resolution ||
             static_cast<std::size_t>(r.face) >= NumFaces)
-            throw std::invalid_argument(
-                fmt::format("composite: expected a rectangle within {0} x {0} texels, got [{1}, {2}) x [{3}, {4})",
-                            base.resolution, r.x0, r.x1, r.y0, r.y1));
+            throw std::invalid_argument(fmt::format(
+                "composite: expected a rectangle within {0} x {0} texels, got [{1}, {2}) x [{3}, {4})",
+                base.resolution, r.x0, r.x1, r.y0, r.y1));
     }
     std::vector<PreparedLayer> ready;
     ready.reserve(layers.size());

@@ -136,9 +136,7 @@ struct CheckEffect {
 };
 
 struct BoundingCone {
-    Cone operator()(const Disc& disc) const {
-        return {glm::normalize(disc.direction), disc.radius_degrees};
-    }
+    Cone operator()(const Disc& disc) const { return {glm::normalize(disc.direction), disc.radius_degrees}; }
     Cone operator()(const Rectangle& rectangle) const {
         const double x = std::tan(0.5 * rectangle.width_degrees / DegreesPerRadian);
         const double y = std::tan(0.5 * rectangle.height_degrees / DegreesPerRadian);
@@ -156,7 +154,7 @@ struct BoundingCone {
         // No point of an arc is further from its nearer end than half its length.
         const Cone cap = around(stroke.points, 0.0);
         return {cap.axis, std::min(180.0, (cap.radius_degrees < 90.0 ? cap.radius_degrees
-                                                                    : cap.radius_degrees + 0.5 * longest) +
+                                                                     : cap.radius_degrees + 0.5 * longest) +
                                               stroke.radius_degrees)};
     }
 

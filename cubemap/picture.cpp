@@ -22,7 +22,8 @@ bool is_radiance(const glm::vec3& value) {
 
 /// Half as many pixels each way (at least one), each the mean of those it covers, also where the number is odd.
 Picture::Level halved(const Picture::Level& from) {
-    Picture::Level to{.width = std::max(1u, from.width / 2), .height = std::max(1u, from.height / 2), .pixels = {}};
+    Picture::Level to{
+        .width = std::max(1u, from.width / 2), .height = std::max(1u, from.height / 2), .pixels = {}};
     to.pixels.reserve(std::size_t{to.width} * to.height);
     // Calls visit(pixel, weight) for the pixels that pixel `index` of the halved row or column covers.
     const auto for_covered = [](std::uint32_t index, std::uint32_t num_from, std::uint32_t num_to,
@@ -38,8 +39,8 @@ Picture::Level halved(const Picture::Level& from) {
             glm::dvec3 sum(0.0);
             for_covered(y, from.height, to.height, [&](std::uint32_t row, double row_weight) {
                 for_covered(x, from.width, to.width, [&](std::uint32_t column, double weight) {
-                    sum += weight * row_weight *
-                           glm::dvec3(from.pixels[std::size_t{row} * from.width + column]);
+                    sum +=
+                        weight * row_weight * glm::dvec3(from.pixels[std::size_t{row} * from.width + column]);
                 });
             });
             to.pixels.emplace_back(sum);
@@ -52,14 +53,14 @@ Picture::Level halved(const Picture::Level& from) {
 
 Picture::Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels) {
     if (width == 0 || height == 0 || pixels.size() != std::size_t{width} * height)
-        throw std::invalid_argument(
-            fmt::format("picture: expected {} x {} pixels, at least one, got {}", width, height, pixels.size()));
+        throw std::invalid_argument(fmt::format("picture: expected {} x {} pixels, at least one, got {}",
+                                                width, height, pixels.size()));
     const auto bad = std::find_if_not(pixels.begin(), pixels.end(), is_radiance);
     if (bad != pixels.end()) {
         const auto index = static_cast<std::size_t>(bad - pixels.begin());
         throw std::invalid_argument(
-            fmt::format("picture: expected finite radiance of at least 0, got ({}, {}, {}) at pixel ({}, {})", bad->x,
-                        bad->y, bad->z, index % width, index / width));
+            fmt::format("picture: expected finite radiance of at least 0, got ({}, {}, {}) at pixel ({}, {})",
+                        bad->x, bad->y, bad->z, index % width, index / width));
     }
     levels_.push_back({.width = width, .height = height, .pixels = std::move(pixels)});
     while (levels_.back().pixels.size() > 1)
@@ -84,7 +85,8 @@ std::shared_ptr<const Picture> load_picture(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
     const std::string name = path.string();
     if (!is_exr(bytes) && !is_hdr(bytes))
-        throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got neither", name));
+        throw std::runtime_error(
+            fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got neither", name));
     ImageFile file = is_exr(bytes) ? decode_exr(bytes, name) : decode_hdr(bytes, name);
     try {
         return std::make_shared<const Picture>(file.width, file.height, std::move(file.pixels));

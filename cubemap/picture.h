@@ -24,7 +24,9 @@ public:
     /// Throws std::invalid_argument for a wrong number of pixels or radiance that is negative or not finite.
     Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels);
 
-    [[nodiscard]] const std::vector<Level>& levels() const { return levels_; } ///< full size first, 1 x 1 last
+    [[nodiscard]] const std::vector<Level>& levels() const {
+        return levels_;
+    } ///< full size first, 1 x 1 last
 
     /// Bilinear between the pixel centres of a level; position in [0, 1]^2 from the top left.
     [[nodiscard]] glm::dvec3 sample(std::size_t level, const glm::dvec2& position) const;

@@ -39,7 +39,8 @@ struct TexelRange {
 
 /// A face with its texels.
 struct FaceGrid {
-    FaceGrid(Face which, std::uint32_t resolution) : face(which), plane(which), half_texel(1.0 / resolution) {}
+    FaceGrid(Face which, std::uint32_t resolution)
+        : face(which), plane(which), half_texel(1.0 / resolution) {}
     Face face;
     FacePlane plane;
     double half_texel; ///< on the plane of [-1, 1]^2

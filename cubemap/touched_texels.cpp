@@ -106,7 +106,8 @@ std::vector<TexelRectangle> touched_texels(const LightLayer& layer, std::uint32_
         [&](const auto& region) {
             for (const Face face : AllFaces) {
                 const Touched touched(region, face, resolution);
-                const TexelRectangle whole{.face = face, .x0 = 0, .y0 = 0, .x1 = resolution, .y1 = resolution};
+                const TexelRectangle whole{
+                    .face = face, .x0 = 0, .y0 = 0, .x1 = resolution, .y1 = resolution};
                 touched.split(touched.box(whole), MaxHalvings, rectangles);
             }
         },
