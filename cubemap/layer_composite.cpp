@@ -81,39 +81,62 @@ void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& ran
     }
 }
 
-/// Mean over a texel of coverage times the picture, without gain: the picture at a level of about the texel's fineness, over
-/// 4 x 4 parts of it.
-glm::dvec3 mean_picture(const RectangleShape& rectangle, const Picture& picture, const FaceGrid& grid,
-                        const Cell& texel, double coverage) {
-    constexpr int NumParts = 4;
-    const glm::dvec3 middle = grid.plane.direction(texel.u, texel.v);
-    // Half a texel's side as a part of the picture's, and the level whose pixels are just larger.
-    const double side = 0.5 * std::sqrt(texel.solid_angle() / rectangle.solid_angle_of_picture(middle));
-    const Picture::Level& full = picture.levels().front();
-    const double pixels = std::max(1.0, side * std::max(full.width, full.height));
-    const std::size_t level =
-        std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))), picture.levels().size() - 1);
-    glm::dvec3 sum(0.0);
-    for (int row = 0; row < NumParts; ++row) {
-        for (int column = 0; column < NumParts; ++column) {
-            const Cell part{texel.u + texel.half * ((2 * column + 1.0) / NumParts - 1.0),
-                            texel.v + texel.half * ((2 * row + 1.0) / NumParts - 1.0), texel.half / NumParts};
-            const double covered = coverage == 1.0 ? part.solid_angle()
-                                                   : detail::covered_solid_angle(rectangle, grid.plane, part);
-            if (covered > 0.0)
-                sum += covered * picture.sample(
-                                     level, rectangle.picture_position(grid.plane.direction(part.u, part.v)));
-        }
+/// A picture on its rectangle, averaged over texels.
+class PlacedPicture {
+public:
+    PlacedPicture(const RectangleShape& rectangle, const Picture& picture, const FaceGrid& grid)
+        : rectangle_(rectangle), picture_(picture), plane_(grid.plane) {
+        // One level for the whole picture, or a bright spot where two levels meet would be counted by neither or both: pixels of half a
+        // texel or more at the picture's and the face's middle, but at least eight of them.
+        const glm::dvec2& half = rectangle.half_sides();
+        const double texel = std::min(0.25, grid.half_texel / std::sqrt(half.x * half.y));
+        const Picture::Level& full = picture.levels().front();
+        const double pixels = std::max(1.0, 0.5 * texel * std::max(full.width, full.height));
+        level_ =
+            std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))), picture.levels().size() - 1);
+        const Picture::Level& chosen = picture.levels()[level_];
+        largest_part_ = LargestPart / std::max({chosen.width, chosen.height, 8u});
     }
-    return sum / texel.solid_angle();
-}
+
+    /// Mean of coverage times the picture over a texel.
+    [[nodiscard]] glm::dvec3 mean(const Cell& texel, bool covered) const {
+        return light(texel, covered) / texel.solid_angle();
+    }
+
+private:
+    static constexpr double LargestPart = 0.5; ///< of a pixel's side, so that every pixel is met evenly
+
+    /// Integral over the solid angle of a texel or a part of it.
+    [[nodiscard]] glm::dvec3 light(const Cell& part, bool covered) const {
+        const glm::dvec3 middle = plane_.direction(part.u, part.v);
+        if (!covered && rectangle_.bound(middle, part.chord()) == Overlap::None)
+            return glm::dvec3(0.0);
+        // The part's side in units of the picture's.
+        const double angle = part.solid_angle();
+        if (angle > largest_part_ * largest_part_ * rectangle_.solid_angle_of_picture(middle)) {
+            glm::dvec3 sum(0.0);
+            for (int i = 0; i < 4; ++i)
+                sum += light(part.quarter(i), covered);
+            return sum;
+        }
+        const double covered_angle = covered ? angle : detail::covered_solid_angle(rectangle_, plane_, part);
+        return covered_angle * picture_.sample(level_, rectangle_.picture_position(middle));
+    }
+
+    const RectangleShape& rectangle_;
+    const Picture& picture_;
+    const FacePlane& plane_;
+    std::size_t level_;
+    double largest_part_;
+};
 
 void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& tile,
            const TexelRectangle& rectangle, CubeMap& target) {
     if (const auto* patch = std::get_if<Patch>(&layer.effect)) {
         const auto& region = std::get<RectangleShape>(layer.region);
+        const PlacedPicture picture(region, *patch->picture, grid);
         for_covered(region, grid, tile, rectangle, [&](std::uint32_t x, std::uint32_t y, double coverage) {
-            const glm::dvec3 light = mean_picture(region, *patch->picture, grid, grid.cell(x, y), coverage);
+            const glm::dvec3 light = picture.mean(grid.cell(x, y), coverage == 1.0);
             glm::vec3& texel = target.at(grid.face, x, y);
             texel = texel * static_cast<float>(patch->replace ? 1.0 - coverage : 1.0) +
                     patch->gain * glm::vec3(light);
