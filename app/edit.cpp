@@ -1,21 +1,27 @@
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/printf.h>
 #include <glm/geometric.hpp>
 
 #include "app/commands.h"
 #include "app/environment_options.h"
+#include "app/file_watch.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "cubemap/environment.h"
-#include "relight/relighter.h"
+#include "cubemap/layer_file.h"
+#include "relight/contribution.h"
+#include "relight/light_editor.h"
 
 namespace relumine::app {
 
@@ -24,31 +30,16 @@ namespace {
 struct Options {
     SceneOptions scene;
     EnvironmentOptions environment;
+    std::string layers;
     OutputOptions output;
-    std::string direction;
+    std::string disc; ///< direction of the quick edit
     double radius_degrees = 10.0;
     std::string gain = "2";
     std::string saved_environment;
+    std::string who; ///< position
+    bool watch = false;
 };
 
-/// The texels of a face whose centres lie in the disc, by their bounding rectangle.
-std::optional<relight::TexelRectangle> texels_in_disc(cubemap::Face face, std::uint32_t resolution,
-                                                      const glm::dvec3& axis, double min_cosine) {
-    relight::TexelRectangle box{.face = face, .x0 = resolution, .y0 = resolution};
-    for (std::uint32_t y = 0; y < resolution; ++y)
-        for (std::uint32_t x = 0; x < resolution; ++x)
-            if (glm::dot(cubemap::texel_direction(face, x, y, resolution), axis) >= min_cosine) {
-                box.x0 = std::min(box.x0, x);
-                box.x1 = std::max(box.x1, x + 1);
-                box.y0 = std::min(box.y0, y);
-                box.y1 = std::max(box.y1, y + 1);
-            }
-    if (box.x0 >= box.x1)
-        return std::nullopt;
-    return box;
-}
-
-/// Refuses what cannot be written before any work is done.
 void check_saved_environment(const Options& options) {
     const std::string& path = options.saved_environment;
     const std::string extension = std::filesystem::path(path).extension().string();
@@ -61,11 +52,9 @@ void check_saved_environment(const Options& options) {
     check_output(path, {options.scene.path, options.environment.path});
 }
 
-void run(const Options& options, Session& session) {
-    options.output.check({options.scene.path, options.environment.path});
-    if (!options.saved_environment.empty())
-        check_saved_environment(options);
-    const glm::vec3 direction = parse_vec3("--disc", options.direction);
+/// The quick edit without a layer file: one gain layer.
+cubemap::LightLayer disc_layer(const Options& options) {
+    const glm::vec3 direction = parse_vec3("--disc", options.disc);
     if (!(glm::length(direction) > 0.0f))
         throw CLI::ValidationError("--disc", "expected a direction, got 0,0,0");
     const bool is_grey = options.gain.find(',') == std::string::npos;
@@ -73,68 +62,187 @@ void run(const Options& options, Session& session) {
         parse_vec3("--gain", is_grey ? fmt::format("{0},{0},{0}", options.gain) : options.gain);
     if (!(gain.r >= 0.0f && gain.g >= 0.0f && gain.b >= 0.0f))
         throw CLI::ValidationError("--gain", fmt::format("expected numbers >= 0, got '{}'", options.gain));
+    cubemap::LightLayer layer;
+    layer.name = "disc";
+    layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
+    layer.effect = cubemap::Gain{.tint = gain};
+    return layer;
+}
 
-    const LitScene lit(options.scene);
-    const prt::Scene& scene = lit.scene();
-    LoadedEnvironment environment = load_environment(options.environment, session);
-    relight::Relighter relighter(scene.transfer, lit.shadow_rays());
-    const relight::RelightTimes full = relighter.set_environment(std::move(environment.map));
+cubemap::LightLayers layers_of(const Options& options) {
+    if (options.layers.empty() == options.disc.empty())
+        throw CLI::ValidationError("edit", "expected either LAYERS or --disc");
+    if (!options.layers.empty())
+        return cubemap::load_layers(options.layers);
+    cubemap::LightLayers layers;
+    layers.layers.push_back(disc_layer(options));
+    return layers;
+}
 
-    // Multiply the disc's texels, face by face; only the clusters under them are lit again.
-    const glm::dvec3 axis = glm::normalize(glm::dvec3(direction));
-    const double min_cosine = std::cos(options.radius_degrees * std::numbers::pi / 180.0);
-    const std::uint32_t resolution = relighter.environment().resolution;
-    relight::UpdateReport total;
-    for (const cubemap::Face face : cubemap::AllFaces) {
-        const std::optional<relight::TexelRectangle> box = texels_in_disc(face, resolution, axis, min_cosine);
-        if (!box)
-            continue;
-        std::vector<glm::vec3> radiance;
-        for (std::uint32_t y = box->y0; y < box->y1; ++y)
-            for (std::uint32_t x = box->x0; x < box->x1; ++x) {
-                const bool inside =
-                    glm::dot(cubemap::texel_direction(face, x, y, resolution), axis) >= min_cosine;
-                radiance.push_back(relighter.environment().at(face, x, y) *
-                                   (inside ? gain : glm::vec3(1.0f)));
-            }
-        const relight::UpdateReport report = relighter.update_region(*box, radiance);
-        total.num_clusters += report.num_clusters;
-        total.seconds += report.seconds;
+/// `OUT.%04d.png` with the frame's number.
+std::string numbered(const std::string& pattern, int frame) {
+    std::string name;
+    try {
+        name = fmt::sprintf(pattern, frame);
+    } catch (const std::exception&) { // not a pattern for one number
+        name = pattern;
+    }
+    if (name == pattern)
+        throw std::runtime_error(fmt::format("{}: expected a number like %04d in the name", pattern));
+    return name;
+}
+
+/// Refuses what cannot be written before any work is done.
+void check_outputs(const Options& options, const cubemap::LightLayers& layers) {
+    OutputOptions output = options.output;
+    if (options.who.empty() && !layers.frames.empty())
+        output.path = numbered(output.path, 0);
+    output.check({options.scene.path, options.environment.path, options.layers});
+    if (!options.saved_environment.empty())
+        check_saved_environment(options);
+}
+
+class Edit {
+public:
+    Edit(const Options& options, cubemap::LightLayers layers, Session& session)
+        : options_(options), session_(session), layers_(std::move(layers)), lit_(options.scene),
+          editor_(lit_.scene().transfer, lit_.shadow_rays()) {}
+
+    void run() {
+        LoadedEnvironment environment = load_environment(options_.environment, session_);
+        const relight::RelightTimes full = editor_.set_base(std::move(environment.map));
+        seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
+        apply_one_by_one();
+        if (!options_.who.empty())
+            save_who();
+        else if (!layers_.frames.empty())
+            save_frames();
+        else
+            save(options_.output.path);
+        if (!options_.saved_environment.empty())
+            cubemap::save_environment(options_.saved_environment, editor_.environment());
+        if (options_.watch)
+            watch();
+        session_.report({{"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters_touched", clusters_touched_},
+                         {"seconds_edit", seconds_edit_},
+                         {"seconds_full", seconds_full_},
+                         {"edits", edits_}});
     }
 
-    options.output.save(lit, relighter.radiance(), relighter.environment());
-    if (!options.saved_environment.empty())
-        cubemap::save_environment(options.saved_environment, relighter.environment());
-    const double seconds_full = full.seconds_bin + full.seconds_trace + full.seconds_relight;
-    session.say(fmt::format("{}: edit touched {} of {} clusters in {:.2f} ms; a full relight took {:.1f} ms",
-                            options.output.path, total.num_clusters, scene.transfer.num_clusters(),
-                            1e3 * total.seconds, 1e3 * seconds_full));
-    session.report({{"clusters_touched", total.num_clusters},
-                    {"clusters", scene.transfer.num_clusters()},
-                    {"seconds_edit", total.seconds},
-                    {"seconds_full", seconds_full}});
+private:
+    void record(const std::string& name, const relight::UpdateReport& report) {
+        clusters_touched_ += report.num_clusters;
+        seconds_edit_ += report.seconds;
+        edits_.push_back({{"name", name},
+                          {"clusters", report.num_clusters},
+                          {"receivers", report.num_receivers},
+                          {"sharp_lights", report.num_sharp_lights},
+                          {"seconds", report.seconds}});
+        session_.say(fmt::format("{}: touched {} of {} clusters in {:.2f} ms; a full relight took {:.1f} ms",
+                                 name, report.num_clusters, lit_.scene().transfer.num_clusters(),
+                                 1e3 * report.seconds, 1e3 * seconds_full_));
+    }
+
+    void apply_one_by_one() {
+        std::vector<cubemap::LightLayer> layers;
+        for (const cubemap::LightLayer& layer : layers_.layers) {
+            layers.push_back(layer);
+            record(layer.name, editor_.set_layers(layers));
+            session_.poll();
+        }
+    }
+
+    void save(const std::string& path) const {
+        OutputOptions output = options_.output;
+        output.path = path;
+        output.save(lit_, editor_.radiance(), editor_.environment());
+    }
+
+    void save_frames() {
+        const int first = static_cast<int>(std::ceil(layers_.frames.front().frame));
+        const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
+        for (int frame = first; frame <= last; ++frame) {
+            record(fmt::format("frame {}", frame), editor_.set_layers(cubemap::layers_at(layers_, frame)));
+            save(numbered(options_.output.path, frame));
+            session_.poll();
+        }
+    }
+
+    /// The environment weighted by what it gives to the vertex nearest to the position.
+    void save_who() const {
+        const glm::vec3 position = parse_vec3("--who", options_.who);
+        const std::vector<glm::vec3>& positions = lit_.scene().mesh.positions;
+        const auto nearest =
+            std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
+                return glm::dot(a - position, a - position) < glm::dot(b - position, b - position);
+            });
+        const auto receiver = static_cast<std::uint32_t>(nearest - positions.begin());
+        const cubemap::CubeMap map = relight::contribution_map(editor_.relighter(), {&receiver, 1});
+        save_map(options_.output.path, map, options_.output.exposure_ev);
+        session_.say(fmt::format("{}: what lights vertex {} ({}, {}, {})", options_.output.path, receiver,
+                                 nearest->x, nearest->y, nearest->z));
+    }
+
+    void watch() {
+        FileWatch file(options_.environment.path);
+        session_.say(fmt::format("{}: watching; Ctrl-C ends", options_.environment.path));
+        while (file.wait(session_.stop())) {
+            // A program may save in several steps; what does not load yet will be saved again.
+            try {
+                LoadedEnvironment environment = load_environment(options_.environment, session_);
+                const relight::UpdateReport report = editor_.update_base(std::move(environment.map));
+                record(fmt::format("saved (load {:.0f} ms)",
+                                   1e3 * (environment.seconds_load + environment.seconds_resample)),
+                       report);
+                save(options_.output.path);
+            } catch (const std::runtime_error& error) {
+                session_.say(error.what());
+            }
+        }
+    }
+
+    const Options& options_;
+    Session& session_;
+    cubemap::LightLayers layers_;
+    LitScene lit_;
+    relight::LightEditor editor_;
+    double seconds_full_ = 0.0;
+    double seconds_edit_ = 0.0;
+    std::size_t clusters_touched_ = 0;
+    nlohmann::json edits_ = nlohmann::json::array();
+};
+
+void run(const Options& options, Session& session) {
+    cubemap::LightLayers layers = layers_of(options);
+    check_outputs(options, layers);
+    Edit(options, std::move(layers), session).run();
 }
 
 } // namespace
 
 void add_edit(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand(
-        "edit", "brighten, dim or tint a disc of the environment and update the scene");
+    CLI::App& command =
+        *program.add_subcommand("edit", "put light layers over the environment and update the scene");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command);
+    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)");
     options->output.add_to(command);
-    command
-        .add_option("--disc", options->direction,
-                    "centre of the disc: direction X,Y,Z from the scene to the light")
-        ->required();
+    command.add_option(
+        "--disc", options->disc,
+        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the scene to the light");
     command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
-        ->check(number_between(0.0, 180.0))
+        ->check(number_between(1e-6, 180.0))
         ->capture_default_str();
     command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
         ->capture_default_str();
     command.add_option("--save-env", options->saved_environment,
                        "write the edited environment: cube .exr or .hdr");
+    command.add_option("--who", options->who,
+                       "write what lights the vertex nearest to X,Y,Z instead: a lat-long .exr or .png");
+    command.add_flag("--watch", options->watch,
+                     "go on: when another program saves ENV, update and write OUT again");
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

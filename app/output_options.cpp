@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
+#include "cubemap/resample.h"
 #include "files/output_file.h"
 #include "mesh/save.h"
 #include "relight/array_file.h"
@@ -138,6 +139,23 @@ void check_output(const std::string& path, const std::vector<std::string>& input
                 fmt::format("{}: expected an output other than the input {}", path, input));
     }
     files::OutputFile{std::filesystem::path(path)};
+}
+
+void save_map(const std::string& path, const cubemap::CubeMap& map, double exposure_ev) {
+    const cubemap::EnvironmentImage image =
+        cubemap::to_image(map, cubemap::Layout::LatLong, 4 * map.resolution, 2 * map.resolution);
+    double white_ev = 0.0;
+    if (std::filesystem::path(path).extension() == ".png") {
+        // One pixel in a thousand may be brighter than white: a sun must not leave the rest black.
+        std::vector<float> brightness;
+        for (const glm::vec3& pixel : image.pixels)
+            brightness.push_back(std::max({pixel.r, pixel.g, pixel.b}));
+        const auto white = brightness.end() - 1 - static_cast<std::ptrdiff_t>(brightness.size() / 1000);
+        std::nth_element(brightness.begin(), white, brightness.end());
+        white_ev = *white > 0.0f ? -std::log2(static_cast<double>(*white)) : 0.0;
+    }
+    relight::save_picture(path, {.width = image.width, .height = image.height, .pixels = image.pixels},
+                          exposure_ev + white_ev);
 }
 
 } // namespace relumine::app

@@ -37,4 +37,7 @@ struct OutputOptions {
 /// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever name.
 void check_output(const std::string& path, const std::vector<std::string>& inputs);
 
+/// Writes a cube map as a lat-long picture: .exr (linear), or .png with the brightest thousandth white, then exposed.
+void save_map(const std::string& path, const cubemap::CubeMap& map, double exposure_ev);
+
 } // namespace relumine::app

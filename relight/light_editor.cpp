@@ -78,8 +78,9 @@ UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
     }
     dirty_.clear();
     append_changed_tiles(base_, base, dirty_);
+    require_radiance(base.texels);
     base_ = std::move(base);
-    return update_dirty();
+    return update_dirty(turned_layers_);
 }
 
 RelightTimes LightEditor::set_rotation(double degrees_about_y) {
@@ -121,8 +122,14 @@ UpdateReport LightEditor::set_layers(std::vector<cubemap::LightLayer> layers) {
 UpdateReport LightEditor::set_layer(std::size_t index, const cubemap::LightLayer& layer) {
     cubemap::LightLayer& target = layers_.at(index);
     cubemap::validate(layer);
-    target = layer;
-    return apply(layers_);
+    next_layer_ = layer;
+    std::swap(target, next_layer_);
+    try {
+        return apply(layers_);
+    } catch (...) {
+        std::swap(target, next_layer_);
+        throw;
+    }
 }
 
 UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
@@ -148,15 +155,25 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         if (i < next_layers_.size())
             add(next_layers_[i]);
     }
+    const UpdateReport report = update_dirty(next_layers_);
     std::swap(turned_layers_, next_layers_);
-    return update_dirty();
+    return report;
 }
 
-UpdateReport LightEditor::update_dirty() {
+UpdateReport LightEditor::update_dirty(std::span<const cubemap::LightLayer> layers) {
     if (dirty_.empty())
         return {};
     const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
-        cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
+        cubemap::composite(turned_base(), layers, dirty_, environment);
+        try {
+            for (const cubemap::TexelRectangle& rectangle : dirty_)
+                for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
+                    require_radiance(
+                        {&environment.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
+        } catch (const std::invalid_argument&) { // layers too bright together
+            cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
+            throw;
+        }
     });
     publish();
     return report;

@@ -44,7 +44,7 @@ public:
     [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return layers_; }
 
     /// Replaces the list: added, removed, reordered or changed layers, any number, in one update.
-    /// Throws std::invalid_argument for a layer that is not valid; nothing has changed then.
+    /// Throws std::invalid_argument for a layer that is not valid or radiance above MaxRadiance; nothing has changed then.
     UpdateReport set_layers(std::vector<cubemap::LightLayer> layers);
 
     /// Replaces one layer, as while it is dragged. Throws std::invalid_argument as above, std::out_of_range for an index.
@@ -70,7 +70,7 @@ public:
 private:
     UpdateReport apply(std::span<const cubemap::LightLayer> layers);
     RelightTimes relight_all();
-    UpdateReport update_dirty();
+    UpdateReport update_dirty(std::span<const cubemap::LightLayer> layers);
     UpdateReport go_to(std::size_t mark);
     [[nodiscard]] const cubemap::CubeMap& turned_base() const {
         return rotation_degrees_ == 0.0 ? base_ : turned_base_;
@@ -84,6 +84,7 @@ private:
     double rotation_degrees_ = 0.0;
     std::vector<cubemap::LightLayer> layers_;        ///< as given
     std::vector<cubemap::LightLayer> turned_layers_; ///< as they are composited
+    cubemap::LightLayer next_layer_;                 ///< scratch of set_layer()
     std::vector<cubemap::LightLayer> next_layers_;   ///< scratch: the same after an edit
     std::vector<cubemap::TexelRectangle> dirty_;     ///< scratch
     std::vector<std::vector<cubemap::LightLayer>> history_;

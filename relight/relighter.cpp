@@ -31,18 +31,18 @@ void sort_unique(std::vector<std::uint32_t>& values) {
     values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+} // namespace
+
 void require_radiance(std::span<const glm::vec3> texels) {
     // One branch per texel: NaN fails both comparisons.
     const auto good = [](float value) {
-        return value >= 0.0f && value <= std::numeric_limits<float>::max();
+        return value >= 0.0f && value <= MaxRadiance;
     };
     for (const glm::vec3& texel : texels)
         if (!good(texel.r) || !good(texel.g) || !good(texel.b))
-            throw std::invalid_argument(
-                fmt::format("expected finite radiance >= 0, got ({}, {}, {})", texel.r, texel.g, texel.b));
+            throw std::invalid_argument(fmt::format("expected finite radiance from 0 to {}, got ({}, {}, {})",
+                                                    MaxRadiance, texel.r, texel.g, texel.b));
 }
-
-} // namespace
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),

@@ -21,6 +21,12 @@ namespace relumine::relight {
 
 using cubemap::TexelRectangle;
 
+/// The brightest texel that sums over a whole sphere of it stay finite for, in float, with room to spare.
+inline constexpr float MaxRadiance = 1e30f;
+
+/// Throws std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
+void require_radiance(std::span<const glm::vec3> texels);
+
 /// Where the time of set_environment() went.
 struct RelightTimes {
     double seconds_bin = 0.0;     ///< summing the environment into clusters
@@ -47,7 +53,7 @@ public:
     explicit Relighter(const prt::Transfer& transfer, const ShadowRays& rays = {});
 
     /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous sphere. O(6 R^2 + size of the
-    /// transfer). Throws std::invalid_argument for a radiance that is negative or not finite, or a map without texels.
+    /// transfer). Throws std::invalid_argument for a map without texels or a radiance that require_radiance() refuses.
     RelightTimes set_environment(cubemap::CubeMap environment);
 
     /// Replaces a rectangle of the environment's texels by `radiance`, row by row [(x1 - x0) * (y1 - y0)], and updates what the clusters it

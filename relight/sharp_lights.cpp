@@ -17,6 +17,12 @@ constexpr double AllowedError = 0.0025;
 // Levels between a cluster and the cells that are looked at: a sixteenth of its area. What fills less is "small".
 constexpr std::uint32_t LevelsBelowCluster = 2;
 
+// Spread evenly, such a cell has a sixteenth of its cluster's power; with twice that the light is not even.
+constexpr double SharpShare = 0.125;
+
+// A light of this part of its sharp cell's power is not cut further, so a cell becomes a hundred lights at most.
+constexpr double FinestShare = 1.0 / 64.0;
+
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
 
@@ -29,38 +35,56 @@ public:
           texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))),
           lights_(lights) {}
 
-    void descend(std::uint32_t cluster, const prt::Cell& cell, std::uint32_t levels_left) {
-        const VectorIrradiance sum = binning_.sum(environment_, cell);
-        if (glm::length(sum.luminance()) < min_power_)
-            return;
-        if (levels_left == 0 || cell.level >= texel_level_) {
-            cut(cluster, cell);
-            return;
-        }
-        for (std::uint32_t i = 0; i < 4; ++i)
-            descend(cluster, cell.child(i), levels_left - 1);
+    /// Finds the sharp cells of a cluster of this power: none unless one of them is.
+    void look_into(std::uint32_t cluster, double cluster_power, const prt::Cell& cell) {
+        candidates_.clear();
+        collect(cell, LevelsBelowCluster);
+        const bool uneven =
+            std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
+                return candidate.power > SharpShare * cluster_power;
+            });
+        if (uneven)
+            for (const Candidate& candidate : candidates_)
+                cut(cluster, candidate.power, candidate.cell);
     }
 
 private:
-    void cut(std::uint32_t cluster, const prt::Cell& cell) {
-        if (cell.level < std::min(FinestLevel, texel_level_)) {
-            for (std::uint32_t i = 0; i < 4; ++i)
-                cut(cluster, cell.child(i));
+    struct Candidate {
+        prt::Cell cell;
+        double power = 0.0;
+    };
+
+    /// The cells so many levels below, or texels, that have power enough.
+    void collect(const prt::Cell& cell, std::uint32_t levels_left) {
+        const double power = glm::length(binning_.sum(environment_, cell).luminance());
+        if (power < min_power_)
             return;
-        }
+        if (levels_left == 0 || cell.level >= texel_level_)
+            candidates_.push_back({cell, power});
+        else
+            for (std::uint32_t i = 0; i < 4; ++i)
+                collect(cell.child(i), levels_left - 1);
+    }
+
+    /// Quarters a sharp cell where its power is, dark parts stay in one piece.
+    void cut(std::uint32_t cluster, double sharp_power, const prt::Cell& cell) {
         const VectorIrradiance sum = binning_.sum(environment_, cell);
         const glm::dvec3 luminance = sum.luminance();
-        if (luminance != glm::dvec3(0.0))
-            lights_.push_back({.cluster = cluster,
-                               .cell = cell,
-                               .direction = glm::normalize(luminance),
-                               .irradiance = sum});
+        const double power = glm::length(luminance);
+        if (cell.level < std::min(FinestLevel, texel_level_) && power > FinestShare * sharp_power) {
+            for (std::uint32_t i = 0; i < 4; ++i)
+                cut(cluster, sharp_power, cell.child(i));
+        } else if (power > 0.0) {
+            lights_.push_back(
+                {.cluster = cluster, .cell = cell, .direction = luminance / power, .irradiance = sum});
+        }
     }
 
     const cubemap::CubeMap& environment_;
     const LightBinning& binning_;
     double min_power_;
     std::uint32_t texel_level_; ///< where a cell is no larger than a texel
+    std::vector<Candidate> candidates_;
     std::vector<SharpLight>& lights_;
 };
 
@@ -81,8 +105,8 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, c
 
     Search search(environment, binning, min_power, lights);
     for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster)
-        if (glm::length(sums[cluster].luminance()) >= min_power)
-            search.descend(cluster, clusters[cluster], LevelsBelowCluster);
+        if (const double power = glm::length(sums[cluster].luminance()); power >= min_power)
+            search.look_into(cluster, power, clusters[cluster]);
     return lights;
 }
 

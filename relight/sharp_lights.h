@@ -27,7 +27,7 @@ struct ShadowRays {
     float tolerance = 0.0135f; ///< of the precompute, RMS form, 1/sr
 };
 
-/// One such light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel).
+/// One such light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel) where the power is.
 struct SharpLight {
     std::uint32_t cluster = 0;
     prt::Cell cell = {};
@@ -38,7 +38,7 @@ struct SharpLight {
 
 /// The sharp lights of an environment, clusters ascending. A cell two levels below its cluster is sharp when it holds so much of the
 /// map's power P that the error a point light may make in the cluster, tolerance times its power, exceeds 0.25 % of the mean
-/// radiance P / (4 pi). There are a few dozen at most: large sources have no such cells.
+/// radiance P / (4 pi), and it or a sister more than an eighth of the cluster's power. There are a few dozen at most: large sources have no such cells.
 /// `sums`: full vector irradiance of each cluster, [clusters.size()]. Deterministic. O(clusters + texels of the brightest clusters).
 [[nodiscard]] std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                                         const LightBinning& binning,

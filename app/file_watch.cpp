@@ -1,0 +1,55 @@
+#include "app/file_watch.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <poll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+namespace relumine::app {
+
+FileWatch::FileWatch(const std::filesystem::path& path) : file_name_(path.filename().string()) {
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+    descriptor_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
+    // The folder, not the file: a renamed-over file is another file.
+    if (descriptor_ < 0 ||
+        ::inotify_add_watch(descriptor_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO) < 0) {
+        const int error = errno;
+        if (descriptor_ >= 0)
+            ::close(descriptor_);
+        throw std::runtime_error(fmt::format("{}: cannot watch: {}", path.string(), std::strerror(error)));
+    }
+}
+
+FileWatch::~FileWatch() {
+    ::close(descriptor_);
+}
+
+bool FileWatch::wait(const std::stop_token& stop) {
+    constexpr int PollMilliseconds = 50;
+    while (!stop.stop_requested()) {
+        pollfd entry{.fd = descriptor_, .events = POLLIN, .revents = 0};
+        if (::poll(&entry, 1, PollMilliseconds) <= 0)
+            continue;
+        alignas(inotify_event) std::array<char, 4096> buffer;
+        bool saved = false;
+        // Everything that has come in so far is one save.
+        for (ssize_t size = 0; (size = ::read(descriptor_, buffer.data(), buffer.size())) > 0;)
+            for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
+                inotify_event event{};
+                std::memcpy(&event, buffer.data() + at, sizeof event);
+                const char* name = buffer.data() + at + sizeof event;
+                saved = saved || (event.len > 0 && file_name_ == name);
+                at += sizeof event + event.len;
+            }
+        if (saved)
+            return true;
+    }
+    return false;
+}
+
+} // namespace relumine::app

@@ -1,0 +1,27 @@
+// Waits for a file to be saved by another program.
+#pragma once
+
+#include <filesystem>
+#include <stop_token>
+#include <string>
+
+namespace relumine::app {
+
+/// Watches one file by name, so that programs that write in place and programs that rename a new file over the old one both count.
+class FileWatch {
+public:
+    /// Throws std::runtime_error naming the path.
+    explicit FileWatch(const std::filesystem::path& path);
+    ~FileWatch();
+    FileWatch(const FileWatch&) = delete;
+    FileWatch& operator=(const FileWatch&) = delete;
+
+    /// Blocks until the file has been saved since the last call; false when asked to stop (noticed within 50 ms).
+    [[nodiscard]] bool wait(const std::stop_token& stop);
+
+private:
+    std::string file_name_;
+    int descriptor_ = -1;
+};
+
+} // namespace relumine::app
