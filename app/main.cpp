@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
     app::add_verify(program, session);
     app::add_info(program, session);
     app::add_generate(program, session);
+    app::add_view(program, session);
 
     // A script's unset variable must not read as 0 or as the current folder.
     const CLI::Validator not_empty(

@@ -1,0 +1,147 @@
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/environment_options.h"
+#include "app/lit_scene.h"
+#include "app/output_options.h"
+
+#ifndef RELUMINE_VIEWER_MISSING
+#include "viewer/view.h"
+#endif
+
+namespace relumine::app {
+
+namespace {
+
+struct Options {
+    SceneOptions scene;
+    EnvironmentOptions environment;
+    std::string layers;
+    std::string script;
+    std::string screenshot;
+    std::string size = "1440x860";
+    std::optional<double> exposure_ev;
+};
+
+#ifdef RELUMINE_VIEWER_MISSING
+
+void run(const Options& /*options*/, Session& /*session*/) {
+    throw std::runtime_error(
+        "view: this relumine was built without its window; missing were: " RELUMINE_VIEWER_MISSING);
+}
+
+#else
+
+void set_size(const std::string& text, viewer::ViewOptions& view) {
+    const std::size_t x = text.find('x');
+    const auto number = [](const std::string& digits) {
+        int value = 0;
+        const bool good = CLI::detail::lexical_cast(digits, value) && value >= 320 && value <= 16384;
+        return good ? value : 0;
+    };
+    view.width = x == std::string::npos ? 0 : number(text.substr(0, x));
+    view.height = x == std::string::npos ? 0 : number(text.substr(x + 1));
+    if (view.width == 0 || view.height == 0)
+        throw CLI::ValidationError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
+}
+
+/// Without an environment: an even grey, in which layers show.
+cubemap::CubeMap plain_grey() {
+    constexpr std::uint32_t Resolution = 256;
+    return cubemap::CubeMap(Resolution, glm::vec3(0.25f));
+}
+
+void report(const viewer::ViewReport& result, const relight::LightEditor& editor, const Session& session) {
+    const std::vector<double>& seconds = result.drag_seconds;
+    double sum = 0.0;
+    double worst = 0.0;
+    for (const double value : seconds) {
+        sum += value;
+        worst = std::max(worst, value);
+    }
+    const double mean = seconds.empty() ? 0.0 : sum / static_cast<double>(seconds.size());
+    session.say(fmt::format("{} frames, {:.1f} ms each ({}); {} drag events relit in {:.2f} ms on average, "
+                            "{:.2f} ms at worst",
+                            result.num_frames, 1e3 * result.mean_frame_seconds, result.renderer,
+                            seconds.size(), 1e3 * mean, 1e3 * worst));
+    session.report({{"renderer", result.renderer},
+                    {"frames", result.num_frames},
+                    {"seconds_frame_mean", result.mean_frame_seconds},
+                    {"clusters", editor.relighter().transfer().num_clusters()},
+                    {"receivers", editor.radiance().size()},
+                    {"face_resolution", editor.environment().resolution},
+                    {"drag_events", seconds.size()},
+                    {"seconds_drag_mean", mean},
+                    {"seconds_drag_worst", worst},
+                    {"seconds_drag", seconds}});
+}
+
+void run(const Options& options, Session& session) {
+    viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
+    set_size(options.size, view);
+    if (!options.screenshot.empty())
+        check_output(options.screenshot, {options.scene.path, options.environment.path, options.script});
+    if (!options.script.empty())
+        view.script = viewer::load_script(options.script);
+    else if (!options.screenshot.empty())
+        view.script = std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
+
+    const LitScene lit(options.scene);
+    session.poll();
+    const auto load = [&](const std::filesystem::path& path) {
+        EnvironmentOptions environment = options.environment;
+        environment.path = path.string();
+        environment.rotate_degrees = 0.0; // the window turns it itself
+        return load_environment(environment, session).map;
+    };
+    relight::LightEditor editor(lit.scene().transfer, lit.shadow_rays());
+    const std::string& path = options.environment.path;
+    editor.set_base(path.empty() ? plain_grey() : load(path));
+    viewer::LightDesk desk(editor);
+    viewer::ViewState state{.mesh = lit.scene().mesh,
+                            .rays = lit.rays(),
+                            .desk = desk,
+                            .load_environment = load,
+                            .environment_path = path};
+    if (options.environment.rotate_degrees != 0.0)
+        desk.set_rotation(options.environment.rotate_degrees);
+    if (!options.layers.empty() && !viewer::open(state, options.layers))
+        throw std::runtime_error(state.message);
+    state.scene_look.exposure_ev = options.exposure_ev ? static_cast<float>(*options.exposure_ev)
+                                                       : viewer::sane_exposure_ev(editor.radiance());
+    state.environment_look.exposure_ev = state.scene_look.exposure_ev;
+    report(viewer::view(state, view), editor, session);
+    session.poll();
+}
+
+#endif
+
+} // namespace
+
+void add_view(CLI::App& program, Session& session) {
+    CLI::App& command = *program.add_subcommand("view", "light the scene by hand, in a window");
+    auto options = std::make_shared<Options>();
+    options->scene.add_to(command);
+    options->environment.add_to(command);
+    command.get_option("ENV")->required(false);
+    command.add_option("--layers", options->layers, "light layers to begin with, .json");
+    command.add_option("--exposure", options->exposure_ev, "stops; without it what suits the scene")
+        ->check(number_between(-100.0, 100.0));
+    command.add_option("--size", options->size, "the window's size")->capture_default_str();
+    command.add_option("--script", options->script,
+                       "play a script instead of waiting for a person (docs/viewer.md)");
+    command.add_option("--screenshot", options->screenshot,
+                       "write the last frame of the script, or the first there is, as .png or .exr");
+    session.add_common_options(command);
+    command.callback([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

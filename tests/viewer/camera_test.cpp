@@ -1,0 +1,92 @@
+#include "viewer/orbit_camera.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+#include <gtest/gtest.h>
+
+#include "viewer/look.h"
+#include "viewer/panel_layout.h"
+
+namespace relumine::viewer {
+namespace {
+
+constexpr PixelRectangle Viewport{.x = 30, .y = 40, .width = 400, .height = 300};
+
+/// Where a point appears in the window.
+glm::vec2 seen_at(const OrbitCamera& camera, const glm::vec3& point) {
+    const glm::vec4 clip = clip_from_world(camera, Viewport, 10.0f) * glm::vec4(point, 1.0f);
+    return {30.0f + 400.0f * (0.5f + 0.5f * clip.x / clip.w),
+            40.0f + 300.0f * (0.5f - 0.5f * clip.y / clip.w)};
+}
+
+TEST(OrbitCamera, SeesWhatTheCameraItWasMadeFromSees) {
+    const relight::Camera other{
+        .eye = {3.0f, 2.0f, 4.0f}, .target = {0.5f, 1.0f, -1.0f}, .fov_degrees = 40.0f};
+    const OrbitCamera camera = orbit_camera(other);
+    EXPECT_LT(glm::length(camera.eye() - other.eye), 1e-5f);
+    EXPECT_EQ(camera.target, other.target);
+    EXPECT_EQ(camera.fov_degrees, 40.0f);
+}
+
+TEST(OrbitCamera, FromTheFrontXIsToTheRightAndYUp) {
+    const OrbitCamera camera{.distance = 5.0f};
+    EXPECT_GT(seen_at(camera, {1, 0, 0}).x, seen_at(camera, {0, 0, 0}).x);
+    EXPECT_LT(seen_at(camera, {0, 1, 0}).y, seen_at(camera, {0, 0, 0}).y);
+}
+
+TEST(OrbitCamera, RayThroughAPixelMeetsThePointThatIsSeenThere) {
+    const OrbitCamera camera{.target = {0.2f, 0.1f, 0.3f}, .distance = 4.0f, .yaw = 0.7f, .pitch = 0.4f};
+    const glm::vec3 point(0.6f, -0.4f, 0.9f);
+    const Ray ray = ray_through(camera, Viewport, seen_at(camera, point));
+    EXPECT_LT(glm::length(glm::cross(ray.direction, glm::normalize(point - ray.origin))), 1e-4f);
+}
+
+TEST(OrbitCamera, PanningMovesTheTargetWithThePointer) {
+    OrbitCamera camera{.target = {1, 2, 3}, .distance = 4.0f, .yaw = 0.5f, .pitch = 0.3f};
+    const glm::vec3 point = camera.target;
+    const glm::vec2 before = seen_at(camera, point);
+    camera.pan({25.0f, -13.0f}, Viewport);
+    const glm::vec2 after = seen_at(camera, point);
+    EXPECT_NEAR(after.x - before.x, 25.0f, 0.1f);
+    EXPECT_NEAR(after.y - before.y, -13.0f, 0.1f);
+}
+
+TEST(OrbitCamera, DraggingToTheRightTurnsTheFrontToTheRightAndNeverGoesOverTheTop) {
+    OrbitCamera camera{.distance = 5.0f};
+    camera.orbit({40.0f, 0.0f});
+    EXPECT_GT(seen_at(camera, {0, 0, 1}).x, seen_at(camera, {0, 0, 0}).x);
+    camera.orbit({0.0f, 1e6f});
+    EXPECT_LT(camera.pitch, 1.5708f);
+    EXPECT_GT(camera.eye().y, 4.9f);
+}
+
+TEST(PanelLayout, PanelsFillTheWindowWithoutOverlaps) {
+    for (const int width : {320, 800, 1440, 4000})
+        for (const int height : {320, 600, 860, 2000}) {
+            const PanelLayout layout = panel_layout(width, height);
+            const std::vector<PixelRectangle> panels = {
+                layout.scene_tools, layout.scene,  layout.environment_tools,
+                layout.environment, layout.layers, layout.status};
+            for (int y = 0; y < height; y += 7)
+                for (int x = 0; x < width; x += 13)
+                    EXPECT_LE(std::count_if(panels.begin(), panels.end(),
+                                            [&](const PixelRectangle& p) { return p.contains(x, y); }),
+                              1);
+            EXPECT_EQ(layout.environment.x + layout.environment.width, width);
+            EXPECT_EQ(layout.status.y + layout.status.height, height);
+        }
+}
+
+TEST(SaneExposure, LeavesWhatIsFineAndLiftsWhatIsDark) {
+    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(0.9f))), 0.0f);
+    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(1.0f / 64.0f))), 6.0f);
+    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(256.0f))), -8.0f);
+    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(0.0f))), 0.0f);
+    EXPECT_EQ(sane_exposure_ev({}), 0.0f);
+}
+
+} // namespace
+} // namespace relumine::viewer

@@ -1,0 +1,203 @@
+// The window as a user has it, on a display without a screen: a script drags a light, the pictures show what it lights.
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "cubemap/environment.h"
+#include "cubemap/light_layer.h"
+#include "data_gen/scenes.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "prt/receivers.h"
+#include "prt/scene_file.h"
+#include "viewer/view_state.h"
+
+namespace relumine::viewer {
+namespace {
+
+constexpr int Width = 800;
+constexpr int Height = 500;
+
+class WindowTest : public testing::Test {
+protected:
+    void SetUp() override {
+        if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
+            GTEST_SKIP() << "needs xvfb-run (Debian packages xvfb and xauth): no window is tested here";
+        std::string pattern = (std::filesystem::temp_directory_path() / "relumine-view-XXXXXX").string();
+        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+        folder_ = pattern;
+
+        const mesh::TriangleMesh mesh = data_gen::sphere(4000);
+        const prt::Receivers receivers = prt::vertex_receivers(mesh);
+        const prt::RayScene rays(mesh);
+        const prt::PrecomputeOptions options{
+            .tolerance = 0.03f, .face_resolution = 64, .bias = prt::automatic_bias(mesh)};
+        prt::save_scene(
+            folder_ / "scene.prt",
+            {.mesh = mesh,
+             .transfer = prt::precompute(receivers, rays, options),
+             .settings = {.tolerance = options.tolerance, .face_resolution = 64, .bias = options.bias}});
+        // Bluish above, so that the background tells where up is.
+        cubemap::CubeMap environment(32, glm::vec3(0.05f));
+        for (std::uint32_t y = 0; y < 32; ++y)
+            for (std::uint32_t x = 0; x < 32; ++x)
+                environment.at(cubemap::Face::PositiveY, x, y) = glm::vec3(0.05f, 0.05f, 0.2f);
+        cubemap::save_environment(folder_ / "env.exr", environment);
+        viewport_ = panel_layout(Width, Height).scene;
+        camera_ = camera_on_all(mesh, viewport_);
+    }
+    void TearDown() override {
+        if (!folder_.empty())
+            std::filesystem::remove_all(folder_);
+    }
+
+    /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
+    [[nodiscard]] int play(const std::string& script) const {
+        std::ofstream(folder_ / "script") << script;
+        const std::string command = fmt::format(
+            "cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s '-screen 0 1280x1024x24' '{}' view scene.prt "
+            "env.exr --script script --size {}x{} --exposure 0 --json >out.txt 2>err.txt",
+            folder_.string(), RELUMINE_BINARY, Width, Height);
+        const int status = std::system(command.c_str());
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+    [[nodiscard]] std::string words(const std::string& name) const {
+        std::ifstream file(folder_ / name);
+        return {std::istreambuf_iterator<char>(file), {}};
+    }
+    [[nodiscard]] cubemap::Picture::Level picture(const std::string& name) const {
+        return cubemap::load_picture(folder_ / name)->levels().front();
+    }
+    /// The window's pixel at which a point of the world is seen.
+    [[nodiscard]] std::array<int, 2> pixel_of(const glm::vec3& point) const {
+        const CameraFrame axes = frame(camera_, viewport_);
+        const glm::vec3 from_eye = point - camera_.eye();
+        const float depth = glm::dot(from_eye, axes.forward);
+        const float x = glm::dot(from_eye, axes.right) / glm::dot(axes.right, axes.right) / depth;
+        const float y = glm::dot(from_eye, axes.up) / glm::dot(axes.up, axes.up) / depth;
+        return {viewport_.x + static_cast<int>((0.5f + 0.5f * x) * static_cast<float>(viewport_.width)),
+                viewport_.y + static_cast<int>((0.5f - 0.5f * y) * static_cast<float>(viewport_.height))};
+    }
+    /// Green, the mean of 5 x 5 pixels.
+    [[nodiscard]] static float brightness(const cubemap::Picture::Level& picture,
+                                          const std::array<int, 2>& at) {
+        float sum = 0.0f;
+        for (int y = at[1] - 2; y <= at[1] + 2; ++y)
+            for (int x = at[0] - 2; x <= at[0] + 2; ++x)
+                sum +=
+                    picture.pixels[static_cast<std::size_t>(y) * picture.width + static_cast<std::size_t>(x)]
+                        .g;
+        return sum / 25.0f;
+    }
+    /// Whether two pictures agree bit by bit in a part of the window.
+    [[nodiscard]] static bool equal(const cubemap::Picture::Level& a, const cubemap::Picture::Level& b,
+                                    const PixelRectangle& part) {
+        for (int y = part.y; y < part.y + part.height; ++y)
+            for (int x = part.x; x < part.x + part.width; ++x) {
+                const std::size_t i = static_cast<std::size_t>(y) * a.width + static_cast<std::size_t>(x);
+                if (a.pixels[i] != b.pixels[i])
+                    return false;
+            }
+        return true;
+    }
+
+    std::filesystem::path folder_;
+    PixelRectangle viewport_;
+    OrbitCamera camera_;
+    // On the sphere, towards the camera and to both sides of it.
+    glm::vec3 right_ = data_gen::SphereCenter + glm::normalize(glm::vec3(0.85f, 0.2f, 0.4f));
+    glm::vec3 left_ = data_gen::SphereCenter + glm::normalize(glm::vec3(-0.65f, 0.2f, 0.65f));
+};
+
+TEST_F(WindowTest, ADraggedDiscLightsTheOtherSideAndUndoBringsItBack) {
+    ASSERT_EQ(play("add_disc Key 1,0.2,0.3 20\n"
+                   "set_gain Key 2\n"
+                   "wait 2\n"
+                   "screenshot before.exr\n"
+                   "drag_layer Key -1,0.2,0.3 12\n"
+                   "wait 1\n"
+                   "screenshot after.exr\n"
+                   "undo\n"
+                   "wait 1\n"
+                   "screenshot undone.exr\n"
+                   "quit\n"),
+              0)
+        << words("err.txt");
+    EXPECT_EQ(words("err.txt"), "");
+    const nlohmann::json report = nlohmann::json::parse(words("out.txt"));
+    EXPECT_EQ(report["drag_events"], 12);
+    EXPECT_GT(report["seconds_drag_mean"], 0.0);
+
+    const cubemap::Picture::Level before = picture("before.exr");
+    const cubemap::Picture::Level after = picture("after.exr");
+    const cubemap::Picture::Level undone = picture("undone.exr");
+    ASSERT_EQ(before.width, static_cast<std::uint32_t>(Width));
+    ASSERT_EQ(before.height, static_cast<std::uint32_t>(Height));
+    // Light from the right, then from the left: no mirror image.
+    EXPECT_GT(brightness(before, pixel_of(right_)), 3.0f * brightness(before, pixel_of(left_)));
+    EXPECT_GT(brightness(after, pixel_of(left_)), 3.0f * brightness(after, pixel_of(right_)));
+    // Behind the mesh nothing has changed, nor in the tools over it.
+    const PixelRectangle corner{.x = viewport_.x, .y = viewport_.y, .width = viewport_.width, .height = 8};
+    EXPECT_TRUE(equal(before, after, corner));
+    EXPECT_TRUE(equal(before, after, panel_layout(Width, Height).scene_tools));
+    // The environment's picture shows the disc where it is now: +X left of the centre, -X right of it.
+    const PixelRectangle map = panel_layout(Width, Height).environment;
+    const std::array left_in_map = {map.x + map.width * 29 / 100, map.y + map.height * 48 / 100};
+    const std::array right_in_map = {map.x + map.width * 71 / 100, map.y + map.height * 48 / 100};
+    EXPECT_GT(brightness(before, left_in_map), 4.0f * brightness(before, right_in_map));
+    EXPECT_GT(brightness(after, right_in_map), 4.0f * brightness(after, left_in_map));
+
+    EXPECT_TRUE(equal(before, undone, viewport_));
+    EXPECT_TRUE(equal(before, undone, map));
+}
+
+TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
+    const PixelRectangle map = panel_layout(Width, Height).environment;
+    const auto on_map = [&](const glm::dvec3& direction) {
+        const glm::dvec2 pixel = LatLongView{}.pixel_of(map, direction);
+        return fmt::format("{} {}", std::lround(pixel.x), std::lround(pixel.y));
+    };
+    const std::array on_sphere = pixel_of(right_);
+    ASSERT_EQ(play(fmt::format("add_disc Key 1,0.2,0.3 20\n"
+                               "screenshot before.exr\n"
+                               "drag_env {} {}\n"
+                               "screenshot moved.exr\n"
+                               "save_layers saved.json\n"
+                               "click_mesh {} {}\n"
+                               "wait 1\n"
+                               "screenshot heat.exr\n"
+                               "drag_mesh 200 250 300 250\n"
+                               "screenshot turned.exr\n",
+                               on_map({1, 0.2, 0.3}), on_map({-1, 0.2, 0.3}), on_sphere[0], on_sphere[1])),
+              0)
+        << words("err.txt");
+    const cubemap::LightLayers saved = cubemap::load_layers(folder_ / "saved.json");
+    ASSERT_EQ(saved.layers.size(), 1u);
+    EXPECT_LT(angle_between(std::get<cubemap::Disc>(saved.layers[0].region).direction, {-1, 0.2, 0.3}), 2.0);
+
+    const cubemap::Picture::Level moved = picture("moved.exr");
+    EXPECT_GT(brightness(moved, pixel_of(left_)), 1.5f * brightness(moved, pixel_of(right_)));
+    const cubemap::Picture::Level heat = picture("heat.exr");
+    EXPECT_FALSE(equal(moved, heat, map));
+    const PixelRectangle upper{
+        .x = viewport_.x, .y = viewport_.y, .width = viewport_.width, .height = viewport_.height / 8};
+    EXPECT_TRUE(equal(moved, heat, upper));
+    EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
+}
+
+TEST_F(WindowTest, AScriptThatFailsEndsWithOneLine) {
+    EXPECT_EQ(play("drag_layer Nobody 1,0,0\n"), 1);
+    EXPECT_EQ(words("err.txt"), "relumine: script line 1: expected the name of a layer, got 'Nobody'\n");
+    EXPECT_EQ(play("open missing.exr\n"), 1);
+    EXPECT_NE(words("err.txt").find("missing.exr"), std::string::npos);
+}
+
+} // namespace
+} // namespace relumine::viewer

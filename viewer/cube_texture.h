@@ -1,0 +1,32 @@
+// A cube map of radiance on the graphics card.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/texel_rectangle.h"
+#include "viewer/gl_objects.h"
+
+namespace relumine::viewer {
+
+/// OpenGL's cube maps are seen from outside, ours from inside: faces go to the slot of their mirror image in z, and shaders look up
+/// (x, y, -z). cube_lookup_source() does so.
+class CubeTexture {
+public:
+    CubeTexture();
+    /// All of it where the resolution is new, else the rectangles.
+    void upload(const cubemap::CubeMap& map, std::span<const cubemap::TexelRectangle> rectangles);
+    [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
+    void bind(GLenum unit) const;
+
+private:
+    GlTexture texture_;
+    std::uint32_t resolution_ = 0;
+};
+
+/// `vec3 looked_up(samplerCube cube, vec3 direction)`.
+[[nodiscard]] std::string cube_lookup_source();
+
+} // namespace relumine::viewer

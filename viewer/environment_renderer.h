@@ -1,0 +1,35 @@
+// Draws the environment as a lat-long, with the clusters' borders and what lights a receiver laid over it.
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "cubemap/cube_map.h"
+#include "prt/quadtree.h"
+#include "viewer/cube_texture.h"
+#include "viewer/gl_objects.h"
+#include "viewer/lat_long_view.h"
+#include "viewer/look.h"
+
+namespace relumine::viewer {
+
+class EnvironmentRenderer {
+public:
+    explicit EnvironmentRenderer(const prt::Quadtree& quadtree);
+    /// What lights the chosen receiver (relight::contribution_map()); its brightest part becomes the hottest.
+    void upload_heat(const cubemap::CubeMap& contribution);
+    /// Into the current viewport, which is `viewport`.
+    void draw(const LatLongView& view, const PixelRectangle& viewport, const CubeTexture& environment,
+              const EnvironmentLook& look) const;
+
+private:
+    GlProgram program_;
+    GlProgram line_program_;
+    GlVertexArray line_array_;
+    GlVertexArray no_array_;
+    GlBuffer lines_;
+    GLsizei num_line_ends_ = 0;
+    CubeTexture heat_;
+    float hottest_ = 1.0f;
+};
+
+} // namespace relumine::viewer

@@ -1,0 +1,104 @@
+#include "viewer/gl_objects.h"
+
+#include <stdexcept>
+
+#include <glm/gtc/type_ptr.hpp>
+
+namespace relumine::viewer {
+
+namespace {
+
+GLuint compile(GLenum kind, const std::string& source) {
+    const std::string whole = "#version 330 core\n" + source;
+    const char* text = whole.c_str();
+    const GLuint shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &text, nullptr);
+    glCompileShader(shader);
+    GLint done = 0;
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
+    if (done == 0) {
+        char message[1024] = {};
+        glGetShaderInfoLog(shader, sizeof message, nullptr, message);
+        glDeleteShader(shader);
+        throw std::runtime_error(std::string("OpenGL: a shader did not compile: ") + message);
+    }
+    return shader;
+}
+
+} // namespace
+
+GLuint BufferTraits::make() {
+    GLuint id = 0;
+    glGenBuffers(1, &id);
+    return id;
+}
+void BufferTraits::free(GLuint id) {
+    glDeleteBuffers(1, &id);
+}
+GLuint VertexArrayTraits::make() {
+    GLuint id = 0;
+    glGenVertexArrays(1, &id);
+    return id;
+}
+void VertexArrayTraits::free(GLuint id) {
+    glDeleteVertexArrays(1, &id);
+}
+GLuint TextureTraits::make() {
+    GLuint id = 0;
+    glGenTextures(1, &id);
+    return id;
+}
+void TextureTraits::free(GLuint id) {
+    glDeleteTextures(1, &id);
+}
+
+GlProgram::GlProgram(const std::string& vertex_source, const std::string& fragment_source) {
+    const GLuint vertex = compile(GL_VERTEX_SHADER, vertex_source);
+    const GLuint fragment = compile(GL_FRAGMENT_SHADER, fragment_source);
+    id_ = glCreateProgram();
+    glAttachShader(id_, vertex);
+    glAttachShader(id_, fragment);
+    glLinkProgram(id_);
+    glDeleteShader(vertex);
+    glDeleteShader(fragment);
+    GLint done = 0;
+    glGetProgramiv(id_, GL_LINK_STATUS, &done);
+    if (done == 0) {
+        char message[1024] = {};
+        glGetProgramInfoLog(id_, sizeof message, nullptr, message);
+        glDeleteProgram(id_);
+        throw std::runtime_error(std::string("OpenGL: shaders did not link: ") + message);
+    }
+}
+
+GlProgram::~GlProgram() {
+    glDeleteProgram(id_);
+}
+
+void GlProgram::set(const char* name, int value) const {
+    glUniform1i(glGetUniformLocation(id_, name), value);
+}
+void GlProgram::set(const char* name, float value) const {
+    glUniform1f(glGetUniformLocation(id_, name), value);
+}
+void GlProgram::set(const char* name, const glm::vec2& value) const {
+    glUniform2fv(glGetUniformLocation(id_, name), 1, glm::value_ptr(value));
+}
+void GlProgram::set(const char* name, const glm::vec3& value) const {
+    glUniform3fv(glGetUniformLocation(id_, name), 1, glm::value_ptr(value));
+}
+void GlProgram::set(const char* name, const glm::mat4& value) const {
+    glUniformMatrix4fv(glGetUniformLocation(id_, name), 1, GL_FALSE, glm::value_ptr(value));
+}
+
+std::string shown_source() {
+    return R"(
+uniform float exposure; // factor
+vec3 shown(vec3 radiance) {
+    vec3 x = clamp(radiance * exposure, 0.0, 1.0);
+    return mix(12.92 * x, 1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, step(vec3(0.0031308), x));
+}
+)";
+}
+
+} // namespace relumine::viewer

@@ -1,0 +1,75 @@
+// OpenGL objects that free themselves. All of them need a current context, to the end.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include <epoxy/gl.h>
+#include <glm/mat4x4.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+namespace relumine::viewer {
+
+/// A handle with its own way of being made and freed.
+template<typename Traits>
+class GlObject {
+public:
+    GlObject() : id_(Traits::make()) {}
+    ~GlObject() {
+        if (id_ != 0)
+            Traits::free(id_);
+    }
+    GlObject(GlObject&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+    GlObject& operator=(GlObject&& other) noexcept {
+        std::swap(id_, other.id_);
+        return *this;
+    }
+    [[nodiscard]] GLuint id() const { return id_; }
+
+private:
+    GLuint id_ = 0;
+};
+
+struct BufferTraits {
+    static GLuint make();
+    static void free(GLuint id);
+};
+struct VertexArrayTraits {
+    static GLuint make();
+    static void free(GLuint id);
+};
+struct TextureTraits {
+    static GLuint make();
+    static void free(GLuint id);
+};
+
+using GlBuffer = GlObject<BufferTraits>;
+using GlVertexArray = GlObject<VertexArrayTraits>;
+using GlTexture = GlObject<TextureTraits>;
+
+/// A vertex and a fragment shader, with `#version 330 core` put before.
+class GlProgram {
+public:
+    /// Throws std::runtime_error with the compiler's words.
+    GlProgram(const std::string& vertex_source, const std::string& fragment_source);
+    ~GlProgram();
+    GlProgram(const GlProgram&) = delete;
+    GlProgram& operator=(const GlProgram&) = delete;
+
+    /// Makes it current; the setters work on the current program.
+    void use() const { glUseProgram(id_); }
+    void set(const char* name, int value) const;
+    void set(const char* name, float value) const;
+    void set(const char* name, const glm::vec2& value) const;
+    void set(const char* name, const glm::vec3& value) const;
+    void set(const char* name, const glm::mat4& value) const;
+
+private:
+    GLuint id_ = 0;
+};
+
+/// `vec3 shown(vec3 radiance)`: exposure and the sRGB curve, as relight::save_picture() writes a PNG; with its uniform `exposure`.
+[[nodiscard]] std::string shown_source();
+
+} // namespace relumine::viewer

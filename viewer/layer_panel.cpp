@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <functional>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "viewer/panels.h"
+
+namespace relumine::viewer {
+
+namespace {
+
+constexpr const char* Degrees = "%.1f\xc2\xb0";
+
+/// A layer of a kind where the environment's view looks, as bright as the scene's exposure asks for.
+cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap::Region region,
+                              cubemap::Effect effect) {
+    const glm::dvec3 direction = turned(direction_at(state.lat_long.center), -state.desk.editor().rotation());
+    if (auto* disc = std::get_if<cubemap::Disc>(&region))
+        disc->direction = direction;
+    else if (auto* box = std::get_if<cubemap::Rectangle>(&region))
+        box->direction = direction;
+    if (auto* emit = std::get_if<cubemap::Emit>(&effect))
+        emit->radiance = glm::vec3(4.0f * std::exp2(-state.scene_look.exposure_ev));
+    return {.name = std::move(name), .region = std::move(region), .effect = std::move(effect)};
+}
+
+void add_buttons(ViewState& state) {
+    if (ImGui::Button("+ Disc"))
+        state.desk.add(new_layer(state, "Disc", cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
+                                 cubemap::Emit{}));
+    ImGui::SameLine();
+    if (ImGui::Button("+ Soft box"))
+        state.desk.add(
+            new_layer(state, "Soft box",
+                      cubemap::Rectangle{.width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
+                      cubemap::Emit{}));
+    ImGui::SameLine();
+    if (ImGui::Button("+ Gain"))
+        state.desk.add(new_layer(state, "Gain", cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
+                                 cubemap::Gain{.factor = 0.25f}));
+    ImGui::SameLine();
+    if (ImGui::Button("+ Stroke"))
+        state.tool = Tool::Paint;
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("paint one into the environment");
+    ImGui::SameLine(0.0f, 24.0f);
+    if (ImGui::Button("Undo"))
+        state.desk.undo();
+    ImGui::SameLine();
+    if (ImGui::Button("Redo"))
+        state.desk.redo();
+}
+
+const char* kind(const cubemap::LightLayer& layer) {
+    if (std::holds_alternative<cubemap::Gain>(layer.effect))
+        return "gain";
+    if (std::holds_alternative<cubemap::ImagePatch>(layer.effect))
+        return "image";
+    constexpr const char* Kinds[] = {"disc", "soft box", "lasso", "stroke"};
+    return Kinds[layer.region.index()];
+}
+
+/// Changes while an item is held, and a step of undo when it is let go.
+class Form {
+public:
+    Form(ViewState& state, std::size_t index)
+        : state_(state), index_(index), layer_(state.desk.layers()[index]) {}
+    ~Form() = default;
+    Form(const Form&) = delete;
+    Form& operator=(const Form&) = delete;
+
+    [[nodiscard]] cubemap::LightLayer& layer() { return layer_; }
+
+    void number(const char* label, double& value, double min, double max, const char* format,
+                ImGuiSliderFlags flags = 0) {
+        auto shown = static_cast<float>(value);
+        const bool changed = ImGui::SliderFloat(label, &shown, static_cast<float>(min),
+                                                static_cast<float>(max), format, flags);
+        if (changed)
+            value = std::clamp(static_cast<double>(shown), min, max);
+        note(changed);
+    }
+    void color(const char* label, glm::vec3& value) {
+        const bool changed =
+            ImGui::ColorEdit3(label, &value.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+        value = glm::max(value, glm::vec3(0.0f));
+        note(changed);
+    }
+    void note(bool changed) {
+        changed_ = changed_ || changed;
+        finished_ = finished_ || ImGui::IsItemDeactivatedAfterEdit();
+    }
+    void apply() {
+        if (changed_)
+            state_.desk.change(index_, layer_);
+        if (finished_) {
+            state_.desk.finish();
+            state_.heat_is_stale = true;
+        }
+    }
+
+private:
+    ViewState& state_;
+    std::size_t index_;
+    cubemap::LightLayer layer_;
+    bool changed_ = false;
+    bool finished_ = false;
+};
+
+/// One row of the list. Returns what to do to the list as a whole, once it is drawn.
+std::function<void()> layer_row(ViewState& state, std::size_t index) {
+    std::function<void()> later;
+    const cubemap::LightLayer layer = state.desk.layers()[index];
+    ImGui::PushID(static_cast<int>(index));
+    bool on = layer.on;
+    if (ImGui::Checkbox("##on", &on)) {
+        cubemap::LightLayer changed = layer;
+        changed.on = on;
+        later = [&state, index, changed] {
+            state.desk.change(index, changed);
+            state.desk.finish();
+        };
+    }
+    ImGui::SameLine();
+    const float width = ImGui::GetContentRegionAvail().x - 190.0f;
+    if (ImGui::Selectable(layer.name.c_str(), state.desk.selected() == index, 0, {width, 0.0f}))
+        state.desk.select(index);
+    ImGui::SameLine();
+    ImGui::TextDisabled("%-8s %+.1f", kind(layer), layer.gain_ev);
+    ImGui::SameLine(ImGui::GetContentRegionMax().x - 80.0f);
+    const std::size_t top = state.desk.layers().size() - 1;
+    if (ImGui::ArrowButton("##up", ImGuiDir_Up) && index < top)
+        later = [&state, index] {
+            state.desk.reorder(index, index + 1);
+        };
+    ImGui::SameLine(0.0f, 2.0f);
+    if (ImGui::ArrowButton("##down", ImGuiDir_Down) && index > 0)
+        later = [&state, index] {
+            state.desk.reorder(index, index - 1);
+        };
+    ImGui::SameLine(0.0f, 2.0f);
+    if (ImGui::Button("x"))
+        later = [&state, index] {
+            state.desk.remove(index);
+        };
+    ImGui::PopID();
+    return later;
+}
+
+void region_fields(Form& form) {
+    constexpr ImGuiSliderFlags Log = ImGuiSliderFlags_Logarithmic;
+    if (auto* disc = std::get_if<cubemap::Disc>(&form.layer().region)) {
+        form.number("Radius", disc->radius_degrees, 0.05, 180.0, Degrees, Log);
+        form.number("Softness", disc->softness, 0.0, 1.0, "%.2f");
+    } else if (auto* box = std::get_if<cubemap::Rectangle>(&form.layer().region)) {
+        form.number("Width", box->width_degrees, 0.1, 170.0, Degrees);
+        form.number("Height", box->height_degrees, 0.1, 170.0, Degrees);
+        form.number("Roll", box->roll_degrees, -180.0, 180.0, Degrees);
+        form.number("Softness", box->softness, 0.0, 1.0, "%.2f");
+    } else if (auto* stroke = std::get_if<cubemap::Stroke>(&form.layer().region)) {
+        form.number("Radius", stroke->radius_degrees, 0.05, 90.0, Degrees, Log);
+        form.number("Softness", stroke->softness, 0.0, 1.0, "%.2f");
+    } else if (auto* lasso = std::get_if<cubemap::Lasso>(&form.layer().region)) {
+        form.number("Softness", lasso->softness_degrees, 0.0, 90.0, Degrees);
+    }
+}
+
+void layer_fields(ViewState& state, std::size_t index) {
+    Form form(state, index);
+    ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.62f);
+    std::string name = form.layer().name;
+    const bool renamed = ImGui::InputText("Name", &name);
+    const std::optional<std::size_t> other = state.desk.find(name);
+    if (renamed && !name.empty() && (!other || *other == index))
+        form.layer().name = name;
+    form.note(renamed);
+    form.number("Gain", form.layer().gain_ev, -12.0, 12.0, "%+.2f EV");
+    if (auto* emit = std::get_if<cubemap::Emit>(&form.layer().effect)) {
+        form.color("Radiance", emit->radiance);
+    } else if (auto* gain = std::get_if<cubemap::Gain>(&form.layer().effect)) {
+        double factor = gain->factor;
+        form.number("Factor", factor, 0.0, 16.0, "%.3f", ImGuiSliderFlags_Logarithmic);
+        gain->factor = static_cast<float>(factor);
+        form.color("Tint", gain->tint);
+    }
+    region_fields(form);
+    ImGui::PopItemWidth();
+    form.apply();
+}
+
+void files(ViewState& state) {
+    ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 245.0f);
+    const bool entered =
+        ImGui::InputTextWithHint("##path", "file: .exr .hdr .json, or drop one on the window", &state.path,
+                                 ImGuiInputTextFlags_EnterReturnsTrue);
+    ImGui::SameLine();
+    if (ImGui::Button("Open") || entered)
+        open(state, state.path);
+    ImGui::SameLine();
+    if (ImGui::Button("Save layers"))
+        save_layers(state, state.path);
+    ImGui::SameLine();
+    if (ImGui::Button("Save env"))
+        save_environment(state, state.path);
+}
+
+} // namespace
+
+void layer_panel(ViewState& state, const PanelLayout& layout) {
+    begin_panel("layers", layout.layers);
+    const auto work = [&] {
+        add_buttons(state);
+        ImGui::Spacing();
+        std::function<void()> later;
+        const float fields_height = state.desk.selected() ? 270.0f : 44.0f;
+        const float list_height = std::max(ImGui::GetContentRegionAvail().y - fields_height, 90.0f);
+        ImGui::BeginChild("list", {0.0f, list_height}, true);
+        for (std::size_t i = state.desk.layers().size(); i-- > 0;) // the top of the stack first
+            if (std::function<void()> wanted = layer_row(state, i))
+                later = std::move(wanted);
+        if (state.desk.layers().empty())
+            ImGui::TextDisabled("No layers yet: the environment as it is.");
+        ImGui::EndChild();
+        if (later) {
+            later();
+            state.heat_is_stale = true;
+        }
+        if (state.desk.selected())
+            layer_fields(state, *state.desk.selected());
+    };
+    try {
+        work();
+    } catch (const std::exception& error) { // a number that no layer can have
+        state.message = error.what();
+        state.message_is_error = true;
+    }
+    ImGui::SetCursorPosY(static_cast<float>(layout.layers.height) - ImGui::GetFrameHeight() - 8.0f);
+    files(state);
+    ImGui::End();
+}
+
+void status_panel(const ViewState& state, const PanelLayout& layout) {
+    begin_panel("status", layout.status);
+    const relight::LightEditor& editor = state.desk.editor();
+    const EditCost& cost = state.desk.last_cost();
+    ImGui::Text("frame %.1f ms", 1e3 * state.frame_seconds);
+    ImGui::SameLine(0.0f, 22.0f);
+    const std::string last =
+        fmt::format("last edit {:.2f} ms: {} of {} clusters, {} of {} receivers", 1e3 * cost.seconds,
+                    cost.report.num_clusters, editor.relighter().transfer().num_clusters(),
+                    cost.report.num_receivers, editor.radiance().size());
+    ImGui::TextUnformatted(last.c_str());
+    ImGui::SameLine(0.0f, 22.0f);
+    if (state.message_is_error)
+        ImGui::TextColored({1.0f, 0.45f, 0.4f, 1.0f}, "%s", state.message.c_str());
+    else
+        ImGui::TextDisabled("%s", state.message.c_str());
+    ImGui::End();
+}
+
+} // namespace relumine::viewer

@@ -1,0 +1,229 @@
+#include "viewer/light_desk.h"
+
+#include <algorithm>
+#include <chrono>
+#include <utility>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "cubemap/layer_composite.h"
+
+namespace relumine::viewer {
+
+LightDesk::LightDesk(relight::LightEditor& editor) : editor_(editor) {
+    note_all_texels();
+}
+
+template<typename Edit>
+void LightDesk::timed(Edit edit) {
+    const auto start = std::chrono::steady_clock::now();
+    last_cost_.report = edit();
+    last_cost_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    ++version_;
+    if (selected_ && *selected_ >= layers().size())
+        selected_.reset();
+}
+
+void LightDesk::note_texels(const cubemap::LightLayer& layer) {
+    cubemap::LightLayer seen = layer;
+    seen.region = turned(layer.region, editor_.rotation());
+    const std::vector<cubemap::TexelRectangle> touched =
+        cubemap::touched_texels(seen, editor_.environment().resolution);
+    changed_texels_.insert(changed_texels_.end(), touched.begin(), touched.end());
+}
+
+void LightDesk::note_difference(std::span<const cubemap::LightLayer> before) {
+    for (std::size_t i = 0; i < std::max(before.size(), layers().size()); ++i) {
+        const cubemap::LightLayer* was = i < before.size() ? &before[i] : nullptr;
+        const cubemap::LightLayer* is = i < layers().size() ? &layers()[i] : nullptr;
+        if (was && is && *was == *is)
+            continue;
+        if (was)
+            note_texels(*was);
+        if (is)
+            note_texels(*is);
+    }
+}
+
+void LightDesk::note_all_texels() {
+    changed_texels_ = cubemap::all_texels(std::max(editor_.environment().resolution, 1u));
+}
+
+std::vector<cubemap::TexelRectangle> LightDesk::take_changed_texels() {
+    // Many edits between two frames: all of it is less work than all of them.
+    constexpr std::size_t ManyRectangles = 200;
+    if (changed_texels_.size() > ManyRectangles)
+        note_all_texels();
+    return std::exchange(changed_texels_, {});
+}
+
+std::optional<std::size_t> LightDesk::find(const std::string& name) const {
+    const auto found =
+        std::find_if(layers().begin(), layers().end(), [&](const auto& layer) { return layer.name == name; });
+    return found == layers().end()
+               ? std::nullopt
+               : std::optional<std::size_t>(static_cast<std::size_t>(found - layers().begin()));
+}
+
+std::string LightDesk::unused_name(const std::string& name) const {
+    std::string result = name;
+    for (int number = 2; find(result); ++number)
+        result = fmt::format("{} {}", name, number);
+    return result;
+}
+
+std::size_t LightDesk::add(cubemap::LightLayer layer) {
+    layer.name = unused_name(layer.name);
+    std::vector<cubemap::LightLayer> changed = copy();
+    changed.push_back(std::move(layer));
+    const std::size_t index = changed.size() - 1;
+    replace(std::move(changed));
+    selected_ = index;
+    return index;
+}
+
+void LightDesk::remove(std::size_t index) {
+    std::vector<cubemap::LightLayer> changed = copy();
+    changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(index));
+    replace(std::move(changed));
+    selected_.reset();
+}
+
+void LightDesk::reorder(std::size_t from, std::size_t to) {
+    std::vector<cubemap::LightLayer> changed = copy();
+    cubemap::LightLayer layer = std::move(changed.at(from));
+    changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(from));
+    changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(std::min(to, changed.size())),
+                   std::move(layer));
+    replace(std::move(changed));
+    selected_ = std::min(to, layers().size() - 1);
+}
+
+void LightDesk::replace(std::vector<cubemap::LightLayer> changed) {
+    const std::vector<cubemap::LightLayer> before = copy();
+    timed([&] { return editor_.set_layers(std::move(changed)); });
+    note_difference(before);
+    editor_.mark();
+}
+
+void LightDesk::undo() {
+    const std::vector<cubemap::LightLayer> before = copy();
+    timed([&] { return editor_.undo(); });
+    note_difference(before);
+}
+
+void LightDesk::redo() {
+    const std::vector<cubemap::LightLayer> before = copy();
+    timed([&] { return editor_.redo(); });
+    note_difference(before);
+}
+
+void LightDesk::change(std::size_t index, const cubemap::LightLayer& layer) {
+    const cubemap::LightLayer before = layers()[index];
+    timed([&] { return editor_.set_layer(index, layer); });
+    note_texels(before);
+    note_texels(layer);
+}
+
+void LightDesk::finish() {
+    editor_.mark();
+    ++version_;
+}
+
+LightDesk::Held LightDesk::held_at(const glm::dvec3& direction, double tolerance_degrees) const {
+    const glm::dvec3 before_turn = turned(direction, -editor_.rotation());
+    if (selected_)
+        if (const Grip grip = grip_at(layers()[*selected_].region, before_turn, tolerance_degrees);
+            grip != Grip::None)
+            return {.index = *selected_, .grip = grip};
+    for (std::size_t i = layers().size(); i-- > 0;) {
+        if (!layers()[i].on)
+            continue;
+        if (const Grip grip = grip_at(layers()[i].region, before_turn, tolerance_degrees); grip != Grip::None)
+            return {.index = i, .grip = grip};
+    }
+    return {};
+}
+
+void LightDesk::begin_drag(const Held& held, const glm::dvec3& direction) {
+    if (held.grip == Grip::None)
+        return;
+    selected_ = held.index;
+    drag_ = Drag{.index = held.index,
+                 .grip = held.grip,
+                 .region = layers()[held.index].region,
+                 .from = turned(direction, -editor_.rotation())};
+}
+
+void LightDesk::drag_to(const glm::dvec3& direction) {
+    if (!drag_)
+        return;
+    const glm::dvec3 to = turned(direction, -editor_.rotation());
+    cubemap::LightLayer layer = layers()[drag_->index];
+    layer.region = drag_->grip == Grip::Body ? moved(drag_->region, drag_->from, to)
+                                             : resized(drag_->region, drag_->from, to);
+    change(drag_->index, layer);
+    drag_seconds_.push_back(last_cost_.seconds);
+}
+
+void LightDesk::end_drag() {
+    if (!drag_)
+        return;
+    drag_.reset();
+    finish();
+}
+
+void LightDesk::begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3& direction) {
+    cubemap::LightLayer layer = brush;
+    layer.name = unused_name(layer.name);
+    std::get<cubemap::Stroke>(layer.region).points = {turned(direction, -editor_.rotation())};
+    std::vector<cubemap::LightLayer> changed = copy();
+    changed.push_back(layer);
+    timed([&] { return editor_.set_layers(std::move(changed)); });
+    note_texels(layer);
+    drag_seconds_.push_back(last_cost_.seconds);
+    selected_ = layers().size() - 1;
+    painting_ = true;
+}
+
+void LightDesk::stroke_to(const glm::dvec3& direction) {
+    if (!painting_)
+        return;
+    cubemap::LightLayer layer = layers().back();
+    auto& stroke = std::get<cubemap::Stroke>(layer.region);
+    const glm::dvec3 to = turned(direction, -editor_.rotation());
+    if (angle_between(stroke.points.back(), to) < 0.25 * stroke.radius_degrees)
+        return;
+    stroke.points.push_back(to);
+    change(layers().size() - 1, layer);
+    drag_seconds_.push_back(last_cost_.seconds);
+}
+
+void LightDesk::end_stroke() {
+    if (!std::exchange(painting_, false))
+        return;
+    finish();
+}
+
+void LightDesk::set_rotation(double degrees) {
+    timed([&] {
+        const relight::RelightTimes times = editor_.set_rotation(degrees);
+        return relight::UpdateReport{.num_clusters = editor_.relighter().transfer().num_clusters(),
+                                     .num_receivers = editor_.radiance().size(),
+                                     .num_sharp_lights = times.num_sharp_lights};
+    });
+    note_all_texels();
+}
+
+void LightDesk::set_base(cubemap::CubeMap base) {
+    timed([&] {
+        const relight::RelightTimes times = editor_.set_base(std::move(base));
+        return relight::UpdateReport{.num_clusters = editor_.relighter().transfer().num_clusters(),
+                                     .num_receivers = editor_.radiance().size(),
+                                     .num_sharp_lights = times.num_sharp_lights};
+    });
+    note_all_texels();
+}
+
+} // namespace relumine::viewer

@@ -1,0 +1,112 @@
+// What the window edits: layers over an environment, what is selected and dragged, and what each edit cost. Without a window.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/light_layer.h"
+#include "cubemap/texel_rectangle.h"
+#include "relight/light_editor.h"
+#include "viewer/region_edit.h"
+
+namespace relumine::viewer {
+
+/// What the last edit did.
+struct EditCost {
+    relight::UpdateReport report;
+    double seconds = 0.0; ///< compositing, relighting and publishing together
+};
+
+/// Directions are as seen: after the rotation.
+class LightDesk {
+public:
+    /// The editor must outlive the desk, and be edited through it alone.
+    explicit LightDesk(relight::LightEditor& editor);
+
+    [[nodiscard]] const relight::LightEditor& editor() const { return editor_; }
+    [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return editor_.layers(); }
+    [[nodiscard]] std::optional<std::size_t> find(const std::string& name) const;
+
+    [[nodiscard]] std::optional<std::size_t> selected() const { return selected_; }
+    void select(std::optional<std::size_t> index) { selected_ = index; }
+
+    // Each of these is one edit and one step of undo.
+
+    /// On top; its name gets a number if there is one of that name. Selects it and returns its index.
+    std::size_t add(cubemap::LightLayer layer);
+    void remove(std::size_t index);
+    /// Up to where another layer is now.
+    void reorder(std::size_t from, std::size_t to);
+    /// All of them.
+    void replace(std::vector<cubemap::LightLayer> layers);
+    void undo();
+    void redo();
+
+    /// An edit in progress, as while a slider moves: not a step of undo before finish().
+    void change(std::size_t index, const cubemap::LightLayer& layer);
+    void finish();
+
+    /// The layer under a direction: the selected one first, then from the top; those that are off only if selected. Nothing: None.
+    struct Held {
+        std::size_t index = 0;
+        Grip grip = Grip::None;
+    };
+    [[nodiscard]] Held held_at(const glm::dvec3& direction, double tolerance_degrees) const;
+
+    /// Takes hold of a layer's body or rim, drags it, and lets go.
+    void begin_drag(const Held& held, const glm::dvec3& direction);
+    void drag_to(const glm::dvec3& direction);
+    void end_drag();
+    [[nodiscard]] bool is_dragging() const { return drag_.has_value(); }
+
+    /// Begins a stroke on top of the layers, extends it, and ends it. Points closer than a quarter of the radius are left out.
+    void begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3& direction);
+    void stroke_to(const glm::dvec3& direction);
+    void end_stroke();
+    [[nodiscard]] bool is_painting() const { return painting_; }
+
+    /// Not part of the history.
+    void set_rotation(double degrees);
+    void set_base(cubemap::CubeMap base);
+
+    [[nodiscard]] const EditCost& last_cost() const { return last_cost_; }
+    /// Seconds of every drag event so far.
+    [[nodiscard]] std::span<const double> drag_seconds() const { return drag_seconds_; }
+
+    /// Counts changes of the radiance.
+    [[nodiscard]] std::uint64_t version() const { return version_; }
+    /// The environment's texels that changed since the last call.
+    [[nodiscard]] std::vector<cubemap::TexelRectangle> take_changed_texels();
+
+private:
+    struct Drag {
+        std::size_t index = 0;
+        Grip grip = Grip::Body;
+        cubemap::Region region;
+        glm::dvec3 from{0.0, 0.0, 1.0};
+    };
+    template<typename Edit>
+    void timed(Edit edit);
+    void note_texels(const cubemap::LightLayer& layer);
+    void note_difference(std::span<const cubemap::LightLayer> before);
+    void note_all_texels();
+    [[nodiscard]] std::string unused_name(const std::string& name) const;
+    [[nodiscard]] std::vector<cubemap::LightLayer> copy() const { return {layers().begin(), layers().end()}; }
+
+    relight::LightEditor& editor_;
+    std::optional<std::size_t> selected_;
+    std::optional<Drag> drag_;
+    bool painting_ = false;
+    EditCost last_cost_;
+    std::vector<double> drag_seconds_;
+    std::vector<cubemap::TexelRectangle> changed_texels_;
+    std::uint64_t version_ = 1;
+};
+
+} // namespace relumine::viewer

@@ -1,0 +1,92 @@
+#include "viewer/orbit_camera.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
+#include <glm/geometric.hpp>
+
+namespace relumine::viewer {
+
+namespace {
+
+constexpr float QuarterTurn = 0.5f * std::numbers::pi_v<float>;
+/// Straight above, up has no meaning any more; this much short of it, it still has.
+constexpr float MaxPitch = QuarterTurn - 0.01f;
+
+float radians(float degrees) {
+    return degrees * std::numbers::pi_v<float> / 180.0f;
+}
+
+float aspect(const PixelRectangle& viewport) {
+    return static_cast<float>(std::max(viewport.width, 1)) / static_cast<float>(std::max(viewport.height, 1));
+}
+
+} // namespace
+
+glm::vec3 OrbitCamera::eye() const {
+    const glm::vec3 from_target(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
+                                std::cos(yaw) * std::cos(pitch));
+    return target + distance * from_target;
+}
+
+void OrbitCamera::orbit(const glm::vec2& pixels) {
+    constexpr float RadiansPerPixel = 0.006f;
+    yaw = std::remainder(yaw - RadiansPerPixel * pixels.x, 4.0f * QuarterTurn);
+    pitch = std::clamp(pitch + RadiansPerPixel * pixels.y, -MaxPitch, MaxPitch);
+}
+
+void OrbitCamera::pan(const glm::vec2& pixels, const PixelRectangle& viewport) {
+    const CameraFrame axes = frame(*this, viewport);
+    const float half_width = 0.5f * static_cast<float>(std::max(viewport.width, 1));
+    const float half_height = 0.5f * static_cast<float>(std::max(viewport.height, 1));
+    target += distance * (-pixels.x / half_width * axes.right + pixels.y / half_height * axes.up);
+}
+
+void OrbitCamera::zoom(float steps) {
+    distance *= std::exp2(-0.2f * std::clamp(steps, -20.0f, 20.0f));
+}
+
+OrbitCamera orbit_camera(const relight::Camera& camera) {
+    const glm::vec3 from_target = camera.eye - camera.target;
+    OrbitCamera result{
+        .target = camera.target, .distance = glm::length(from_target), .fov_degrees = camera.fov_degrees};
+    if (result.distance > 0.0f) {
+        result.yaw = std::atan2(from_target.x, from_target.z);
+        result.pitch = std::clamp(std::asin(std::clamp(from_target.y / result.distance, -1.0f, 1.0f)),
+                                  -MaxPitch, MaxPitch);
+    }
+    return result;
+}
+
+CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport) {
+    const glm::vec3 forward = glm::normalize(camera.target - camera.eye());
+    const glm::vec3 right = glm::normalize(glm::cross(forward, glm::vec3(0.0f, 1.0f, 0.0f)));
+    const float half_height = std::tan(0.5f * radians(camera.fov_degrees));
+    return {.right = right * half_height * aspect(viewport),
+            .up = glm::cross(right, forward) * half_height,
+            .forward = forward};
+}
+
+glm::mat4 clip_from_world(const OrbitCamera& camera, const PixelRectangle& viewport, float reach) {
+    // A hundredth of the way to the target: near enough to go inside, and fine in 24 bits of depth.
+    const float near = 0.01f * camera.distance;
+    const float far = camera.distance + 2.0f * reach;
+    return glm::perspective(radians(camera.fov_degrees), aspect(viewport), near, far) *
+           glm::lookAt(camera.eye(), camera.target, glm::vec3(0.0f, 1.0f, 0.0f));
+}
+
+Ray ray_through(const OrbitCamera& camera, const PixelRectangle& viewport, const glm::vec2& pixel) {
+    const CameraFrame axes = frame(camera, viewport);
+    const float across =
+        2.0f * (pixel.x - static_cast<float>(viewport.x)) / static_cast<float>(std::max(viewport.width, 1)) -
+        1.0f;
+    const float upwards = 1.0f - 2.0f * (pixel.y - static_cast<float>(viewport.y)) /
+                                     static_cast<float>(std::max(viewport.height, 1));
+    return {.origin = camera.eye(),
+            .direction = glm::normalize(axes.forward + across * axes.right + upwards * axes.up)};
+}
+
+} // namespace relumine::viewer

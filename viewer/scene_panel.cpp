@@ -1,0 +1,100 @@
+#include <cmath>
+
+#include <imgui.h>
+
+#include <glm/geometric.hpp>
+#include <glm/vec4.hpp>
+
+#include "viewer/panels.h"
+
+namespace relumine::viewer {
+
+namespace {
+
+glm::vec2 pointer() {
+    return {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y};
+}
+
+void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& picture) {
+    begin_panel("scene tools", place);
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted("Exposure");
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(150.0f);
+    ImGui::SliderFloat("##scene exposure", &state.scene_look.exposure_ev, -10.0f, 10.0f, "%+.2f EV");
+    ImGui::SameLine();
+    ImGui::Checkbox("Wireframe", &state.scene_look.wireframe);
+    ImGui::SameLine();
+    ImGui::Checkbox("Background", &state.scene_look.background);
+    ImGui::SameLine();
+    if (ImGui::Button("Frame all"))
+        state.camera = camera_on_all(state.mesh, picture);
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("F: the camera that relumine relight takes");
+    ImGui::End();
+}
+
+void point_and_drag(ViewState& state, const PixelRectangle& place) {
+    const ImGuiIO& io = ImGui::GetIO();
+    constexpr float ClickReach = 4.0f; // pixels
+    if (ImGui::IsItemHovered() && io.MouseWheel != 0.0f)
+        state.camera.zoom(io.MouseWheel);
+    const glm::vec2 moved(io.MouseDelta.x, io.MouseDelta.y);
+    if (ImGui::IsItemActive()) {
+        const bool pans = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
+                          ImGui::IsMouseDown(ImGuiMouseButton_Middle) || io.KeyShift;
+        const bool is_click = ImGui::IsMouseDown(ImGuiMouseButton_Left) &&
+                              !ImGui::IsMouseDragging(ImGuiMouseButton_Left, ClickReach);
+        if (pans)
+            state.camera.pan(moved, place);
+        else if (!is_click)
+            state.camera.orbit(moved);
+    }
+    if (ImGui::IsItemHovered() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+        io.MouseDragMaxDistanceSqr[ImGuiMouseButton_Left] < ClickReach * ClickReach)
+        click_mesh(state, place, pointer());
+}
+
+/// A ring at the chosen receiver.
+void draw_receiver(const ViewState& state, const PixelRectangle& place) {
+    if (!state.receiver)
+        return;
+    const glm::vec3 position = state.mesh.positions[*state.receiver];
+    const glm::vec4 clip = clip_from_world(state.camera, place, 1.0f) * glm::vec4(position, 1.0f);
+    if (clip.w <= 0.0f)
+        return;
+    const ImVec2 at(
+        static_cast<float>(place.x) + (0.5f + 0.5f * clip.x / clip.w) * static_cast<float>(place.width),
+        static_cast<float>(place.y) + (0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(place.height));
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddCircle(at, 7.0f, IM_COL32(0, 0, 0, 200), 0, 4.0f);
+    list.AddCircle(at, 7.0f, IM_COL32(255, 190, 60, 255), 0, 2.0f);
+}
+
+} // namespace
+
+void begin_panel(const char* name, const PixelRectangle& place, bool over_picture) {
+    ImGui::SetNextWindowPos({static_cast<float>(place.x), static_cast<float>(place.y)});
+    ImGui::SetNextWindowSize({static_cast<float>(place.width), static_cast<float>(place.height)});
+    ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                             ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                             ImGuiWindowFlags_NoNav;
+    if (over_picture)
+        flags |= ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollWithMouse;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, over_picture ? ImVec2(0, 0) : ImVec2(10, 7));
+    ImGui::Begin(name, nullptr, flags);
+    ImGui::PopStyleVar();
+}
+
+void scene_panel(ViewState& state, const PanelLayout& layout) {
+    tools(state, layout.scene_tools, layout.scene);
+    begin_panel("scene", layout.scene, true);
+    ImGui::InvisibleButton("scene picture", ImGui::GetContentRegionAvail(),
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                               ImGuiButtonFlags_MouseButtonMiddle);
+    point_and_drag(state, layout.scene);
+    draw_receiver(state, layout.scene);
+    ImGui::End();
+}
+
+} // namespace relumine::viewer

@@ -1,0 +1,42 @@
+// Draws the relit mesh with the environment behind it.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "viewer/cube_texture.h"
+#include "viewer/gl_objects.h"
+#include "viewer/look.h"
+#include "viewer/orbit_camera.h"
+
+namespace relumine::viewer {
+
+class SceneRenderer {
+public:
+    explicit SceneRenderer(const mesh::TriangleMesh& mesh);
+    /// [num_vertices]
+    void upload_radiance(std::span<const glm::vec3> radiance);
+    /// Into the current viewport, of which `viewport` tells the shape. Clears its depth.
+    void draw(const OrbitCamera& camera, const PixelRectangle& viewport, const CubeTexture& environment,
+              const SceneLook& look) const;
+
+private:
+    void draw_background(const OrbitCamera& camera, const PixelRectangle& viewport,
+                         const CubeTexture& environment, const SceneLook& look) const;
+
+    GlProgram mesh_program_;
+    GlProgram background_program_;
+    GlVertexArray mesh_array_;
+    GlVertexArray no_array_;
+    GlBuffer positions_;
+    GlBuffer radiance_;
+    GlBuffer triangles_;
+    GLsizei num_indices_ = 0;
+    glm::vec3 center_{0.0f};
+    float diagonal_ = 1.0f;
+};
+
+} // namespace relumine::viewer

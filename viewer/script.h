@@ -1,0 +1,53 @@
+// Scripts that drive the window without a person. The language: docs/viewer.md.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace relumine::viewer {
+
+enum class Action {
+    Wait,
+    AddDisc,
+    AddRectangle,
+    AddGain,
+    DragLayer,
+    ResizeLayer,
+    SetGain,
+    DragEnvironment,
+    PaintEnvironment,
+    DragMesh,
+    ClickMesh,
+    Rotate,
+    Undo,
+    Redo,
+    SceneExposure,
+    EnvironmentExposure,
+    Wireframe,
+    Quadtree,
+    Open,
+    SaveLayers,
+    SaveEnvironment,
+    Screenshot,
+    Quit,
+};
+
+/// One line of a script.
+struct ScriptCommand {
+    Action action = Action::Wait;
+    std::string text = {};            ///< a layer's name or a path
+    std::vector<double> numbers = {}; ///< in the order of the line; X,Y,Z is three
+    std::size_t line = 0;             ///< counted from 1
+};
+
+/// How many frames a command takes: a drag is spread over frames, each of them one event.
+[[nodiscard]] std::size_t num_frames(const ScriptCommand& command);
+
+/// Throws std::runtime_error "source:line: expected X, got Y".
+[[nodiscard]] std::vector<ScriptCommand> parse_script(std::string_view text, const std::string& source);
+[[nodiscard]] std::vector<ScriptCommand> load_script(const std::filesystem::path& path);
+
+} // namespace relumine::viewer

@@ -1,0 +1,36 @@
+// The interactive window: `relumine view`.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "viewer/script.h"
+#include "viewer/view_state.h"
+
+namespace relumine::viewer {
+
+struct ViewOptions {
+    int width = 1440;
+    int height = 860;
+    std::optional<std::vector<ScriptCommand>> script = {}; ///< played, then the window closes
+    std::filesystem::path screenshot = {};                 ///< the last frame of the script; empty: none
+    std::stop_token stop = {};                             ///< closes the window
+};
+
+/// What happened.
+struct ViewReport {
+    std::string renderer; ///< OpenGL's own words
+    std::size_t num_frames = 0;
+    double mean_frame_seconds = 0.0;
+    std::vector<double> drag_seconds = {}; ///< relighting, for every event of a drag
+};
+
+/// Shows the state, all of the mesh first, until the window is closed or the script ends. Throws std::runtime_error when no window can be opened, for what a
+/// script cannot do and for a screenshot that cannot be written.
+ViewReport view(ViewState& state, const ViewOptions& options = {});
+
+} // namespace relumine::viewer

@@ -1,0 +1,64 @@
+// What the window's panels and scripts share: the scene, the desk, both views, what is shown and chosen. Without a window.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/layer_file.h"
+#include "mesh/triangle_mesh.h"
+#include "prt/ray_scene.h"
+#include "viewer/lat_long_view.h"
+#include "viewer/light_desk.h"
+#include "viewer/look.h"
+#include "viewer/orbit_camera.h"
+
+namespace relumine::viewer {
+
+enum class Tool { Move, Paint };
+
+struct ViewState {
+    const mesh::TriangleMesh& mesh;
+    const prt::RayScene& rays;
+    LightDesk& desk;
+    /// Reads an environment file as the command line's options say; throws std::runtime_error.
+    std::function<cubemap::CubeMap(const std::filesystem::path&)> load_environment;
+
+    OrbitCamera camera = {};
+    LatLongView lat_long = {};
+    SceneLook scene_look = {};
+    EnvironmentLook environment_look = {};
+
+    Tool tool = Tool::Move;
+    cubemap::LightLayer brush{.name = "Stroke",
+                              .region = cubemap::Stroke{.points = {}, .radius_degrees = 4.0}};
+
+    std::optional<std::uint32_t> receiver = {}; ///< the vertex that was clicked
+    bool heat_is_stale = false;                 ///< the contribution map has to be made anew
+
+    std::filesystem::path environment_path = {}; ///< empty: the plain grey one
+    std::vector<cubemap::KeyFrame> frames = {};  ///< of the layer file, kept for saving
+    std::string path = {};                       ///< the text field
+    std::string message = {};
+    bool message_is_error = false;
+    double frame_seconds = 0.0;
+};
+
+/// The camera that shows all of the mesh but the ground, as `relumine relight` takes it for a picture of this size.
+[[nodiscard]] OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh, const PixelRectangle& viewport);
+
+/// Chooses the receiver nearest to where a pixel's ray meets the mesh, or none, and shows what lights it.
+void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel);
+
+// Files. These report in `message` whether they worked and do not throw for what files may do; false for a failure.
+
+/// Layers from .json (with the environment they name), an environment from .exr or .hdr.
+bool open(ViewState& state, const std::filesystem::path& path);
+bool save_layers(ViewState& state, const std::filesystem::path& path);
+/// Base and layers as one lat-long, .exr or .hdr.
+bool save_environment(ViewState& state, const std::filesystem::path& path);
+
+} // namespace relumine::viewer

@@ -1,0 +1,60 @@
+// The window: GLFW, an OpenGL 3.3 core context and Dear ImGui, made together and gone together.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "relight/picture.h"
+#include "viewer/panel_layout.h"
+
+namespace relumine::viewer {
+
+/// A pointer that a script moves.
+struct Pointer {
+    glm::vec2 pixel{0.0f};
+    bool down = false;
+};
+
+enum class Shortcut { Undo, Redo, Delete, FrameAll, Wireframe, Quadtree };
+
+class Window {
+public:
+    /// Throws std::runtime_error when there is no display or no OpenGL 3.3. If `scripted`, nothing of a person's mouse
+    /// reaches it, and frames come as fast as they are drawn.
+    Window(int width, int height, const std::string& title, bool scripted);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    [[nodiscard]] bool should_close() const;
+    /// In pixels of the window; the frame buffer may be finer.
+    [[nodiscard]] PanelLayout layout() const;
+
+    /// Takes events (waits for one up to `wait_seconds`) and begins a frame of Dear ImGui. A script's pointer replaces the real one.
+    void begin_frame(double wait_seconds, const std::optional<Pointer>& pointer);
+    /// The OpenGL viewport of a part of the window.
+    void set_viewport(const PixelRectangle& part) const;
+    /// Draws Dear ImGui's frame over what was drawn before.
+    void end_frame();
+    /// What is about to be shown; before show().
+    [[nodiscard]] relight::Picture screenshot() const;
+    void show();
+
+    /// Since the last call.
+    [[nodiscard]] std::vector<std::filesystem::path> take_dropped_files();
+    [[nodiscard]] std::vector<Shortcut> take_shortcuts();
+
+    /// OpenGL's own words on who draws.
+    [[nodiscard]] std::string renderer() const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace relumine::viewer
