@@ -183,6 +183,7 @@ void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> lay
 
 std::vector<TexelRectangle> all_texels(std::uint32_t resolution) {
     std::vector<TexelRectangle> rectangles;
+    rectangles.reserve(NumFaces);
     for (const Face face : AllFaces)
         rectangles.push_back({.face = face, .x0 = 0, .y0 = 0, .x1 = resolution, .y1 = resolution});
     return rectangles;

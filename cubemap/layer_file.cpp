@@ -180,6 +180,7 @@ private:
         std::vector<std::string_view> names;
         const auto& members = json_.object(changes, fmt::format("the change of layer \"{}\"", layer.name));
         const std::vector<LayerField> all = fields(layer);
+        names.reserve(all.size());
         for (const LayerField& field : all)
             names.push_back(field.name);
         known(members, names,

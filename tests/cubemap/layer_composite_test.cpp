@@ -233,7 +233,7 @@ TEST(LayerComposite, PicturesKeepTheirEnergy) {
     constexpr std::uint32_t N = 64;
     for (const std::uint32_t resolution : {8u, 32u, 256u}) {
         for (const glm::dvec3& place : Places) {
-            std::vector<glm::vec3> pixels(N * N, glm::vec3(1.0f, 0.0f, 0.0f));
+            std::vector<glm::vec3> pixels(std::size_t{N} * N, glm::vec3(1.0f, 0.0f, 0.0f));
             pixels[20 * N + 45].y = 1000.0f;
             const ImagePatch patch{"p.exr", std::make_shared<const Picture>(N, N, pixels),
                                    ImagePatch::Blend::Replace};

@@ -23,7 +23,7 @@ class LayerFile : public testing::Test {
 protected:
     [[nodiscard]] std::filesystem::path write(const std::string& text,
                                               const std::string& name = "layers.json") const {
-        const std::filesystem::path path = folder_ / name;
+        std::filesystem::path path = folder_ / name;
         std::ofstream(path, std::ios::binary) << text;
         return path;
     }

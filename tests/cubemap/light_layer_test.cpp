@@ -30,7 +30,8 @@ TEST(LightLayer, DiscFallsSmoothlyToItsRadius) {
     const double half = std::acos(0.5 * (std::cos(radians(10.0)) + std::cos(radians(20.0))));
     EXPECT_NEAR(at(half * 180.0 / Pi), 0.5, 1e-9);
     double last = 1.0;
-    for (double degrees = 10.0; degrees <= 20.0; degrees += 0.1) {
+    for (int tenth = 100; tenth <= 200; ++tenth) {
+        const double degrees = 0.1 * tenth;
         EXPECT_LE(at(degrees), last);
         last = at(degrees);
     }
@@ -152,7 +153,7 @@ TEST(LightLayer, RefusesBadLight) {
 }
 
 TEST(Picture, HalvesToItsMean) {
-    std::vector<glm::vec3> pixels(7 * 5);
+    std::vector<glm::vec3> pixels(35);
     fill_randomly(pixels, 3);
     glm::dvec3 mean(0.0);
     for (const glm::vec3& pixel : pixels)
