@@ -80,11 +80,15 @@ void draw_line(const ViewState& state, const PixelRectangle& place, const std::v
         std::minmax_element(uv.begin(), uv.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
     const double left = state.lat_long.uv_at(place, {place.x, place.y}).x;
     const double right = state.lat_long.uv_at(place, {place.x + place.width, place.y}).x;
-    std::vector<ImVec2> points(uv.size());
+    std::vector<ImVec2> points;
     for (double turn = std::ceil(left - high->x); low->x + turn <= right; turn += 1.0) {
-        std::transform(uv.begin(), uv.end(), points.begin(), [&](const glm::dvec2& at) {
-            return im(state.lat_long.pixel_at(place, at + glm::dvec2(turn, 0.0)));
-        });
+        points.clear();
+        for (const glm::dvec2& at : uv) {
+            const ImVec2 pixel = im(state.lat_long.pixel_at(place, at + glm::dvec2(turn, 0.0)));
+            // Points that all but coincide would give the line spikes.
+            if (points.empty() || std::hypot(pixel.x - points.back().x, pixel.y - points.back().y) > 1.0f)
+                points.push_back(pixel);
+        }
         ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), color, 0,
                                                 thickness);
     }

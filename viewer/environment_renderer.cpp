@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "cubemap/layer_composite.h"
 #include "viewer/quadtree_lines.h"
@@ -47,8 +49,8 @@ void main() {
             heat_sum += dot(looked_up(heat, w), vec3(0.2126, 0.7152, 0.0722));
     }
     vec3 below = 0.25 * sum;
-    // Logarithmic over ten stops: a sun must not hide the sky.
-    float t = log2(1.0 + 1023.0 * clamp(0.25 * heat_sum / hottest, 0.0, 1.0)) / 10.0;
+    // Logarithmic, over eight stops.
+    float t = log2(1.0 + 255.0 * clamp(0.25 * heat_sum / hottest, 0.0, 1.0)) / 8.0;
     vec3 grey = vec3(0.35 * dot(below, vec3(0.2126, 0.7152, 0.0722)));
     vec3 over = mix(grey, hot(t), min(1.0, 0.2 + 2.0 * t));
     color = vec4(use_heat != 0 ? over : below, 1.0);
@@ -90,9 +92,14 @@ EnvironmentRenderer::EnvironmentRenderer(const prt::Quadtree& quadtree)
 
 void EnvironmentRenderer::upload_heat(const cubemap::CubeMap& contribution) {
     heat_.upload(contribution, cubemap::all_texels(contribution.resolution));
-    hottest_ = 1e-20f;
+    // The brightest two-hundredth of the sphere is white-hot: one sun must not leave the sky black.
+    std::vector<float> brightness;
+    brightness.reserve(contribution.texels.size());
     for (const glm::vec3& texel : contribution.texels)
-        hottest_ = std::max(hottest_, 0.2126f * texel.r + 0.7152f * texel.g + 0.0722f * texel.b);
+        brightness.push_back(0.2126f * texel.r + 0.7152f * texel.g + 0.0722f * texel.b);
+    const auto bright = brightness.begin() + static_cast<std::ptrdiff_t>(brightness.size() * 199 / 200);
+    std::nth_element(brightness.begin(), bright, brightness.end());
+    hottest_ = *bright > 0.0f ? *bright : std::max(*std::max_element(bright, brightness.end()), 1e-20f);
 }
 
 void EnvironmentRenderer::draw(const LatLongView& view, const PixelRectangle& viewport,

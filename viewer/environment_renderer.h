@@ -15,7 +15,7 @@ namespace relumine::viewer {
 class EnvironmentRenderer {
 public:
     explicit EnvironmentRenderer(const prt::Quadtree& quadtree);
-    /// What lights the chosen receiver (relight::contribution_map()); its brightest part becomes the hottest.
+    /// What lights the chosen receiver (relight::contribution_map()); the hottest colour is its brightest two-hundredth.
     void upload_heat(const cubemap::CubeMap& contribution);
     /// Into the current viewport, which is `viewport`.
     void draw(const LatLongView& view, const PixelRectangle& viewport, const CubeTexture& environment,

@@ -195,6 +195,18 @@ void layer_fields(ViewState& state, std::size_t index) {
     form.apply();
 }
 
+/// What layer_fields() draws, in rows.
+int num_field_rows(const ViewState& state) {
+    if (!state.desk.selected())
+        return 0;
+    const cubemap::LightLayer& layer = state.desk.layers()[*state.desk.selected()];
+    const int effect_rows = std::holds_alternative<cubemap::Emit>(layer.effect)   ? 1
+                            : std::holds_alternative<cubemap::Gain>(layer.effect) ? 2
+                                                                                  : 0;
+    constexpr int RegionRows[] = {2, 4, 1, 2}; // disc, rectangle, lasso, stroke
+    return 2 + effect_rows + RegionRows[layer.region.index()];
+}
+
 void files(ViewState& state) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 245.0f);
     const bool entered =
@@ -219,8 +231,9 @@ void layer_panel(ViewState& state, const PanelLayout& layout) {
         add_buttons(state);
         ImGui::Spacing();
         std::function<void()> later;
-        const float fields_height = state.desk.selected() ? 270.0f : 44.0f;
-        const float list_height = std::max(ImGui::GetContentRegionAvail().y - fields_height, 90.0f);
+        const float row = ImGui::GetFrameHeightWithSpacing();
+        const float fields_height = row * static_cast<float>(num_field_rows(state)) + row + 14.0f;
+        const float list_height = std::max(ImGui::GetContentRegionAvail().y - fields_height, 2.5f * row);
         ImGui::BeginChild("list", {0.0f, list_height}, true);
         for (std::size_t i = state.desk.layers().size(); i-- > 0;) // the top of the stack first
             if (std::function<void()> wanted = layer_row(state, i))

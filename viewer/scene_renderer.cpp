@@ -24,7 +24,7 @@ in vec3 radiance;
 uniform int as_lines;
 out vec4 color;
 void main() {
-    color = vec4(as_lines != 0 ? vec3(0.05, 0.07, 0.1) : shown(radiance), as_lines != 0 ? 0.35 : 1.0);
+    color = vec4(as_lines != 0 ? vec3(0.05, 0.07, 0.1) : shown(radiance), as_lines != 0 ? 0.22 : 1.0);
 }
 )";
 

@@ -32,6 +32,7 @@ void set_style() {
     style.WindowBorderSize = 0.0f;
     style.FrameRounding = 4.0f;
     style.GrabRounding = 3.0f;
+    style.GrabMinSize = 8.0f;
     style.ChildRounding = 4.0f;
     style.ItemSpacing = {8.0f, 5.0f};
     style.FramePadding = {7.0f, 3.0f};
@@ -51,8 +52,8 @@ void set_style() {
          {ImGuiCol_Header, faint(0.35f)},
          {ImGuiCol_HeaderHovered, faint(0.5f)},
          {ImGuiCol_HeaderActive, faint(0.65f)},
-         {ImGuiCol_SliderGrab, faint(0.85f)},
-         {ImGuiCol_SliderGrabActive, accent},
+         {ImGuiCol_SliderGrab, faint(0.5f)},
+         {ImGuiCol_SliderGrabActive, faint(0.75f)},
          {ImGuiCol_CheckMark, accent},
          {ImGuiCol_TextDisabled, {0.58f, 0.58f, 0.60f, 1.0f}}}};
     for (const auto& [index, color] : colors)
