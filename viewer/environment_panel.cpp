@@ -20,15 +20,17 @@ ImVec2 im(const glm::dvec2& pixel) {
 }
 
 void picture_tools(ViewState& state) {
+    // What the words leave of the row.
+    const float slider_width = std::clamp(0.5f * (ImGui::GetContentRegionAvail().x - 400.0f), 56.0f, 140.0f);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("Exposure");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(110.0f);
+    ImGui::SetNextItemWidth(slider_width);
     ImGui::SliderFloat("##env exposure", &state.environment_look.exposure_ev, -15.0f, 15.0f, "%+.2f EV");
     ImGui::SameLine();
     ImGui::TextUnformatted("Rotate");
     ImGui::SameLine();
-    ImGui::SetNextItemWidth(110.0f);
+    ImGui::SetNextItemWidth(slider_width);
     auto degrees = static_cast<float>(state.desk.editor().rotation());
     if (ImGui::SliderFloat("##rotate", &degrees, -180.0f, 180.0f, "%.0f\xc2\xb0"))
         state.desk.set_rotation(degrees);
@@ -110,7 +112,7 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
         ImVec2 at = im(state.lat_long.pixel_of(place, middle(region)));
         at = {std::round(at.x - 0.5f * size.x), std::round(at.y - 0.5f * size.y)};
         list.AddRectFilled({at.x - 4, at.y - 1}, {at.x + size.x + 4, at.y + size.y + 1},
-                           IM_COL32(0, 0, 0, 110), 3.0f);
+                           IM_COL32(0, 0, 0, 170), 3.0f);
         list.AddText(at, color, layer.name.c_str());
     }
 }

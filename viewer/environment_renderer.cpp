@@ -133,8 +133,9 @@ void EnvironmentRenderer::draw(const LatLongView& view, const PixelRectangle& vi
         line_program_.set("uv_min", uv_min);
         line_program_.set("uv_max", uv_max);
         glBindVertexArray(line_array_.id());
-        for (float turn = std::floor(uv_min.x) - 1.0f; turn <= uv_max.x; turn += 1.0f) {
-            line_program_.set("turn", turn);
+        const int last_turn = static_cast<int>(std::floor(uv_max.x));
+        for (int turn = static_cast<int>(std::floor(uv_min.x)) - 1; turn <= last_turn; ++turn) {
+            line_program_.set("turn", static_cast<float>(turn));
             glDrawArrays(GL_LINES, 0, num_line_ends_);
         }
     }

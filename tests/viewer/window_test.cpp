@@ -61,10 +61,12 @@ protected:
     /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
     [[nodiscard]] int play(const std::string& script) const {
         std::ofstream(folder_ / "script") << script;
-        const std::string command = fmt::format(
-            "cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 xvfb-run -a -s '-screen 0 1280x1024x24' '{}' view scene.prt "
-            "env.exr --script script --size {}x{} --exposure 0 --json >out.txt 2>err.txt",
-            folder_.string(), RELUMINE_BINARY, Width, Height);
+        const std::string command =
+            fmt::format("cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
+                        "TSAN_OPTIONS=\"$TSAN_OPTIONS ignore_noninstrumented_modules=1\" xvfb-run -a -s "
+                        "'-screen 0 1280x1024x24' '{}' view scene.prt "
+                        "env.exr --script script --size {}x{} --exposure 0 --json >out.txt 2>err.txt",
+                        folder_.string(), RELUMINE_BINARY, Width, Height);
         const int status = std::system(command.c_str());
         return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
