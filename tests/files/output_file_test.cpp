@@ -19,10 +19,12 @@ protected:
     void SetUp() override { fs::create_directories(folder_); }
     void TearDown() override { fs::remove_all(folder_); }
     [[nodiscard]] std::size_t num_files() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+        return static_cast<std::size_t>(
+            std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
     }
-    fs::path folder_ = fs::path(testing::TempDir()) /
-                       ("output_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path folder_ =
+        fs::path(testing::TempDir()) /
+        ("output_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 std::vector<std::byte> bytes_of(const std::string& text) {
@@ -66,7 +68,8 @@ TEST_F(OutputFileTest, NamesTheTargetWhenItCannotBeWritten) {
         const OutputFile file(folder_ / "missing" / "out.txt");
         FAIL() << "a file in a missing folder was accepted";
     } catch (const std::runtime_error& error) {
-        EXPECT_NE(std::string(error.what()).find("missing/out.txt: cannot write: No such file"), std::string::npos)
+        EXPECT_NE(std::string(error.what()).find("missing/out.txt: cannot write: No such file"),
+                  std::string::npos)
             << error.what();
     }
     EXPECT_THROW(OutputFile{folder_}, std::runtime_error);
@@ -85,7 +88,8 @@ TEST_F(OutputFileTest, FullDiskIsReportedAndTheOldFileStays) {
             file.write(bytes_of("new"));
             FAIL() << "a full disk went unnoticed";
         } catch (const std::runtime_error& error) {
-            EXPECT_NE(std::string(error.what()).find("out.txt: cannot write: No space left"), std::string::npos);
+            EXPECT_NE(std::string(error.what()).find("out.txt: cannot write: No space left"),
+                      std::string::npos);
         }
     }
     EXPECT_EQ(read(target), bytes_of("old"));
