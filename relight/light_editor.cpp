@@ -79,8 +79,9 @@ UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
     dirty_.clear();
     append_changed_tiles(base_, base, dirty_);
     require_radiance(base.texels);
+    const UpdateReport report = update_dirty(base, turned_layers_);
     base_ = std::move(base);
-    return update_dirty(turned_layers_);
+    return report;
 }
 
 RelightTimes LightEditor::set_rotation(double degrees_about_y) {
@@ -155,16 +156,17 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         if (i < next_layers_.size())
             add(next_layers_[i]);
     }
-    const UpdateReport report = update_dirty(next_layers_);
+    const UpdateReport report = update_dirty(turned_base(), next_layers_);
     std::swap(turned_layers_, next_layers_);
     return report;
 }
 
-UpdateReport LightEditor::update_dirty(std::span<const cubemap::LightLayer> layers) {
+UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,
+                                       std::span<const cubemap::LightLayer> layers) {
     if (dirty_.empty())
         return {};
     const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
-        cubemap::composite(turned_base(), layers, dirty_, environment);
+        cubemap::composite(base, layers, dirty_, environment);
         try {
             for (const cubemap::TexelRectangle& rectangle : dirty_)
                 for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)

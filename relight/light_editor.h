@@ -70,7 +70,7 @@ public:
 private:
     UpdateReport apply(std::span<const cubemap::LightLayer> layers);
     RelightTimes relight_all();
-    UpdateReport update_dirty(std::span<const cubemap::LightLayer> layers);
+    UpdateReport update_dirty(const cubemap::CubeMap& base, std::span<const cubemap::LightLayer> layers);
     UpdateReport go_to(std::size_t mark);
     [[nodiscard]] const cubemap::CubeMap& turned_base() const {
         return rotation_degrees_ == 0.0 ? base_ : turned_base_;

@@ -202,8 +202,16 @@ TEST(LightEditor, RefusesBadLayersAndStaysAsItWas) {
     EXPECT_THROW(editor.set_layers({bad}), std::invalid_argument);
     EXPECT_THROW(editor.set_layer(0, bad), std::invalid_argument);
     EXPECT_THROW(editor.set_layer(1, editor.layers()[0]), std::out_of_range);
+    // Two lights that are too bright only together; a base that is too bright only under them.
+    cubemap::LightLayer nearly = disc("nearly", {0.0, 1.0, 0.3}, 8.0, glm::vec3(0.9e30f));
+    EXPECT_THROW(editor.set_layers({nearly, nearly}), std::invalid_argument);
     EXPECT_EQ(copy(editor.radiance()), before);
     EXPECT_EQ(editor.layers()[0].name, "lamp");
+    const std::vector<glm::vec3> texels = editor.environment().texels;
+    editor.set_layers({nearly});
+    EXPECT_THROW(editor.update_base(cubemap::CubeMap(16, glm::vec3(0.5e30f))), std::invalid_argument);
+    editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    EXPECT_EQ(editor.environment().texels, texels);
 }
 
 TEST(LightEditor, SnapshotsNeverShowHalfAnUpdate) {
