@@ -145,7 +145,7 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
                           {"seconds_edit_10_percent", edit_side},
                           {"samples_verified", sample.size()},
                           {"relative_l2", errors}};
-    if (settings.with_4096) {
+    if (settings.with_4096 && paper.name == std::string("Bunny")) { // as the paper has it
         fmt::print(stderr, "{}: precompute at R = 4096\n", paper.name);
         static_cast<void>(precomputed(settings.data / "meshes/stanford" / paper.mesh, 4096, statistics));
         row["clusters_4096"] = statistics.num_clusters;
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
         ->capture_default_str();
     program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
     program.add_option("--samples", settings.num_samples, "receivers to verify")->capture_default_str();
-    program.add_flag("!--skip-4096", settings.with_4096, "leave out the Bunny and Dragon at R = 4096");
+    program.add_flag("!--skip-4096", settings.with_4096, "leave out the Bunny at R = 4096");
     CLI11_PARSE(program, argc, argv);
 
     nlohmann::json rows = nlohmann::json::array();
