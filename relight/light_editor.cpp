@@ -143,8 +143,9 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     // moved within the list is compared with its new neighbour, and so dirtied.
     dirty_.clear();
     const auto add = [&](const cubemap::LightLayer& layer) {
-        const std::vector<cubemap::TexelRectangle> touched = cubemap::touched_texels(layer, base_.resolution);
-        dirty_.insert(dirty_.end(), touched.begin(), touched.end());
+        for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_.resolution))
+            if (std::find(dirty_.begin(), dirty_.end(), touched) == dirty_.end())
+                dirty_.push_back(touched); // a layer that only grew brighter covers what it covered
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
     for (std::size_t i = 0; i < num_places; ++i) {
