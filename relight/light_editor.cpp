@@ -3,37 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
-#include <variant>
+
+#include "cubemap/region_turn.h"
 
 namespace relumine::relight {
 
 namespace {
-
-glm::dvec3 turned(const glm::dvec3& w, double degrees) {
-    const double angle = degrees * std::numbers::pi / 180.0;
-    return {std::cos(angle) * w.x + std::sin(angle) * w.z, w.y,
-            std::cos(angle) * w.z - std::sin(angle) * w.x};
-}
-
-struct TurnRegion {
-    double degrees;
-    void operator()(cubemap::Disc& disc) const { disc.direction = turned(disc.direction, degrees); }
-    void operator()(cubemap::Rectangle& box) const {
-        // An upright box stays upright; straight above or below, where upright is a convention, it turns on the spot.
-        if (box.direction.x == 0.0 && box.direction.z == 0.0)
-            box.roll_degrees += box.direction.y > 0.0 ? -degrees : degrees;
-        box.direction = turned(box.direction, degrees);
-    }
-    void operator()(cubemap::Lasso& lasso) const { turn_points(lasso.points); }
-    void operator()(cubemap::Stroke& stroke) const { turn_points(stroke.points); }
-    void turn_points(std::vector<glm::dvec3>& points) const {
-        for (glm::dvec3& point : points)
-            point = turned(point, degrees);
-    }
-};
 
 /// The tiles of 16 x 16 texels in which two maps of one resolution differ.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
@@ -109,7 +86,7 @@ void LightEditor::turn(std::span<const cubemap::LightLayer> layers,
     turned.assign(layers.begin(), layers.end());
     if (rotation_degrees_ != 0.0)
         for (cubemap::LightLayer& layer : turned)
-            std::visit(TurnRegion{rotation_degrees_}, layer.region);
+            layer.region = cubemap::turned(layer.region, rotation_degrees_);
 }
 
 UpdateReport LightEditor::set_layers(std::vector<cubemap::LightLayer> layers) {

@@ -106,23 +106,6 @@ struct Resize {
     }
 };
 
-struct Turn {
-    double degrees;
-    void operator()(cubemap::Disc& disc) const { disc.direction = turned(disc.direction, degrees); }
-    void operator()(cubemap::Rectangle& box) const {
-        // Straight above or below, where upright is a convention, a box turns on the spot.
-        if (box.direction.x == 0.0 && box.direction.z == 0.0)
-            box.roll_degrees += box.direction.y > 0.0 ? -degrees : degrees;
-        box.direction = turned(box.direction, degrees);
-    }
-    void operator()(cubemap::Lasso& lasso) const { turn(lasso.points); }
-    void operator()(cubemap::Stroke& stroke) const { turn(stroke.points); }
-    void turn(std::vector<glm::dvec3>& points) const {
-        for (glm::dvec3& point : points)
-            point = turned(point, degrees);
-    }
-};
-
 /// With hard edges, so that all of it can be held.
 cubemap::Region hard(cubemap::Region region) {
     if (auto* lasso = std::get_if<cubemap::Lasso>(&region))
@@ -163,19 +146,6 @@ cubemap::Region moved(const cubemap::Region& region, const glm::dvec3& from, con
 cubemap::Region resized(const cubemap::Region& region, const glm::dvec3& from, const glm::dvec3& to) {
     cubemap::Region result = region;
     std::visit(Resize{glm::normalize(from), glm::normalize(to)}, result);
-    return result;
-}
-
-glm::dvec3 turned(const glm::dvec3& direction, double degrees_about_y) {
-    const double angle = degrees_about_y * RadiansPerDegree;
-    return {std::cos(angle) * direction.x + std::sin(angle) * direction.z, direction.y,
-            std::cos(angle) * direction.z - std::sin(angle) * direction.x};
-}
-
-cubemap::Region turned(const cubemap::Region& region, double degrees_about_y) {
-    cubemap::Region result = region;
-    if (degrees_about_y != 0.0)
-        std::visit(Turn{degrees_about_y}, result);
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/light_layer.h"
+#include "cubemap/region_turn.h"
 #include "viewer/region_outline.h"
 
 namespace relumine::viewer {
@@ -24,9 +25,7 @@ enum class Grip { None, Body, Rim };
 [[nodiscard]] cubemap::Region resized(const cubemap::Region& region, const glm::dvec3& from,
                                       const glm::dvec3& to);
 
-/// Turned about +Y as relight::LightEditor::set_rotation() does.
-[[nodiscard]] cubemap::Region turned(const cubemap::Region& region, double degrees_about_y);
-[[nodiscard]] glm::dvec3 turned(const glm::dvec3& direction, double degrees_about_y);
+using cubemap::turned; // as relight::LightEditor::set_rotation() turns
 
 /// Degrees between two directions of any length but zero.
 [[nodiscard]] double angle_between(const glm::dvec3& a, const glm::dvec3& b);
