@@ -104,6 +104,9 @@ cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const st
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
     std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
     std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
+    std::vector<SharpLightPackets> shadow_packets; // one for each light, to tell them apart
+    for (std::size_t i = 0; i < sharp.size(); ++i)
+        shadow_packets.emplace_back(sharp.subspan(i, 1));
     const double share = 1.0 / static_cast<double>(receivers.size());
     for (const std::uint32_t receiver : receivers) {
         if (receiver >= place_of.size())
@@ -121,9 +124,7 @@ cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const st
         }
         const ShadowRays& rays = relighter.shadow_rays();
         for (std::size_t i = 0; i < sharp.size(); ++i)
-            from_sharp[i] +=
-                share *
-                SharpLightPackets(sharp.subspan(i, 1)).radiance(rays.positions[receiver], normal, rays);
+            from_sharp[i] += share * shadow_packets[i].radiance(rays.positions[receiver], normal, rays);
     }
 
     Spreader spreader(relighter.environment());

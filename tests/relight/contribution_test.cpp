@@ -38,6 +38,16 @@ TEST(ContributionMap, SumsToTheReceiversRadiance) {
     }
 }
 
+TEST(ContributionMap, SumsToTheRadianceWithATracedSun) {
+    Relighter relighter(relit_scene().transfer, relit_scene().shadow_rays());
+    cubemap::CubeMap environment(64, glm::vec3(0.5f));
+    environment.at(cubemap::Face::PositiveY, 20, 37) = glm::vec3(1e5f, 9e4f, 8e4f);
+    relighter.set_environment(environment);
+    ASSERT_FALSE(relighter.sharp_lights().empty());
+    for (std::uint32_t receiver = 0; receiver < relighter.radiance().size(); receiver += 17)
+        expect_sums_to_radiance(relighter, {receiver});
+}
+
 TEST(ContributionMap, IsBrightOnlyWhereLightReachesTheReceiver) {
     Relighter relighter(relit_scene().transfer);
     relighter.set_environment(cubemap::CubeMap(32, glm::vec3(1.0f)));
