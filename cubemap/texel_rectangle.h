@@ -1,7 +1,9 @@
 // A part of a cube map's face, counted in texels.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "cubemap/face.h"
 
@@ -15,6 +17,26 @@ struct TexelRectangle {
     std::uint32_t x1 = 0;
     std::uint32_t y1 = 0;
     bool operator==(const TexelRectangle&) const = default;
+
+    [[nodiscard]] std::uint64_t num_texels() const { return std::uint64_t{x1 - x0} * (y1 - y0); }
 };
+
+/// Adds a rectangle to a list, or makes one of the list's larger where that covers no more texels than both apart.
+inline void add_merged(const TexelRectangle& rectangle, std::vector<TexelRectangle>& list) {
+    for (TexelRectangle& other : list) {
+        if (other.face != rectangle.face)
+            continue;
+        const TexelRectangle both = {.face = rectangle.face,
+                                     .x0 = std::min(rectangle.x0, other.x0),
+                                     .y0 = std::min(rectangle.y0, other.y0),
+                                     .x1 = std::max(rectangle.x1, other.x1),
+                                     .y1 = std::max(rectangle.y1, other.y1)};
+        if (both.num_texels() <= rectangle.num_texels() + other.num_texels()) {
+            other = both;
+            return;
+        }
+    }
+    list.push_back(rectangle);
+}
 
 } // namespace relumine::cubemap

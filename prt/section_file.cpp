@@ -22,7 +22,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, ".prt files are little-endian");
 
 constexpr std::array<char, 8> Magic = {'R', 'E', 'L', 'U', 'M', 'I', 'N', 'E'};
-constexpr std::uint32_t Version = 1;
+constexpr std::uint32_t Version = 2;
 constexpr std::uint32_t ByteOrderMark = 0x01020304;
 constexpr std::uint32_t MaxSections = 64;
 

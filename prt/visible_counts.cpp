@@ -17,7 +17,7 @@ bool bit_of(const std::vector<std::uint64_t>& words, std::size_t bit) {
 } // namespace
 
 int VisibleCounts::count(std::size_t receiver_place, std::size_t leaf) const {
-    const std::size_t word = receiver_place / BlockSize * words_per_block() + leaf / 64;
+    const std::size_t word = this->word(receiver_place / BlockSize, leaf / 64);
     const auto bit = static_cast<std::uint32_t>(leaf % 64);
     if ((visible[word] >> bit & 1u) != 0)
         return 16;
@@ -35,12 +35,15 @@ void VisibleCounts::index() {
     mixed_before.resize(num_words);
     std::uint64_t num_pairs = 0;
     for (std::size_t word = 0; word < num_words; ++word) {
-        const bool last_of_block = (word + 1) % words_per_block() == 0;
-        const std::uint64_t beyond = last_of_block ? ~last_word_mask : 0;
-        if ((visible[word] & mixed[word]) != 0 || ((visible[word] | mixed[word]) & beyond) != 0)
+        if ((visible[word] & mixed[word]) != 0)
             throw std::invalid_argument("visible counts: expected consistent bits");
         mixed_before[word] = num_pairs;
         num_pairs += static_cast<std::uint64_t>(std::popcount(mixed[word]));
+    }
+    for (std::size_t block = 0; block < num_blocks(); ++block) {
+        const std::size_t last = word(block, words_per_block() - 1);
+        if (((visible[last] | mixed[last]) & ~last_word_mask) != 0)
+            throw std::invalid_argument("visible counts: expected no bits beyond the last leaf");
     }
     if (num_pairs != num_mixed())
         throw std::invalid_argument("visible counts: expected 16 counts per mixed block");
@@ -50,16 +53,15 @@ void VisibleCounts::index() {
 
 VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t num_receivers) {
     VisibleCounts result{.num_receivers = num_receivers, .num_leaves = columns.size()};
-    const std::size_t words_per_block = result.words_per_block();
     const std::size_t num_blocks = result.num_blocks();
-    result.visible.resize(num_blocks * words_per_block);
-    result.mixed.resize(num_blocks * words_per_block);
+    result.visible.resize(num_blocks * result.words_per_block());
+    result.mixed.resize(num_blocks * result.words_per_block());
 
     // Transpose the class bits; every task owns whole blocks.
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_blocks, 64), [&](const auto& blocks) {
         for (std::size_t leaf = 0; leaf < columns.size(); ++leaf) {
             for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
-                const std::size_t word = block * words_per_block + leaf / 64;
+                const std::size_t word = result.word(block, leaf / 64);
                 result.visible[word] |= static_cast<std::uint64_t>(bit_of(columns[leaf].visible, block))
                                         << (leaf % 64);
                 result.mixed[word] |= static_cast<std::uint64_t>(bit_of(columns[leaf].mixed, block))
@@ -80,7 +82,7 @@ VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t
         for (std::size_t block = 0; block < num_blocks; ++block) {
             if (!bit_of(column.mixed, block))
                 continue;
-            const std::size_t word = block * words_per_block + leaf / 64;
+            const std::size_t word = result.word(block, leaf / 64);
             auto* target =
                 const_cast<std::uint8_t*>(result.mixed_counts(word, static_cast<std::uint32_t>(leaf % 64)));
             std::copy_n(source, BlockSize, target);

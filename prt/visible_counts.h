@@ -1,6 +1,7 @@
 // How much of each cluster each receiver sees: the precomputed data itself.
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -21,14 +22,18 @@ struct LeafColumn {
 
 /// The count c in 0..16 of every (receiver, leaf) pair, [num_receivers x num_leaves]: the weighted number of the leaf's nine samples that
 /// reach the receiver, so that T_C(x) = c/16 max(n.w, 0)/pi for albedo 1 [JN, Eq. 10]. Receivers are in spatial
-/// order. Most blocks of 16 receivers see all of a leaf or nothing: two bits say so; only mixed ones store 16 counts. Layout (promised):
-/// all of a block lies together, leaves ascending, so relighting streams through it and an edit finds the few leaves
-/// it needs by bit arithmetic.
+/// order. Most blocks of 16 receivers see all of a leaf or nothing: two bits say so; only mixed ones store 16 counts.
+///
+/// Layout (promised): tiles of 64 blocks; in a tile, words of 64 leaves ascending; in a word, the tile's blocks; in a block, the word's
+/// mixed leaves ascending. So both uses stream: a relighting through a whole tile while its sums stay in the cache, an edit
+/// through the few words it touches, once per tile.
 struct VisibleCounts {
+    static constexpr std::size_t TileBlocks = 64;
+
     std::size_t num_receivers = 0;
     std::size_t num_leaves = 0;
     std::vector<std::uint64_t> visible =
-        {}; ///< [num_blocks * words_per_block] bit of a leaf: all 16 receivers count 16
+        {}; ///< [num_blocks * words_per_block], see word(); bit of a leaf: all 16 receivers count 16
     std::vector<std::uint64_t> mixed =
         {}; ///< the same shape; bit of a leaf: it has 16 entries in `counts`; never set with `visible`
     std::vector<std::uint64_t> mixed_before =
@@ -37,9 +42,20 @@ struct VisibleCounts {
 
     [[nodiscard]] std::size_t num_blocks() const { return (num_receivers + BlockSize - 1) / BlockSize; }
     [[nodiscard]] std::size_t words_per_block() const { return (num_leaves + 63) / 64; }
+    [[nodiscard]] std::size_t num_tiles() const { return (num_blocks() + TileBlocks - 1) / TileBlocks; }
+    /// First block of a tile; of num_tiles(): the number of blocks.
+    [[nodiscard]] std::size_t tile_begin(std::size_t tile) const {
+        return std::min(tile * TileBlocks, num_blocks());
+    }
+    /// Where the word of 64 leaves lies that holds leaves 64 w .. 64 w + 63 of a block.
+    [[nodiscard]] std::size_t word(std::size_t block, std::size_t w) const {
+        const std::size_t begin = tile_begin(block / TileBlocks);
+        const std::size_t width = tile_begin(block / TileBlocks + 1) - begin;
+        return begin * words_per_block() + w * width + (block - begin);
+    }
     [[nodiscard]] std::size_t num_mixed() const { return counts.size() / BlockSize; }
 
-    /// The 16 counts of a mixed (word, bit): word = block * words_per_block() + leaf / 64, bit = leaf % 64.
+    /// The 16 counts of a mixed (word, bit): word(block, leaf / 64), bit = leaf % 64.
     [[nodiscard]] const std::uint8_t* mixed_counts(std::size_t word, std::uint32_t bit) const {
         const std::uint64_t below = mixed[word] & ((std::uint64_t{1} << bit) - 1);
         return counts.data() +
@@ -54,7 +70,7 @@ struct VisibleCounts {
     void index();
 };
 
-/// Turns columns (one per leaf, in leaf order) into the block layout; frees each column's memory as it goes.
+/// Turns columns (one per leaf, in leaf order) into that layout; frees each column's memory as it goes.
 [[nodiscard]] VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t num_receivers);
 
 } // namespace relumine::prt

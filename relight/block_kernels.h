@@ -21,7 +21,7 @@ struct ClusterLights {
 
     explicit ClusterLights(std::size_t num_clusters);
     void set(std::size_t cluster, const VectorIrradiance& irradiance);
-    /// Fills `prefix`, which only light_block() reads.
+    /// Fills `prefix`, which only light_tile() reads.
     void sum_prefix();
 };
 
@@ -44,14 +44,24 @@ struct alignas(64) BlockNormals {
     std::array<std::array<float, prt::BlockSize>, 3> axes{};
 };
 
-/// The block's light from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi.
-void light_block(const prt::VisibleCounts& counts, std::size_t block, const BlockNormals& normals,
-                 const ClusterLights& lights, BlockLight& light);
+/// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver].
+struct alignas(64) BlockRadiance {
+    std::array<std::array<float, prt::BlockSize>, 3> channels{};
+};
 
-/// Adds what the changed clusters make of the block's light [JN, Eq. 15]. `before` and `after` are ClusterLights::vectors of all clusters;
-/// they differ in no other cluster. Returns whether the block sees any of them.
-bool update_block(const prt::VisibleCounts& counts, std::size_t block, const BlockNormals& normals,
-                  std::span<const ChangedWord> changes, std::span<const float> before,
-                  std::span<const float> after, BlockLight& light);
+/// Both parts of a block's light put together, never below zero.
+void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockRadiance& radiance);
+
+/// Lights the blocks of a tile from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi. `normals` and `light` are
+/// those of all blocks.
+void light_tile(const prt::VisibleCounts& counts, std::size_t tile, std::span<const BlockNormals> normals,
+                const ClusterLights& lights, std::span<BlockLight> light);
+
+/// Adds what the changed clusters make of the tile's light [JN, Eq. 15]. `before` and `after` are ClusterLights::vectors of all clusters;
+/// they differ in no other cluster. Returns the blocks that see any of them, bit b for the tile's block b.
+std::uint64_t update_tile(const prt::VisibleCounts& counts, std::size_t tile,
+                          std::span<const BlockNormals> normals, std::span<const ChangedWord> changes,
+                          std::span<const float> before, std::span<const float> after,
+                          std::span<BlockLight> light);
 
 } // namespace relumine::relight

@@ -6,11 +6,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include "cubemap/region_turn.h"
 
 namespace relumine::relight {
 
 namespace {
+
+/// Receivers whose radiance one task copies: about 10 microseconds, ten times the cost of starting it.
+constexpr std::size_t CopyGrain = 8192;
 
 /// The tiles of 16 x 16 texels in which two maps of one resolution differ.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
@@ -121,8 +127,7 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     dirty_.clear();
     const auto add = [&](const cubemap::LightLayer& layer) {
         for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_.resolution))
-            if (std::find(dirty_.begin(), dirty_.end(), touched) == dirty_.end())
-                dirty_.push_back(touched); // a layer that only grew brighter covers what it covered
+            add_merged(touched, dirty_);
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
     for (std::size_t i = 0; i < num_places; ++i) {
@@ -193,7 +198,12 @@ UpdateReport LightEditor::go_to(std::size_t mark) {
 
 void LightEditor::publish() {
     const std::span<const glm::vec3> radiance = relighter_.radiance();
-    back_.assign(radiance.begin(), radiance.end());
+    back_.resize(radiance.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), CopyGrain), [&](const auto& part) {
+        std::copy(radiance.begin() + static_cast<std::ptrdiff_t>(part.begin()),
+                  radiance.begin() + static_cast<std::ptrdiff_t>(part.end()),
+                  back_.begin() + static_cast<std::ptrdiff_t>(part.begin()));
+    });
     const std::unique_lock lock(published_mutex_);
     std::swap(published_, back_);
 }

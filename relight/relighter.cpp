@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -19,11 +20,15 @@ namespace relumine::relight {
 
 namespace {
 
-/// Blocks of one task: 64 blocks are about 50 microseconds of work, well above the cost of starting a task.
-constexpr std::size_t BlocksPerTask = 64;
+/// Receivers of one task that traces sharp lights: about 50 microseconds of work, well above the cost of starting a task.
+constexpr std::size_t ReceiversPerTask = 64;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double power(const VectorIrradiance& sum) {
+    return glm::length(sum.luminance());
 }
 
 void sort_unique(std::vector<std::uint32_t>& values) {
@@ -45,7 +50,7 @@ void require_radiance(std::span<const glm::vec3> texels) {
 }
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
-    : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),
+    : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()), powers_(transfer.num_clusters()),
       normals_(transfer.counts.num_blocks()), light_(transfer.counts.num_blocks()),
       lights_(transfer.num_clusters()), lit_by_(lights_.vectors), radiance_(transfer.num_receivers()) {
     if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
@@ -69,12 +74,13 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     if (!binning_ || binning_->resolution() != environment_.resolution)
         binning_.emplace(environment_.resolution);
     sums_ = binning_->sums(environment_, transfer_.quadtree.leaves());
+    std::transform(sums_.begin(), sums_.end(), powers_.begin(), power);
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     if (rays_.blockers != nullptr) {
         sharp_lights_ =
-            find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), sums_, rays_.tolerance);
+            find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_, rays_.tolerance);
         trace_sharp_lights();
     }
     times.num_sharp_lights = sharp_lights_.size();
@@ -91,13 +97,12 @@ void Relighter::resum() {
     std::iota(changed_.begin(), changed_.end(), 0u);
     set_cluster_lights(changed_);
     lights_.sum_prefix();
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, light_.size(), BlocksPerTask),
-                      [&](const auto& blocks) {
-                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
-                              light_block(transfer_.counts, block, normals_[block], lights_, light_[block]);
-                              write_radiance(block);
-                          }
-                      });
+    tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
+        light_tile(transfer_.counts, tile, normals_, lights_, light_);
+        for (std::size_t block = transfer_.counts.tile_begin(tile);
+             block < transfer_.counts.tile_begin(tile + 1); ++block)
+            write_radiance(block);
+    });
     lit_by_ = lights_.vectors;
 }
 
@@ -116,7 +121,7 @@ void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
 
 void Relighter::trace_sharp_lights() {
     const SharpLightPackets packets(sharp_lights_);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, traced_.size(), BlocksPerTask),
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, traced_.size(), ReceiversPerTask),
                       [&](const auto& places) {
                           for (std::size_t place = places.begin(); place < places.end(); ++place)
                               traced_[place] = packets.radiance(rays_.positions[transfer_.order[place]],
@@ -164,9 +169,11 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
                                         .t1 = rectangle.y1 / r},
                                        changed_);
     sort_unique(changed_);
-    const std::size_t num_touched = changed_.size();
-    tbb::parallel_for(std::size_t{0}, num_touched, [&](std::size_t i) {
-        sums_[changed_[i]] = binning_->sum(environment_, transfer_.quadtree.leaves()[changed_[i]]);
+    const std::size_t num_changed = changed_.size();
+    tbb::parallel_for(std::size_t{0}, num_changed, [&](std::size_t i) {
+        const std::uint32_t cluster = changed_[i];
+        sums_[cluster] = binning_->sum(environment_, transfer_.quadtree.leaves()[cluster]);
+        powers_[cluster] = power(sums_[cluster]);
     });
     const bool sharp_changed = rays_.blockers != nullptr && update_sharp_lights();
 
@@ -178,21 +185,26 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
         changed_words_.back().clusters |= std::uint64_t{1} << (cluster % 64);
     }
     std::atomic<std::size_t> num_blocks = 0;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, light_.size(), BlocksPerTask), [&](const auto& blocks) {
-            for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
-                const bool touched = update_block(transfer_.counts, block, normals_[block], changed_words_,
-                                                  lit_by_, lights_.vectors, light_[block]);
-                if (touched || sharp_changed)
-                    write_radiance(block);
-                num_blocks += static_cast<std::size_t>(touched || sharp_changed);
+    tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
+        std::uint64_t touched =
+            update_tile(transfer_.counts, tile, normals_, changed_words_, lit_by_, lights_.vectors, light_);
+        if (sharp_changed)
+            touched = ~std::uint64_t{0};
+        const std::size_t begin = transfer_.counts.tile_begin(tile);
+        const std::size_t end = transfer_.counts.tile_begin(tile + 1);
+        std::size_t num_touched = 0;
+        for (std::size_t block = begin; block < end; ++block)
+            if ((touched >> (block - begin) & 1u) != 0) {
+                write_radiance(block);
+                ++num_touched;
             }
-        });
+        num_blocks += num_touched;
+    });
     for (const std::uint32_t cluster : changed_) {
         const auto first = static_cast<std::ptrdiff_t>(cluster * ClusterLights::Stride);
         std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride, lit_by_.begin() + first);
     }
-    return {.num_clusters = num_touched,
+    return {.num_clusters = num_changed,
             .num_receivers = std::min(num_blocks * prt::BlockSize, radiance_.size()),
             .num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0,
             .seconds = seconds_since(start)};
@@ -202,7 +214,7 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
 /// when there are any; returns whether there are.
 bool Relighter::update_sharp_lights() {
     std::vector<SharpLight> lights =
-        find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), sums_, rays_.tolerance);
+        find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_, rays_.tolerance);
     if (lights == sharp_lights_)
         return false;
     for (const std::vector<SharpLight>* set : {&lights, &sharp_lights_})
@@ -215,23 +227,16 @@ bool Relighter::update_sharp_lights() {
 }
 
 void Relighter::write_radiance(std::size_t block) {
-    const BlockLight& light = light_[block];
-    const BlockNormals& normals = normals_[block];
+    BlockRadiance sums;
+    block_radiance(normals_[block], light_[block], sums);
     const std::size_t begin = block * prt::BlockSize;
     const std::size_t end = std::min(begin + prt::BlockSize, radiance_.size());
     for (std::size_t place = begin; place < end; ++place) {
         const std::size_t lane = place - begin;
-        glm::vec3& target = radiance_[transfer_.order[place]];
-        for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double* e = light.visible.data() + 3 * channel;
-            const double visible = static_cast<double>(normals.axes[0][lane]) * e[0] +
-                                   static_cast<double>(normals.axes[1][lane]) * e[1] +
-                                   static_cast<double>(normals.axes[2][lane]) * e[2];
-            // A whole cluster counts 16. Sums of nothing may round to a hair below zero.
-            const double clusters = std::max(0.0, prt::FullCount * visible + light.mixed[channel][lane]);
-            const double sum = clusters + (traced_.empty() ? 0.0 : traced_[place][static_cast<int>(channel)]);
-            target[static_cast<int>(channel)] = static_cast<float>(sum);
-        }
+        glm::vec3 sum(sums.channels[0][lane], sums.channels[1][lane], sums.channels[2][lane]);
+        if (!traced_.empty())
+            sum = glm::vec3(glm::dvec3(sum) + traced_[place]);
+        radiance_[transfer_.order[place]] = sum;
     }
 }
 

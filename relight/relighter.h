@@ -92,6 +92,7 @@ private:
     const prt::Transfer& transfer_;
     ShadowRays rays_;
     std::vector<VectorIrradiance> sums_; ///< [num_clusters] all light of each cluster
+    std::vector<double> powers_;         ///< [num_clusters] length of its luminance
     std::vector<SharpLight> sharp_lights_;
     std::vector<glm::dvec3> traced_;    ///< [num_receivers] by place: radiance from the sharp lights
     std::vector<BlockNormals> normals_; ///< [num_blocks]

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <numbers>
+#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -91,12 +92,10 @@ private:
 } // namespace
 
 std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, const LightBinning& binning,
-                                          std::span<const prt::Cell> clusters,
-                                          std::span<const VectorIrradiance> sums, float tolerance) {
+                                          std::span<const prt::Cell> clusters, std::span<const double> powers,
+                                          float tolerance) {
     // The length of a small cell's vector irradiance is its power.
-    double total_power = 0.0;
-    for (const VectorIrradiance& sum : sums)
-        total_power += glm::length(sum.luminance());
+    const double total_power = std::accumulate(powers.begin(), powers.end(), 0.0);
     std::vector<SharpLight> lights;
     if (total_power == 0.0 || tolerance <= 0.0f)
         return lights;
@@ -105,8 +104,8 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, c
 
     Search search(environment, binning, min_power, lights);
     for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster)
-        if (const double power = glm::length(sums[cluster].luminance()); power >= min_power)
-            search.look_into(cluster, power, clusters[cluster]);
+        if (powers[cluster] >= min_power)
+            search.look_into(cluster, powers[cluster], clusters[cluster]);
     return lights;
 }
 

@@ -39,12 +39,11 @@ struct SharpLight {
 /// The sharp lights of an environment, clusters ascending. A cell two levels below its cluster is sharp when it holds so much of the
 /// map's power P that the error a point light may make in the cluster, tolerance times its power, exceeds 0.25 % of the mean
 /// radiance P / (4 pi), and it or a sister more than an eighth of the cluster's power. There are a few dozen at most: large sources have no such cells.
-/// `sums`: full vector irradiance of each cluster, [clusters.size()]. Deterministic. O(clusters + texels of the brightest clusters).
+/// `powers`: the length of each cluster's full vector irradiance, in luminance, [clusters.size()]. Deterministic. O(clusters + texels of the brightest clusters).
 [[nodiscard]] std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                                         const LightBinning& binning,
                                                         std::span<const prt::Cell> clusters,
-                                                        std::span<const VectorIrradiance> sums,
-                                                        float tolerance);
+                                                        std::span<const double> powers, float tolerance);
 
 /// Sharp lights arranged for tracing, sixteen rays at a time.
 class SharpLightPackets {

@@ -168,8 +168,8 @@ TEST_F(SectionFileTest, SaysWhatIsWrong) {
         change(bad);
         write(bad);
     };
-    changed([](auto& b) { put(b, VersionAt, std::uint32_t{2}); });
-    expect_refused("expected .prt version 1, got version 2");
+    changed([](auto& b) { put(b, VersionAt, std::uint32_t{1}); });
+    expect_refused("expected .prt version 2, got version 1");
     changed([](auto& b) { std::reverse(b.begin() + ByteOrderAt, b.begin() + VersionAt); });
     expect_refused("expected a little-endian .prt scene, got a big-endian one");
     changed([](auto& b) { b.resize(b.size() - 3); });

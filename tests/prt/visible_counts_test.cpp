@@ -71,19 +71,22 @@ TEST(VisibleCounts, CountEqualsAPlainTable) {
         }
 }
 
-TEST(VisibleCounts, AllOfABlockLiesTogetherLeavesAscending) {
+TEST(VisibleCounts, TilesThenWordsThenBlocksThenLeaves) {
     std::mt19937 random(2);
-    const Table table = random_table(random, 40, 70);
-    const VisibleCounts counts = counts_of(table, 40);
+    constexpr std::size_t NumReceivers = 66 * BlockSize; // a tile of 64 blocks and one of two
+    const Table table = random_table(random, NumReceivers, 130);
+    const VisibleCounts counts = counts_of(table, NumReceivers);
     std::vector<std::uint8_t> expected;
-    for (std::size_t block = 0; block < 3; ++block)
-        for (const auto& leaf : table) {
-            const LeafColumn column = column_of(leaf);
-            if ((column.mixed[0] >> block & 1u) == 0)
-                continue;
-            for (std::size_t i = block * BlockSize; i < (block + 1) * BlockSize; ++i)
-                expected.push_back(i < leaf.size() ? leaf[i] : std::uint8_t{0});
-        }
+    std::size_t word = 0;
+    for (const auto& [begin, end] : {std::pair{0u, 64u}, std::pair{64u, 66u}})
+        for (std::size_t first_leaf = 0; first_leaf < table.size(); first_leaf += 64)
+            for (std::size_t block = begin; block < end; ++block) {
+                EXPECT_EQ(counts.word(block, first_leaf / 64), word++);
+                for (std::size_t leaf = first_leaf; leaf < std::min(first_leaf + 64, table.size()); ++leaf)
+                    if ((column_of(table[leaf]).mixed[block / 64] >> (block % 64) & 1u) != 0)
+                        expected.insert(expected.end(), &table[leaf][block * BlockSize],
+                                        &table[leaf][block * BlockSize] + BlockSize);
+            }
     EXPECT_EQ(counts.counts, expected);
 }
 

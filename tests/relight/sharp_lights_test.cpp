@@ -19,7 +19,10 @@ namespace {
 std::vector<SharpLight> sharp_lights(const cubemap::CubeMap& environment, float tolerance = 0.0135f) {
     const LightBinning binning(environment.resolution);
     const auto cells = scenes::relit_scene().transfer.quadtree.leaves();
-    return find_sharp_lights(environment, binning, cells, binning.sums(environment, cells), tolerance);
+    std::vector<double> powers;
+    for (const VectorIrradiance& sum : binning.sums(environment, cells))
+        powers.push_back(glm::length(sum.luminance()));
+    return find_sharp_lights(environment, binning, cells, powers, tolerance);
 }
 
 cubemap::CubeMap sky_with_sun(std::uint32_t r, cubemap::Face face, std::uint32_t x, std::uint32_t y,
