@@ -7,7 +7,7 @@
 
 #include "prt/ray_scene.h"
 #include "prt/scene_file.h"
-#include "relight/sharp_lights.h"
+#include "relight/light_packets.h"
 
 namespace relumine::app {
 

@@ -71,4 +71,18 @@ void Quadtree::find(std::uint32_t node, const Cell& cell, const FaceRectangle& r
         find(here.first_child + i, cell.child(i), rectangle, leaf_indices);
 }
 
+std::uint32_t Quadtree::leaf_at(const cubemap::FacePoint& point) const {
+    auto node = static_cast<std::uint32_t>(point.face);
+    double s = point.s;
+    double t = point.t;
+    while (nodes_[node].first_child != 0) {
+        const std::uint32_t right = s >= 0.5 ? 1 : 0;
+        const std::uint32_t below = t >= 0.5 ? 1 : 0;
+        s = 2.0 * s - right;
+        t = 2.0 * t - below;
+        node = nodes_[node].first_child + 2 * below + right;
+    }
+    return nodes_[node].leaf;
+}
+
 } // namespace relumine::prt

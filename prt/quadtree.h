@@ -58,6 +58,9 @@ public:
     /// the tree from the face's root [JN, Section 5.2].
     void find_leaves(const FaceRectangle& rectangle, std::vector<std::uint32_t>& leaf_indices) const;
 
+    /// The leaf whose cell a point lies in; on borders between cells, the one to the right and below.
+    [[nodiscard]] std::uint32_t leaf_at(const cubemap::FacePoint& point) const;
+
 private:
     struct Node {
         std::uint32_t first_child = 0; ///< index of four consecutive nodes, 0 for a leaf

@@ -104,7 +104,7 @@ cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const st
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
     std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
     std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
-    std::vector<SharpLightPackets> shadow_packets; // one for each light, to tell them apart
+    std::vector<LightPackets> shadow_packets; // one for each light, to tell them apart
     for (std::size_t i = 0; i < sharp.size(); ++i)
         shadow_packets.emplace_back(sharp.subspan(i, 1));
     const double share = 1.0 / static_cast<double>(receivers.size());

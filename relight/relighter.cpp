@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -22,6 +23,9 @@ namespace {
 
 /// Receivers of one task that traces sharp lights: about 50 microseconds of work, well above the cost of starting a task.
 constexpr std::size_t ReceiversPerTask = 64;
+
+/// How far from 1 the length of a direction read from a file may be.
+constexpr double UnitTolerance = 1e-4;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -92,6 +96,45 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     return times;
 }
 
+RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights) {
+    for (const lights::DistantLight& light : lights) {
+        const glm::vec3 irradiance(light.irradiance);
+        require_radiance({&irradiance, 1});
+        if (!(std::abs(glm::length(light.direction) - 1.0) < UnitTolerance))
+            throw std::invalid_argument("expected directions of unit length");
+    }
+    RelightTimes times;
+    auto start = std::chrono::steady_clock::now();
+    environment_ = {};
+    sharp_lights_.clear();
+    std::fill(sums_.begin(), sums_.end(), VectorIrradiance());
+    for (const lights::DistantLight& light : lights) {
+        const cubemap::FacePoint point = cubemap::face_point(light.direction);
+        const std::uint32_t cluster = transfer_.quadtree.leaf_at(point);
+        const VectorIrradiance irradiance = vector_irradiance(light);
+        sums_[cluster] += irradiance;
+        if (rays_.blockers != nullptr)
+            sharp_lights_.push_back({.cluster = cluster,
+                                     .cell = transfer_.quadtree.leaves()[cluster],
+                                     .direction = light.direction,
+                                     .irradiance = irradiance});
+    }
+    std::stable_sort(sharp_lights_.begin(), sharp_lights_.end(),
+                     [](const SharpLight& a, const SharpLight& b) { return a.cluster < b.cluster; });
+    std::transform(sums_.begin(), sums_.end(), powers_.begin(), power);
+    times.seconds_bin = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    trace_sharp_lights();
+    times.num_sharp_lights = sharp_lights_.size();
+    times.seconds_trace = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    resum();
+    times.seconds_relight = seconds_since(start);
+    return times;
+}
+
 void Relighter::resum() {
     changed_.resize(sums_.size());
     std::iota(changed_.begin(), changed_.end(), 0u);
@@ -120,7 +163,7 @@ void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
 }
 
 void Relighter::trace_sharp_lights() {
-    const SharpLightPackets packets(sharp_lights_);
+    const LightPackets packets(sharp_lights_);
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, traced_.size(), ReceiversPerTask),
                       [&](const auto& places) {
                           for (std::size_t place = places.begin(); place < places.end(); ++place)

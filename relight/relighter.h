@@ -15,6 +15,7 @@
 #include "prt/transfer.h"
 #include "relight/block_kernels.h"
 #include "relight/cluster_lights.h"
+#include "relight/light_packets.h"
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
@@ -55,6 +56,11 @@ public:
     /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous sphere. O(6 R^2 + size of the
     /// transfer). Throws std::invalid_argument for a map without texels or a radiance that require_radiance() refuses.
     RelightTimes set_environment(cubemap::CubeMap environment);
+
+    /// Lights all receivers with distant lights in place of an environment: one shadow ray each, or, without shadow rays, each with
+    /// its cluster's visible counts. There is no environment to update then. Throws std::invalid_argument for irradiance that
+    /// require_radiance() refuses or a direction that is not of unit length.
+    RelightTimes set_lights(std::span<const lights::DistantLight> lights);
 
     /// Replaces a rectangle of the environment's texels by `radiance`, row by row [(x1 - x0) * (y1 - y0)], and updates what the clusters it
     /// touches contribute [JN, Section 5.2, Eq. 15]. Equal to set_environment() of the changed map to 1e-5 relative, however

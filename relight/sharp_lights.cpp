@@ -109,43 +109,4 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, c
     return lights;
 }
 
-SharpLightPackets::SharpLightPackets(std::span<const SharpLight> lights) {
-    for (std::size_t i = 0; i < lights.size(); ++i) {
-        const std::size_t lane = i % prt::PacketSize;
-        if (lane == 0)
-            packets_.emplace_back();
-        Packet& packet = packets_.back();
-        // Unused lanes repeat the packet's first direction.
-        for (std::size_t k = lane; k < (lane == 0 ? prt::PacketSize : lane + 1); ++k)
-            packet.directions.set(k, lights[i].direction);
-        packet.directions.num_directions = static_cast<std::uint32_t>(lane + 1);
-        packet.irradiance[lane] = lights[i].irradiance;
-    }
-}
-
-glm::dvec3 SharpLightPackets::radiance(const glm::vec3& position, const glm::vec3& normal,
-                                       const ShadowRays& rays) const {
-    glm::dvec3 irradiance(0.0);
-    const glm::vec3 origin = prt::ray_origin(position, normal, rays.bias);
-    for (const Packet& packet : packets_) {
-        std::uint32_t above = 0;
-        for (std::uint32_t i = 0; i < packet.directions.num_directions; ++i) {
-            const float cosine = normal.x * packet.directions.x[i] + normal.y * packet.directions.y[i] +
-                                 normal.z * packet.directions.z[i];
-            above |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
-        }
-        if (above == 0)
-            continue;
-        std::uint32_t visible = above & ~rays.blockers->occluded(origin, packet.directions, above);
-        for (; visible != 0; visible &= visible - 1) {
-            const VectorIrradiance& e =
-                packet.irradiance[static_cast<std::size_t>(std::countr_zero(visible))];
-            const glm::dvec3 n(normal);
-            irradiance +=
-                glm::max(glm::dvec3(glm::dot(n, e.red), glm::dot(n, e.green), glm::dot(n, e.blue)), 0.0);
-        }
-    }
-    return irradiance / std::numbers::pi;
-}
-
 } // namespace relumine::relight

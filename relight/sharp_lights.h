@@ -4,7 +4,6 @@
 // get shadows three degrees soft.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,20 +11,10 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/blockers.h"
 #include "prt/quadtree.h"
 #include "relight/cluster_lights.h"
 
 namespace relumine::relight {
-
-/// What tracing lights one by one takes. Without blockers no light is traced.
-struct ShadowRays {
-    const prt::Blockers* blockers = nullptr; ///< must outlive its user
-    std::span<const glm::vec3> positions =
-        {};                    ///< [num_receivers] in the receivers' own order; must outlive its user
-    float bias = 0.0f;         ///< lift of the rays' origins, as in prt::PrecomputeOptions
-    float tolerance = 0.0135f; ///< of the precompute, RMS form, 1/sr
-};
 
 /// One such light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel) where the power is.
 struct SharpLight {
@@ -44,21 +33,5 @@ struct SharpLight {
                                                         const LightBinning& binning,
                                                         std::span<const prt::Cell> clusters,
                                                         std::span<const double> powers, float tolerance);
-
-/// Sharp lights arranged for tracing, sixteen rays at a time.
-class SharpLightPackets {
-public:
-    explicit SharpLightPackets(std::span<const SharpLight> lights);
-    /// Radiance (albedo 1) that a receiver gets: one shadow ray for each light above its horizon.
-    [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
-                                      const ShadowRays& rays) const;
-
-private:
-    struct Packet {
-        prt::DirectionPacket directions;
-        std::array<VectorIrradiance, prt::PacketSize> irradiance{};
-    };
-    std::vector<Packet> packets_;
-};
 
 } // namespace relumine::relight

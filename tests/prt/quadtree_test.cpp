@@ -156,6 +156,23 @@ TEST(Quadtree, ASubtreeOwnsARangeOfLeaves) {
         }
 }
 
+TEST(Quadtree, LeafAtAPointIsTheOneWhoseCellHoldsIt) {
+    std::mt19937 random(7);
+    const Quadtree tree(scenes::random_split_flags(random, 6, 0.7));
+    std::uniform_real_distribution<double> coordinate(0.0, 1.0);
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (int i = 0; i < 200; ++i) {
+            const double s = i == 0 ? 0.0 : i == 1 ? 1.0 : i == 2 ? 0.5 : coordinate(random);
+            const double t = i == 0 ? 1.0 : i == 1 ? 0.0 : i == 2 ? 0.5 : coordinate(random);
+            const Cell& cell = tree.leaves()[tree.leaf_at({face, s, t})];
+            EXPECT_EQ(cell.face, face);
+            EXPECT_LE(cell.x * cell.size(), s);
+            EXPECT_GE((cell.x + 1) * cell.size(), s);
+            EXPECT_LE(cell.y * cell.size(), t);
+            EXPECT_GE((cell.y + 1) * cell.size(), t);
+        }
+}
+
 TEST(Quadtree, FindLeavesAppends) {
     std::vector<std::uint32_t> leaves = {77};
     Quadtree().find_leaves({.face = cubemap::Face::NegativeY}, leaves);

@@ -105,7 +105,7 @@ TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
     EXPECT_EQ(std::memcmp(bytes.data(), "RELUMINE", 8), 0);
     const std::vector<std::byte> little_endian(bytes.begin() + ByteOrderAt, bytes.begin() + VersionAt);
     EXPECT_EQ(little_endian, (std::vector{std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}}));
-    EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), 1u);
+    EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), 2u);
     EXPECT_EQ(value_at<std::uint64_t>(bytes, FileSizeAt), bytes.size());
     EXPECT_EQ(value_at<std::uint32_t>(bytes, NumSectionsAt), 1u);
     EXPECT_STREQ(reinterpret_cast<const char*>(bytes.data() + HeaderSize), "abc");

@@ -117,7 +117,8 @@ TEST(VisibleCounts, IndexRefusesContradictions) {
     refused("count of 17", [](VisibleCounts& c) { c.counts[c.counts.size() / 2] = 17; });
     refused("count of 255", [](VisibleCounts& c) { c.counts.back() = 255; });
     refused("both classes", [](VisibleCounts& c) { c.visible[0] |= c.mixed[0]; });
-    refused("visible beyond the last leaf", [](VisibleCounts& c) { c.visible[1] |= std::uint64_t{1} << 6; });
+    refused("visible beyond the last leaf",
+            [](VisibleCounts& c) { c.visible[c.word(0, 1)] |= std::uint64_t{1} << 6; });
     refused("mixed beyond the last leaf", [](VisibleCounts& c) {
         c.mixed.back() |= std::uint64_t{1} << 63;
         c.counts.resize(c.counts.size() + BlockSize);

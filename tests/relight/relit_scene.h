@@ -9,7 +9,7 @@
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
 #include "prt/receivers.h"
-#include "relight/sharp_lights.h"
+#include "relight/light_packets.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::scenes {

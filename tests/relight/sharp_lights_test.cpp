@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "relight/exact.h"
+#include "relight/light_packets.h"
 #include "relight/relighter.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
@@ -87,7 +88,7 @@ TEST(SharpLights, PacketsAddUpEveryLightAboveTheHorizonThatNothingBlocks) {
         const glm::dvec3 w = scenes::random_direction(random);
         lights.push_back({.direction = w, .irradiance = {.red = 2.0 * w, .green = w, .blue = 0.0 * w}});
     }
-    const SharpLightPackets packets(lights);
+    const LightPackets packets(lights);
     const ShadowRays rays = scene.shadow_rays();
     for (std::size_t i = 0; i < scene.receivers.size(); ++i) {
         const glm::vec3& n = scene.receivers.normals[i];
@@ -101,7 +102,7 @@ TEST(SharpLights, PacketsAddUpEveryLightAboveTheHorizonThatNothingBlocks) {
         EXPECT_NEAR(radiance.g, expected, 1e-6);
         EXPECT_EQ(radiance.b, 0.0);
     }
-    EXPECT_EQ(SharpLightPackets({}).radiance({}, {0, 1, 0}, rays), glm::dvec3(0.0));
+    EXPECT_EQ(LightPackets(std::span<const SharpLight>()).radiance({}, {0, 1, 0}, rays), glm::dvec3(0.0));
 }
 
 } // namespace

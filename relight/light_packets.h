@@ -1,0 +1,58 @@
+// Distant lights arranged for tracing: a shadow ray for each, sixteen at a time.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "lights/light_list.h"
+#include "prt/blockers.h"
+#include "prt/receivers.h"
+#include "relight/cluster_lights.h"
+#include "relight/sharp_lights.h"
+
+namespace relumine::relight {
+
+/// What tracing lights one by one takes. Without blockers no light is traced.
+struct ShadowRays {
+    const prt::Blockers* blockers = nullptr; ///< must outlive its user
+    std::span<const glm::vec3> positions =
+        {};                    ///< [num_receivers] in the receivers' own order; must outlive its user
+    float bias = 0.0f;         ///< lift of the rays' origins, as in prt::PrecomputeOptions
+    float tolerance = 0.0135f; ///< of the precompute, RMS form, 1/sr
+};
+
+/// Lights ready to be traced. Fastest when neighbours in the list lie close together.
+class LightPackets {
+public:
+    explicit LightPackets(std::span<const SharpLight> lights);
+    explicit LightPackets(std::span<const lights::DistantLight> lights);
+
+    /// Radiance (albedo 1) that a receiver gets: one shadow ray for each light above its horizon.
+    [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
+                                      const ShadowRays& rays) const;
+
+private:
+    void add(const glm::dvec3& direction, const VectorIrradiance& irradiance);
+
+    struct Packet {
+        prt::DirectionPacket directions;
+        std::array<VectorIrradiance, prt::PacketSize> irradiance{};
+    };
+    std::vector<Packet> packets_;
+};
+
+/// A distant light's irradiance as a vector.
+[[nodiscard]] VectorIrradiance vector_irradiance(const lights::DistantLight& light);
+
+/// Outgoing radiance for albedo 1 of the chosen receivers [receiver_indices.size()] under the lights: 1/pi sum of E_i V(w_i) max(n.w_i, 0).
+/// `rays.positions` are the receivers' own. Parallel; the order of each sum is fixed. O(receivers x lights) shadow rays.
+[[nodiscard]] std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lights,
+                                                     std::span<const glm::vec3> normals,
+                                                     std::span<const std::uint32_t> receiver_indices,
+                                                     const ShadowRays& rays);
+
+} // namespace relumine::relight

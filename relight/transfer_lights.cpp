@@ -1,0 +1,308 @@
+// Based on: Pati, Rezaiifar, Krishnaprasad, "Orthogonal Matching Pursuit", 1993, with non-negative weights.
+#include "relight/transfer_lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <stdexcept>
+
+#include <glm/geometric.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "prt/precompute.h"
+
+namespace relumine::relight {
+
+namespace {
+
+// Brighter clusters come first; 16,384 of them on 2,048 receivers take 134 MB.
+constexpr std::size_t MaxCandidates = 16384;
+
+// Coordinate descent after each new light starts near its end; a few sweeps keep it there. The last fit goes on until it stands.
+constexpr int SweepsPerLight = 8;
+constexpr int LastSweeps = 400;
+constexpr double StandsStill = 1e-7; // of the largest irradiance
+
+// Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
+constexpr std::size_t MaxExchanged = 256;
+constexpr int ExchangePasses = 2;
+
+/// Irradiances and correlations, RGB.
+using Rgb = glm::dvec3;
+
+/// Where a light could be.
+struct Candidate {
+    std::uint32_t cluster = 0;
+    glm::dvec3 direction{0.0};
+};
+
+std::vector<Candidate> candidates_of(const Relighter& relighter) {
+    const auto cells = relighter.transfer().quadtree.leaves();
+    const LightBinning binning(relighter.environment().resolution);
+    const std::vector<VectorIrradiance> sums = binning.sums(relighter.environment(), cells);
+    std::vector<double> powers;
+    for (const VectorIrradiance& sum : sums)
+        powers.push_back(glm::length(sum.luminance()));
+    std::vector<std::uint32_t> clusters(sums.size());
+    std::iota(clusters.begin(), clusters.end(), 0u);
+    std::erase_if(clusters, [&](std::uint32_t cluster) { return powers[cluster] == 0.0; });
+    if (clusters.size() > MaxCandidates) {
+        std::stable_sort(clusters.begin(), clusters.end(),
+                         [&](std::uint32_t a, std::uint32_t b) { return powers[a] > powers[b]; });
+        clusters.resize(MaxCandidates);
+        std::sort(clusters.begin(), clusters.end()); // neighbours on the sphere stand together again
+    }
+    std::vector<Candidate> candidates;
+    for (const std::uint32_t cluster : clusters)
+        candidates.push_back({cluster, sums[cluster].luminance() / powers[cluster]});
+    return candidates;
+}
+
+/// Evenly spread places of receivers that have a normal.
+std::vector<std::size_t> places_of(const prt::Transfer& transfer, std::size_t count) {
+    std::vector<std::size_t> lit;
+    for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
+        if (transfer.normals[place] != glm::vec3(0.0f))
+            lit.push_back(place);
+    if (lit.size() <= count)
+        return lit;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < count; ++i)
+        places.push_back(lit[i * lit.size() / count]);
+    return places;
+}
+
+/// The transfer of every candidate to the chosen receivers, [candidates][receivers], 1/sr.
+class TransferMatrix {
+public:
+    TransferMatrix(const Relighter& relighter, std::span<const Candidate> candidates,
+                   std::span<const std::size_t> places)
+        : num_candidates_(candidates.size()), num_receivers_(places.size()),
+          elements_(candidates.size() * places.size()) {
+        const ShadowRays& rays = relighter.shadow_rays();
+        const prt::Transfer& transfer = relighter.transfer();
+        tbb::parallel_for(
+            std::size_t{0}, (candidates.size() + prt::PacketSize - 1) / prt::PacketSize, [&](std::size_t p) {
+                const std::size_t begin = p * prt::PacketSize;
+                const std::size_t end = std::min(begin + prt::PacketSize, candidates.size());
+                prt::DirectionPacket packet;
+                for (std::size_t lane = 0; lane < prt::PacketSize; ++lane)
+                    packet.set(lane, candidates[std::min(begin + lane, end - 1)].direction);
+                packet.num_directions = static_cast<std::uint32_t>(end - begin);
+                for (std::size_t i = 0; i < places.size(); ++i) {
+                    const glm::vec3& normal = transfer.normals[places[i]];
+                    const glm::vec3 origin =
+                        prt::ray_origin(rays.positions[transfer.order[places[i]]], normal, rays.bias);
+                    const auto all = static_cast<std::uint32_t>((1u << (end - begin)) - 1);
+                    const std::uint32_t occluded = rays.blockers->occluded(origin, packet, all);
+                    for (std::size_t j = begin; j < end; ++j) {
+                        const float cosine = glm::dot(
+                            normal, glm::vec3(packet.x[j - begin], packet.y[j - begin], packet.z[j - begin]));
+                        if (cosine > 0.0f && (occluded >> (j - begin) & 1u) == 0)
+                            elements_[j * num_receivers_ + i] = cosine * std::numbers::inv_pi_v<float>;
+                    }
+                }
+            });
+    }
+
+    [[nodiscard]] std::size_t num_candidates() const { return num_candidates_; }
+
+    /// Products of all candidates' columns with a vector over the receivers.
+    [[nodiscard]] std::vector<float> products(std::span<const float> vector) const {
+        std::vector<float> result(num_candidates_);
+        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_candidates_, 64), [&](const auto& some) {
+            for (std::size_t j = some.begin(); j < some.end(); ++j)
+                result[j] = dot(column(j), vector);
+        });
+        return result;
+    }
+
+    [[nodiscard]] std::span<const float> column(std::size_t candidate) const {
+        return {elements_.data() + candidate * num_receivers_, num_receivers_};
+    }
+
+    [[nodiscard]] static float dot(std::span<const float> a, std::span<const float> b) {
+        // Sixteen partial sums, which the compiler keeps in vector registers; the same order always.
+        std::array<float, 16> sums{};
+        std::size_t i = 0;
+        for (; i + sums.size() <= a.size(); i += sums.size())
+            for (std::size_t lane = 0; lane < sums.size(); ++lane)
+                sums[lane] += a[i + lane] * b[i + lane];
+        for (; i < a.size(); ++i)
+            sums[0] += a[i] * b[i];
+        return std::accumulate(sums.begin(), sums.end(), 0.0f);
+    }
+
+private:
+    std::size_t num_candidates_;
+    std::size_t num_receivers_;
+    std::vector<float> elements_;
+};
+
+/// The lights so far and their fit.
+class Pursuit {
+public:
+    Pursuit(const TransferMatrix& matrix, std::span<const glm::vec3> radiance)
+        : matrix_(matrix), taken_(matrix.num_candidates(), false), norms_(matrix.num_candidates()),
+          targets_(matrix.num_candidates()), correlations_(matrix.num_candidates()) {
+        for (std::size_t j = 0; j < norms_.size(); ++j)
+            norms_[j] = static_cast<double>(TransferMatrix::dot(matrix.column(j), matrix.column(j)));
+        std::vector<float> channel(radiance.size());
+        for (int c = 0; c < 3; ++c) {
+            std::transform(radiance.begin(), radiance.end(), channel.begin(),
+                           [c](const glm::vec3& b) { return b[c]; });
+            const std::vector<float> products = matrix.products(channel);
+            for (std::size_t j = 0; j < products.size(); ++j)
+                targets_[j][c] = static_cast<double>(products[j]);
+        }
+    }
+
+    /// Takes the candidate that lowers the error most; false where none does.
+    bool take_best() {
+        correlate();
+        const std::size_t best = best_candidate();
+        if (gain(best) <= 0.0)
+            return false;
+        take(chosen_.size(), best);
+        fit(SweepsPerLight);
+        return true;
+    }
+
+    /// Tries to put every light where it helps most while the others stay. Returns whether any moved.
+    bool exchange() {
+        bool moved = false;
+        for (std::size_t k = 0; k < chosen_.size(); ++k) {
+            const std::size_t old = chosen_[k];
+            taken_[old] = false;
+            irradiances_[k] = Rgb(0.0);
+            correlate();
+            const std::size_t best = best_candidate();
+            // A hair more is rounding, and could go on for ever.
+            if (best != old && gain(best) > (1.0 + 1e-6) * gain(old)) {
+                take(k, best);
+                moved = true;
+            } else {
+                taken_[old] = true;
+            }
+            fit(SweepsPerLight);
+        }
+        return moved;
+    }
+
+    /// Fits all irradiances by coordinate descent on the squared error, never below zero.
+    void fit(int sweeps) {
+        for (int sweep = 0; sweep < sweeps; ++sweep) {
+            Rgb largest(0.0);
+            Rgb largest_change(0.0);
+            for (std::size_t k = 0; k < chosen_.size(); ++k) {
+                Rgb slope = targets_[chosen_[k]];
+                for (std::size_t l = 0; l < chosen_.size(); ++l)
+                    slope -= irradiances_[l] * static_cast<double>(products_[l][chosen_[k]]);
+                const Rgb fitted = glm::max(irradiances_[k] + slope / norms_[chosen_[k]], Rgb(0.0));
+                largest_change = glm::max(largest_change, glm::abs(fitted - irradiances_[k]));
+                largest = glm::max(largest, fitted);
+                irradiances_[k] = fitted;
+            }
+            if (glm::all(glm::lessThanEqual(largest_change, StandsStill * largest)))
+                return;
+        }
+    }
+
+    [[nodiscard]] std::size_t num_lights() const { return chosen_.size(); }
+    [[nodiscard]] std::size_t candidate(std::size_t light) const { return chosen_[light]; }
+    [[nodiscard]] const Rgb& irradiance(std::size_t light) const { return irradiances_[light]; }
+
+private:
+    void take(std::size_t light, std::size_t candidate) {
+        if (light == chosen_.size()) {
+            chosen_.emplace_back();
+            irradiances_.emplace_back(0.0);
+            products_.emplace_back();
+        }
+        chosen_[light] = candidate;
+        products_[light] = matrix_.products(matrix_.column(candidate));
+        taken_[candidate] = true;
+    }
+
+    /// What each candidate has in common with the error that is left.
+    void correlate() {
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, correlations_.size(), 256), [&](const auto& some) {
+                for (std::size_t j = some.begin(); j < some.end(); ++j)
+                    correlations_[j] = targets_[j];
+                for (std::size_t l = 0; l < chosen_.size(); ++l)
+                    for (std::size_t j = some.begin(); j < some.end(); ++j)
+                        correlations_[j] -= irradiances_[l] * static_cast<double>(products_[l][j]);
+            });
+    }
+
+    /// How much the squared error falls when the candidate gets the irradiance that suits it best.
+    [[nodiscard]] double gain(std::size_t candidate) const {
+        const Rgb useful = glm::max(correlations_[candidate], Rgb(0.0));
+        return norms_[candidate] > 0.0 ? glm::dot(useful, useful) / norms_[candidate] : 0.0;
+    }
+
+    [[nodiscard]] std::size_t best_candidate() const {
+        std::size_t best = 0;
+        double best_gain = -1.0;
+        for (std::size_t j = 0; j < correlations_.size(); ++j)
+            if (!taken_[j] && gain(j) > best_gain) {
+                best = j;
+                best_gain = gain(j);
+            }
+        return best;
+    }
+
+    const TransferMatrix& matrix_;
+    std::vector<bool> taken_;
+    std::vector<double> norms_;                ///< [candidates] t_j.t_j
+    std::vector<Rgb> targets_;                 ///< [candidates] t_j.B
+    std::vector<Rgb> correlations_;            ///< [candidates] t_j.(B - sum E_l t_l)
+    std::vector<std::size_t> chosen_;          ///< [lights] candidate
+    std::vector<Rgb> irradiances_;             ///< [lights] E_l
+    std::vector<std::vector<float>> products_; ///< [lights][candidates] t_l.t_j
+};
+
+} // namespace
+
+std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, std::size_t count,
+                                                  const TransferLightOptions& options) {
+    if (relighter.environment().resolution == 0 || relighter.shadow_rays().blockers == nullptr)
+        throw std::invalid_argument("expected a relighter with an environment and shadow rays");
+    if (count == 0)
+        throw std::invalid_argument("expected at least one light");
+    const std::vector<Candidate> candidates = candidates_of(relighter);
+    const prt::Transfer& transfer = relighter.transfer();
+    const std::vector<std::size_t> places = places_of(transfer, options.num_receivers);
+    if (candidates.empty() || places.empty())
+        return {};
+
+    const TransferMatrix matrix(relighter, candidates, places);
+    std::vector<glm::vec3> radiance;
+    for (const std::size_t place : places)
+        radiance.push_back(relighter.radiance()[transfer.order[place]]);
+    Pursuit pursuit(matrix, radiance);
+    for (std::size_t i = 0; i < std::min(count, candidates.size()) && pursuit.take_best(); ++i) {
+        if (options.stop.stop_requested())
+            throw prt::Cancelled();
+        if (options.on_progress)
+            options.on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
+    }
+    for (int pass = 0; pass < ExchangePasses && pursuit.num_lights() <= MaxExchanged; ++pass)
+        if (!pursuit.exchange())
+            break;
+    pursuit.fit(LastSweeps);
+
+    std::vector<lights::DistantLight> chosen;
+    for (std::size_t light = 0; light < pursuit.num_lights(); ++light)
+        if (pursuit.irradiance(light) != Rgb(0.0))
+            chosen.push_back({.direction = candidates[pursuit.candidate(light)].direction,
+                              .irradiance = pursuit.irradiance(light)});
+    return chosen;
+}
+
+} // namespace relumine::relight
