@@ -14,6 +14,7 @@
 #include <tbb/parallel_for.h>
 
 #include "prt/precompute.h"
+#include "relight/non_negative_fit.h"
 
 namespace relumine::relight {
 
@@ -22,13 +23,8 @@ namespace {
 // Brighter clusters come first; 16,384 of them on 2,048 receivers take 134 MB.
 constexpr std::size_t MaxCandidates = 16384;
 
-// Coordinate descent after each new light starts near its end; a few sweeps keep it there. The last fit goes on until it stands.
-constexpr int SweepsPerLight = 8;
-constexpr int LastSweeps = 400;
-constexpr double StandsStill = 1e-7; // of the largest irradiance
-
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
-constexpr std::size_t MaxExchanged = 256;
+constexpr std::size_t MaxExchanged = 128;
 constexpr int ExchangePasses = 2;
 
 /// Irradiances and correlations, RGB.
@@ -168,7 +164,7 @@ public:
         if (gain(best) <= 0.0)
             return false;
         take(chosen_.size(), best);
-        fit(SweepsPerLight);
+        fit();
         return true;
     }
 
@@ -188,28 +184,29 @@ public:
             } else {
                 taken_[old] = true;
             }
-            fit(SweepsPerLight);
+            fit();
         }
         return moved;
     }
 
-    /// Fits all irradiances by coordinate descent on the squared error, never below zero.
-    void fit(int sweeps) {
-        for (int sweep = 0; sweep < sweeps; ++sweep) {
-            Rgb largest(0.0);
-            Rgb largest_change(0.0);
-            for (std::size_t k = 0; k < chosen_.size(); ++k) {
-                Rgb slope = targets_[chosen_[k]];
-                for (std::size_t l = 0; l < chosen_.size(); ++l)
-                    slope -= irradiances_[l] * static_cast<double>(products_[l][chosen_[k]]);
-                const Rgb fitted = glm::max(irradiances_[k] + slope / norms_[chosen_[k]], Rgb(0.0));
-                largest_change = glm::max(largest_change, glm::abs(fitted - irradiances_[k]));
-                largest = glm::max(largest, fitted);
-                irradiances_[k] = fitted;
+    /// Fits all irradiances to the radiance, none below zero.
+    void fit() {
+        const std::size_t n = chosen_.size();
+        std::vector<double> gram(n * n);
+        for (std::size_t l = 0; l < n; ++l)
+            for (std::size_t k = 0; k < n; ++k) // products_[l][k] and [k][l] are the same sum
+                gram[l * n + k] = static_cast<double>(products_[l][chosen_[k]]);
+        tbb::parallel_for(0, 3, [&](int channel) {
+            std::vector<double> target(n);
+            std::vector<double> x(n);
+            for (std::size_t k = 0; k < n; ++k) {
+                target[k] = targets_[chosen_[k]][channel];
+                x[k] = irradiances_[k][channel];
             }
-            if (glm::all(glm::lessThanEqual(largest_change, StandsStill * largest)))
-                return;
-        }
+            fit_non_negative(gram, target, x);
+            for (std::size_t k = 0; k < n; ++k)
+                irradiances_[k][channel] = x[k];
+        });
     }
 
     [[nodiscard]] std::size_t num_lights() const { return chosen_.size(); }
@@ -295,7 +292,6 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     for (int pass = 0; pass < ExchangePasses && pursuit.num_lights() <= MaxExchanged; ++pass)
         if (!pursuit.exchange())
             break;
-    pursuit.fit(LastSweeps);
 
     std::vector<lights::DistantLight> chosen;
     for (std::size_t light = 0; light < pursuit.num_lights(); ++light)
