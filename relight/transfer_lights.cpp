@@ -25,10 +25,12 @@ constexpr std::size_t MaxCandidates = 16384;
 
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
-constexpr int ExchangePasses = 2;
+const int ExchangePasses = getenv("EP") ? atoi(getenv("EP")) : 2;
 
-/// Irradiances and correlations, RGB.
 using Rgb = glm::dvec3;
+
+/// Candidates of one task of sums over lights: tens of microseconds, and they stay in the cache.
+constexpr std::size_t CandidatesPerTask = 1024;
 
 /// Where a light could be.
 struct Candidate {
@@ -143,18 +145,16 @@ private:
 class Pursuit {
 public:
     Pursuit(const TransferMatrix& matrix, std::span<const glm::vec3> radiance)
-        : matrix_(matrix), taken_(matrix.num_candidates(), false), norms_(matrix.num_candidates()),
-          targets_(matrix.num_candidates()), correlations_(matrix.num_candidates()) {
+        : matrix_(matrix), taken_(matrix.num_candidates(), false), norms_(matrix.num_candidates()) {
         for (std::size_t j = 0; j < norms_.size(); ++j)
             norms_[j] = static_cast<double>(TransferMatrix::dot(matrix.column(j), matrix.column(j)));
         std::vector<float> channel(radiance.size());
         for (int c = 0; c < 3; ++c) {
             std::transform(radiance.begin(), radiance.end(), channel.begin(),
                            [c](const glm::vec3& b) { return b[c]; });
-            const std::vector<float> products = matrix.products(channel);
-            for (std::size_t j = 0; j < products.size(); ++j)
-                targets_[j][c] = static_cast<double>(products[j]);
+            targets_[static_cast<std::size_t>(c)] = matrix.products(channel);
         }
+        correlations_ = targets_;
     }
 
     /// Takes the candidate that lowers the error most; false where none does.
@@ -200,7 +200,7 @@ public:
             std::vector<double> target(n);
             std::vector<double> x(n);
             for (std::size_t k = 0; k < n; ++k) {
-                target[k] = targets_[chosen_[k]][channel];
+                target[k] = static_cast<double>(targets_[static_cast<std::size_t>(channel)][chosen_[k]]);
                 x[k] = irradiances_[k][channel];
             }
             fit_non_negative(gram, target, x);
@@ -227,20 +227,31 @@ private:
 
     /// What each candidate has in common with the error that is left.
     void correlate() {
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, correlations_.size(), 256), [&](const auto& some) {
-                for (std::size_t j = some.begin(); j < some.end(); ++j)
-                    correlations_[j] = targets_[j];
-                for (std::size_t l = 0; l < chosen_.size(); ++l)
-                    for (std::size_t j = some.begin(); j < some.end(); ++j)
-                        correlations_[j] -= irradiances_[l] * static_cast<double>(products_[l][j]);
-            });
+        const tbb::blocked_range<std::size_t> all(0, matrix_.num_candidates(), CandidatesPerTask);
+        tbb::parallel_for(all, [&](const auto& some) {
+            for (std::size_t c = 0; c < 3; ++c) {
+                float* correlations = correlations_[c].data();
+                std::copy(targets_[c].begin() + static_cast<std::ptrdiff_t>(some.begin()),
+                          targets_[c].begin() + static_cast<std::ptrdiff_t>(some.end()),
+                          correlations + some.begin());
+                for (std::size_t l = 0; l < chosen_.size(); ++l) {
+                    const auto irradiance = static_cast<float>(irradiances_[l][static_cast<int>(c)]);
+                    const float* products = products_[l].data();
+                    for (std::size_t j = some.begin(); irradiance != 0.0f && j < some.end(); ++j)
+                        correlations[j] -= irradiance * products[j];
+                }
+            }
+        });
     }
 
     /// How much the squared error falls when the candidate gets the irradiance that suits it best.
     [[nodiscard]] double gain(std::size_t candidate) const {
-        const Rgb useful = glm::max(correlations_[candidate], Rgb(0.0));
-        return norms_[candidate] > 0.0 ? glm::dot(useful, useful) / norms_[candidate] : 0.0;
+        double useful = 0.0;
+        for (const std::vector<float>& correlations : correlations_) {
+            const auto common = static_cast<double>(std::max(correlations[candidate], 0.0f));
+            useful += common * common;
+        }
+        return norms_[candidate] > 0.0 ? useful / norms_[candidate] : 0.0;
     }
 
     [[nodiscard]] std::size_t best_candidate() const {
@@ -256,12 +267,12 @@ private:
 
     const TransferMatrix& matrix_;
     std::vector<bool> taken_;
-    std::vector<double> norms_;                ///< [candidates] t_j.t_j
-    std::vector<Rgb> targets_;                 ///< [candidates] t_j.B
-    std::vector<Rgb> correlations_;            ///< [candidates] t_j.(B - sum E_l t_l)
-    std::vector<std::size_t> chosen_;          ///< [lights] candidate
-    std::vector<Rgb> irradiances_;             ///< [lights] E_l
-    std::vector<std::vector<float>> products_; ///< [lights][candidates] t_l.t_j
+    std::vector<double> norms_;                      ///< [candidates] t_j.t_j
+    std::array<std::vector<float>, 3> targets_;      ///< [channel][candidates] t_j.B
+    std::array<std::vector<float>, 3> correlations_; ///< the same of the error that is left, B - sum E_l t_l
+    std::vector<std::size_t> chosen_;                ///< [lights] candidate
+    std::vector<Rgb> irradiances_;                   ///< [lights] E_l
+    std::vector<std::vector<float>> products_;       ///< [lights][candidates] t_l.t_j
 };
 
 } // namespace
