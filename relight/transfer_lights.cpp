@@ -257,7 +257,7 @@ private:
     [[nodiscard]] std::size_t best_candidate() const {
         std::size_t best = 0;
         double best_gain = -1.0;
-        for (std::size_t j = 0; j < correlations_.size(); ++j)
+        for (std::size_t j = 0; j < norms_.size(); ++j)
             if (!taken_[j] && gain(j) > best_gain) {
                 best = j;
                 best_gain = gain(j);
