@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -168,6 +169,21 @@ public:
         return true;
     }
 
+    double error(std::span<const glm::vec3> b) const {
+        double sum = 0, all = 0;
+        for (std::size_t i = 0; i < b.size(); ++i) {
+            Rgb x(0.0);
+            for (std::size_t k = 0; k < chosen_.size(); ++k)
+                x += irradiances_[k] * double(matrix_.column(chosen_[k])[i]);
+            sum += glm::dot(x - Rgb(b[i]), x - Rgb(b[i]));
+            all += glm::dot(Rgb(b[i]), Rgb(b[i]));
+        }
+        return std::sqrt(sum / all);
+    }
+    void take_this(std::size_t candidate) {
+        if (!taken_[candidate])
+            take(chosen_.size(), candidate);
+    }
     /// Tries to put every light where it helps most while the others stay. Returns whether any moved.
     bool exchange() {
         bool moved = false;
@@ -294,15 +310,28 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     for (const std::size_t place : places)
         radiance.push_back(relighter.radiance()[transfer.order[place]]);
     Pursuit pursuit(matrix, radiance);
-    for (std::size_t i = 0; i < std::min(count, candidates.size()) && pursuit.take_best(); ++i) {
+    for (const glm::dvec3& d : options.start) {
+        std::size_t best = 0;
+        for (std::size_t j = 0; j < candidates.size(); ++j)
+            if (glm::dot(candidates[j].direction, d) > glm::dot(candidates[best].direction, d))
+                best = j;
+        pursuit.take_this(best);
+    }
+    if (!options.start.empty())
+        pursuit.fit();
+    fprintf(stderr, "start %zu error %.5f\n", pursuit.num_lights(), pursuit.error(radiance));
+    for (std::size_t i = 0; i < std::min(count, candidates.size()) - options.start.size() && pursuit.take_best(); ++i) {
         if (options.stop.stop_requested())
             throw prt::Cancelled();
         if (options.on_progress)
             options.on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
     }
     for (int pass = 0; pass < ExchangePasses && pursuit.num_lights() <= MaxExchanged; ++pass)
+    {
+        fprintf(stderr, "pass %d error %.5f\n", pass, pursuit.error(radiance));
         if (!pursuit.exchange())
             break;
+    }
 
     std::vector<lights::DistantLight> chosen;
     for (std::size_t light = 0; light < pursuit.num_lights(); ++light)
