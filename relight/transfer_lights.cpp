@@ -21,8 +21,8 @@ namespace relumine::relight {
 
 namespace {
 
-// Brighter clusters come first; 16,384 of them on 2,048 receivers take 134 MB.
-constexpr std::size_t MaxCandidates = 16384;
+// Candidates are the centres of light of cells of this level, 2.8 degrees wide; at most 6,144 of them, 200 MB with 8,192 receivers.
+constexpr std::uint32_t CandidateLevel = 5;
 
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
@@ -33,32 +33,29 @@ using Rgb = glm::dvec3;
 /// Candidates of one task of sums over lights: tens of microseconds, and they stay in the cache.
 constexpr std::size_t CandidatesPerTask = 1024;
 
-/// Where a light could be.
-struct Candidate {
-    std::uint32_t cluster = 0;
-    glm::dvec3 direction{0.0};
-};
-
-std::vector<Candidate> candidates_of(const Relighter& relighter) {
-    const auto cells = relighter.transfer().quadtree.leaves();
-    const LightBinning binning(relighter.environment().resolution);
-    const std::vector<VectorIrradiance> sums = binning.sums(relighter.environment(), cells);
-    std::vector<double> powers;
-    for (const VectorIrradiance& sum : sums)
-        powers.push_back(glm::length(sum.luminance()));
-    std::vector<std::uint32_t> clusters(sums.size());
-    std::iota(clusters.begin(), clusters.end(), 0u);
-    std::erase_if(clusters, [&](std::uint32_t cluster) { return powers[cluster] == 0.0; });
-    if (clusters.size() > MaxCandidates) {
-        std::stable_sort(clusters.begin(), clusters.end(),
-                         [&](std::uint32_t a, std::uint32_t b) { return powers[a] > powers[b]; });
-        clusters.resize(MaxCandidates);
-        std::sort(clusters.begin(), clusters.end()); // neighbours on the sphere stand together again
+/// The cells of CandidateLevel below one, depth first.
+void append_cells(const prt::Cell& cell, std::vector<prt::Cell>& cells) {
+    if (cell.level == CandidateLevel) {
+        cells.push_back(cell);
+        return;
     }
-    std::vector<Candidate> candidates;
-    for (const std::uint32_t cluster : clusters)
-        candidates.push_back({cluster, sums[cluster].luminance() / powers[cluster]});
-    return candidates;
+    for (std::uint32_t i = 0; i < 4; ++i)
+        append_cells(cell.child(i), cells);
+}
+
+/// Unit directions where lights could be; neighbours stand together.
+std::vector<glm::dvec3> candidates_of(const cubemap::CubeMap& environment) {
+    const LightBinning binning(environment.resolution);
+    std::vector<glm::dvec3> directions;
+    std::vector<prt::Cell> cells;
+    for (const cubemap::Face face : cubemap::AllFaces)
+        append_cells({.face = face}, cells);
+    for (const VectorIrradiance& sum : binning.sums(environment, cells)) {
+        const glm::dvec3 luminance = sum.luminance();
+        if (luminance != glm::dvec3(0.0))
+            directions.push_back(glm::normalize(luminance));
+    }
+    return directions;
 }
 
 /// Evenly spread places of receivers that have a normal.
@@ -78,7 +75,7 @@ std::vector<std::size_t> places_of(const prt::Transfer& transfer, std::size_t co
 /// The transfer of every candidate to the chosen receivers, [candidates][receivers], 1/sr.
 class TransferMatrix {
 public:
-    TransferMatrix(const Relighter& relighter, std::span<const Candidate> candidates,
+    TransferMatrix(const Relighter& relighter, std::span<const glm::dvec3> candidates,
                    std::span<const std::size_t> places)
         : num_candidates_(candidates.size()), num_receivers_(places.size()),
           elements_(candidates.size() * places.size()) {
@@ -90,7 +87,7 @@ public:
                 const std::size_t end = std::min(begin + prt::PacketSize, candidates.size());
                 prt::DirectionPacket packet;
                 for (std::size_t lane = 0; lane < prt::PacketSize; ++lane)
-                    packet.set(lane, candidates[std::min(begin + lane, end - 1)].direction);
+                    packet.set(lane, candidates[std::min(begin + lane, end - 1)]);
                 packet.num_directions = static_cast<std::uint32_t>(end - begin);
                 for (std::size_t i = 0; i < places.size(); ++i) {
                     const glm::vec3& normal = transfer.normals[places[i]];
@@ -299,7 +296,7 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
         throw std::invalid_argument("expected a relighter with an environment and shadow rays");
     if (count == 0)
         throw std::invalid_argument("expected at least one light");
-    const std::vector<Candidate> candidates = candidates_of(relighter);
+    const std::vector<glm::dvec3> candidates = candidates_of(relighter.environment());
     const prt::Transfer& transfer = relighter.transfer();
     const std::vector<std::size_t> places = places_of(transfer, options.num_receivers);
     if (candidates.empty() || places.empty())
@@ -313,7 +310,7 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     for (const glm::dvec3& d : options.start) {
         std::size_t best = 0;
         for (std::size_t j = 0; j < candidates.size(); ++j)
-            if (glm::dot(candidates[j].direction, d) > glm::dot(candidates[best].direction, d))
+            if (glm::dot(candidates[j], d) > glm::dot(candidates[best], d))
                 best = j;
         pursuit.take_this(best);
     }
@@ -336,7 +333,7 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     std::vector<lights::DistantLight> chosen;
     for (std::size_t light = 0; light < pursuit.num_lights(); ++light)
         if (pursuit.irradiance(light) != Rgb(0.0))
-            chosen.push_back({.direction = candidates[pursuit.candidate(light)].direction,
+            chosen.push_back({.direction = candidates[pursuit.candidate(light)],
                               .irradiance = pursuit.irradiance(light)});
     return chosen;
 }
