@@ -24,6 +24,12 @@ namespace {
 // Candidates are the centres of light of cells of this level, 2.8 degrees wide; at most 6,144 of them, 200 MB with 8,192 receivers.
 constexpr std::uint32_t CandidateLevel = 5;
 
+// A column is a combination of others when less than this part of it is new: well above float rounding.
+constexpr float LeastNewPart = 1e-4f;
+
+// An exchange that lowers the error by less is rounding, and could go on for ever.
+constexpr double LeastGain = 1e-9;
+
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
 const int ExchangePasses = getenv("EP") ? atoi(getenv("EP")) : 2;
@@ -139,18 +145,20 @@ private:
     std::vector<float> elements_;
 };
 
-/// The lights so far and their fit.
+/// The lights so far and their fit. With the Gram-Schmidt basis q_k of the chosen columns at hand it is known of every candidate how much of
+/// it is new, so the next light is the one that lowers the error most after all others have been fitted anew to it.
 class Pursuit {
 public:
     Pursuit(const TransferMatrix& matrix, std::span<const glm::vec3> radiance)
-        : matrix_(matrix), taken_(matrix.num_candidates(), false), norms_(matrix.num_candidates()) {
+        : matrix_(matrix), norms_(matrix.num_candidates()) {
         for (std::size_t j = 0; j < norms_.size(); ++j)
-            norms_[j] = static_cast<double>(TransferMatrix::dot(matrix.column(j), matrix.column(j)));
+            norms_[j] = TransferMatrix::dot(matrix.column(j), matrix.column(j));
+        new_norms_ = norms_;
         std::vector<float> channel(radiance.size());
-        for (int c = 0; c < 3; ++c) {
+        for (std::size_t c = 0; c < 3; ++c) {
             std::transform(radiance.begin(), radiance.end(), channel.begin(),
-                           [c](const glm::vec3& b) { return b[c]; });
-            targets_[static_cast<std::size_t>(c)] = matrix.products(channel);
+                           [c](const glm::vec3& b) { return b[static_cast<int>(c)]; });
+            targets_[c] = matrix.products(channel);
         }
         correlations_ = targets_;
     }
@@ -161,45 +169,105 @@ public:
         const std::size_t best = best_candidate();
         if (gain(best) <= 0.0)
             return false;
-        take(chosen_.size(), best);
+        push_back(best, Rgb(0.0));
         fit();
         return true;
     }
 
-    double error(std::span<const glm::vec3> b) const {
-        double sum = 0, all = 0;
-        for (std::size_t i = 0; i < b.size(); ++i) {
-            Rgb x(0.0);
-            for (std::size_t k = 0; k < chosen_.size(); ++k)
-                x += irradiances_[k] * double(matrix_.column(chosen_[k])[i]);
-            sum += glm::dot(x - Rgb(b[i]), x - Rgb(b[i]));
-            all += glm::dot(Rgb(b[i]), Rgb(b[i]));
-        }
-        return std::sqrt(sum / all);
-    }
-    void take_this(std::size_t candidate) {
-        if (!taken_[candidate])
-            take(chosen_.size(), candidate);
-    }
-    /// Tries to put every light where it helps most while the others stay. Returns whether any moved.
+    /// Takes every light away once and puts it where it lowers the error most. Returns whether any moved.
     bool exchange() {
         bool moved = false;
-        for (std::size_t k = 0; k < chosen_.size(); ++k) {
-            const std::size_t old = chosen_[k];
-            taken_[old] = false;
-            irradiances_[k] = Rgb(0.0);
+        for (std::size_t i = 0; i < chosen_.size(); ++i) {
+            const double old_error = error();
+            const Light old = chosen_.front();
+            pop_front();
+            const std::vector<Light> others = chosen_;
+            fit();
             correlate();
             const std::size_t best = best_candidate();
-            // A hair more is rounding, and could go on for ever.
-            if (best != old && gain(best) > (1.0 + 1e-6) * gain(old)) {
-                take(k, best);
-                moved = true;
-            } else {
-                taken_[old] = true;
+            if (best != old.candidate && gain(best) > 0.0) {
+                push_back(best, Rgb(0.0));
+                fit();
+                if (error() < (1.0 - LeastGain) * old_error) {
+                    moved = true;
+                    continue;
+                }
+                pop_back();
             }
-            fit();
+            chosen_ = others;
+            push_back(old.candidate, old.irradiance);
         }
         return moved;
+    }
+
+    struct Light {
+        std::size_t candidate = 0;
+        Rgb irradiance{0.0};
+    };
+    [[nodiscard]] std::span<const Light> lights() const { return chosen_; }
+    [[nodiscard]] double error() const {
+        double sum = 0.0;
+        for (std::size_t k = 0; k < chosen_.size(); ++k) {
+            Rgb slope(0.0);
+            for (std::size_t l = 0; l < chosen_.size(); ++l)
+                slope += chosen_[l].irradiance * static_cast<double>(products_[l][chosen_[k].candidate]);
+            sum += glm::dot(chosen_[k].irradiance, slope - 2.0 * target(chosen_[k].candidate));
+        }
+        return sum;
+    }
+
+private:
+    void push_back(std::size_t candidate, const Rgb& irradiance) {
+        std::vector<float> products = matrix_.products(matrix_.column(candidate));
+        std::vector<float> row = products;
+        tbb::parallel_for(candidates(), [&](const auto& some) {
+            for (const std::vector<float>& other : basis_) {
+                const float common = other[candidate];
+                for (std::size_t j = some.begin(); j < some.end(); ++j)
+                    row[j] -= common * other[j];
+            }
+        });
+        const float scale = 1.0f / std::sqrt(std::max(row[candidate], std::numeric_limits<float>::min()));
+        for (std::size_t j = 0; j < row.size(); ++j) {
+            row[j] *= scale;
+            new_norms_[j] -= row[j] * row[j];
+        }
+        chosen_.push_back({candidate, irradiance});
+        products_.push_back(std::move(products));
+        basis_.push_back(std::move(row));
+    }
+
+    void pop_back() {
+        const std::vector<float>& row = basis_.back();
+        for (std::size_t j = 0; j < row.size(); ++j)
+            new_norms_[j] += row[j] * row[j];
+        basis_.pop_back();
+        products_.pop_back();
+        chosen_.pop_back();
+    }
+
+    /// Turns the basis until only its last vector has a part in the first light (Givens), then lets both go.
+    void pop_front() {
+        for (std::size_t k = 1; k < chosen_.size(); ++k) {
+            const std::size_t candidate = chosen_[k].candidate;
+            const float a = basis_[k - 1][candidate];
+            const float b = basis_[k][candidate];
+            const float length = std::hypot(a, b);
+            const float cosine = length > 0.0f ? a / length : 1.0f;
+            const float sine = length > 0.0f ? b / length : 0.0f;
+            tbb::parallel_for(candidates(), [&](const auto& some) {
+                float* first = basis_[k - 1].data();
+                float* second = basis_[k].data();
+                for (std::size_t j = some.begin(); j < some.end(); ++j) {
+                    const float turned = cosine * first[j] + sine * second[j];
+                    second[j] = cosine * second[j] - sine * first[j];
+                    first[j] = turned;
+                }
+            });
+        }
+        std::rotate(chosen_.begin(), chosen_.begin() + 1, chosen_.end());
+        std::rotate(products_.begin(), products_.begin() + 1, products_.end());
+        pop_back();
     }
 
     /// Fits all irradiances to the radiance, none below zero.
@@ -207,85 +275,73 @@ public:
         const std::size_t n = chosen_.size();
         std::vector<double> gram(n * n);
         for (std::size_t l = 0; l < n; ++l)
-            for (std::size_t k = 0; k < n; ++k) // products_[l][k] and [k][l] are the same sum
-                gram[l * n + k] = static_cast<double>(products_[l][chosen_[k]]);
+            for (std::size_t k = 0; k < n; ++k) // products_[l] of k and of k of l are the same sum
+                gram[l * n + k] = static_cast<double>(products_[l][chosen_[k].candidate]);
         tbb::parallel_for(0, 3, [&](int channel) {
-            std::vector<double> target(n);
+            std::vector<double> targets(n);
             std::vector<double> x(n);
             for (std::size_t k = 0; k < n; ++k) {
-                target[k] = static_cast<double>(targets_[static_cast<std::size_t>(channel)][chosen_[k]]);
-                x[k] = irradiances_[k][channel];
+                targets[k] = target(chosen_[k].candidate)[channel];
+                x[k] = chosen_[k].irradiance[channel];
             }
-            fit_non_negative(gram, target, x);
+            fit_non_negative(gram, targets, x);
             for (std::size_t k = 0; k < n; ++k)
-                irradiances_[k][channel] = x[k];
+                chosen_[k].irradiance[channel] = x[k];
         });
-    }
-
-    [[nodiscard]] std::size_t num_lights() const { return chosen_.size(); }
-    [[nodiscard]] std::size_t candidate(std::size_t light) const { return chosen_[light]; }
-    [[nodiscard]] const Rgb& irradiance(std::size_t light) const { return irradiances_[light]; }
-
-private:
-    void take(std::size_t light, std::size_t candidate) {
-        if (light == chosen_.size()) {
-            chosen_.emplace_back();
-            irradiances_.emplace_back(0.0);
-            products_.emplace_back();
-        }
-        chosen_[light] = candidate;
-        products_[light] = matrix_.products(matrix_.column(candidate));
-        taken_[candidate] = true;
     }
 
     /// What each candidate has in common with the error that is left.
     void correlate() {
-        const tbb::blocked_range<std::size_t> all(0, matrix_.num_candidates(), CandidatesPerTask);
-        tbb::parallel_for(all, [&](const auto& some) {
+        tbb::parallel_for(candidates(), [&](const auto& some) {
             for (std::size_t c = 0; c < 3; ++c) {
                 float* correlations = correlations_[c].data();
-                std::copy(targets_[c].begin() + static_cast<std::ptrdiff_t>(some.begin()),
-                          targets_[c].begin() + static_cast<std::ptrdiff_t>(some.end()),
-                          correlations + some.begin());
+                std::copy_n(targets_[c].data() + some.begin(), some.size(), correlations + some.begin());
                 for (std::size_t l = 0; l < chosen_.size(); ++l) {
-                    const auto irradiance = static_cast<float>(irradiances_[l][static_cast<int>(c)]);
+                    const auto irradiance = static_cast<float>(chosen_[l].irradiance[static_cast<int>(c)]);
                     const float* products = products_[l].data();
-                    for (std::size_t j = some.begin(); irradiance != 0.0f && j < some.end(); ++j)
+                    for (std::size_t j = some.begin(); j < some.end(); ++j)
                         correlations[j] -= irradiance * products[j];
                 }
             }
         });
     }
 
-    /// How much the squared error falls when the candidate gets the irradiance that suits it best.
+    /// How much the squared error falls when the candidate is taken and all irradiances are fitted anew, whatever their sign.
     [[nodiscard]] double gain(std::size_t candidate) const {
+        if (!(new_norms_[candidate] > LeastNewPart * norms_[candidate]))
+            return 0.0; // a combination of those that are there
         double useful = 0.0;
         for (const std::vector<float>& correlations : correlations_) {
             const auto common = static_cast<double>(std::max(correlations[candidate], 0.0f));
             useful += common * common;
         }
-        return norms_[candidate] > 0.0 ? useful / norms_[candidate] : 0.0;
+        return useful / static_cast<double>(new_norms_[candidate]);
     }
 
     [[nodiscard]] std::size_t best_candidate() const {
         std::size_t best = 0;
-        double best_gain = -1.0;
-        for (std::size_t j = 0; j < norms_.size(); ++j)
-            if (!taken_[j] && gain(j) > best_gain) {
+        for (std::size_t j = 1; j < norms_.size(); ++j)
+            if (gain(j) > gain(best))
                 best = j;
-                best_gain = gain(j);
-            }
         return best;
     }
 
+    [[nodiscard]] Rgb target(std::size_t candidate) const {
+        return {targets_[0][candidate], targets_[1][candidate], targets_[2][candidate]};
+    }
+
+    [[nodiscard]] tbb::blocked_range<std::size_t> candidates() const {
+        return {0, norms_.size(), CandidatesPerTask};
+    }
+
     const TransferMatrix& matrix_;
-    std::vector<bool> taken_;
-    std::vector<double> norms_;                      ///< [candidates] t_j.t_j
-    std::array<std::vector<float>, 3> targets_;      ///< [channel][candidates] t_j.B
+    std::vector<float> norms_;                  ///< [candidates] t_j.t_j
+    std::vector<float> new_norms_;              ///< the same of the part of t_j that no chosen column has
+    std::array<std::vector<float>, 3> targets_; ///< [channel][candidates] t_j.B
     std::array<std::vector<float>, 3> correlations_; ///< the same of the error that is left, B - sum E_l t_l
-    std::vector<std::size_t> chosen_;                ///< [lights] candidate
-    std::vector<Rgb> irradiances_;                   ///< [lights] E_l
-    std::vector<std::vector<float>> products_;       ///< [lights][candidates] t_l.t_j
+    std::vector<Light> chosen_;
+    std::vector<std::vector<float>> products_; ///< [lights][candidates] t_l.t_j
+    std::vector<std::vector<float>> basis_;    ///< [lights][candidates] q_l.t_j
 };
 
 } // namespace
@@ -306,35 +362,26 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     std::vector<glm::vec3> radiance;
     for (const std::size_t place : places)
         radiance.push_back(relighter.radiance()[transfer.order[place]]);
+    double bb = 0;
+    for (auto& q : radiance)
+        bb += glm::dot(Rgb(q), Rgb(q));
     Pursuit pursuit(matrix, radiance);
-    for (const glm::dvec3& d : options.start) {
-        std::size_t best = 0;
-        for (std::size_t j = 0; j < candidates.size(); ++j)
-            if (glm::dot(candidates[j], d) > glm::dot(candidates[best], d))
-                best = j;
-        pursuit.take_this(best);
-    }
-    if (!options.start.empty())
-        pursuit.fit();
-    fprintf(stderr, "start %zu error %.5f\n", pursuit.num_lights(), pursuit.error(radiance));
-    for (std::size_t i = 0; i < std::min(count, candidates.size()) - options.start.size() && pursuit.take_best(); ++i) {
+    for (std::size_t i = 0; i < std::min(count, candidates.size()) && pursuit.take_best(); ++i) {
         if (options.stop.stop_requested())
             throw prt::Cancelled();
         if (options.on_progress)
             options.on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
     }
-    for (int pass = 0; pass < ExchangePasses && pursuit.num_lights() <= MaxExchanged; ++pass)
-    {
-        fprintf(stderr, "pass %d error %.5f\n", pass, pursuit.error(radiance));
+    for (int pass = 0; pass < ExchangePasses && pursuit.lights().size() <= MaxExchanged; ++pass) {
+        fprintf(stderr, "pass %d error %.5f\n", pass, std::sqrt(std::max(0.0, bb + pursuit.error()) / bb));
         if (!pursuit.exchange())
             break;
     }
 
     std::vector<lights::DistantLight> chosen;
-    for (std::size_t light = 0; light < pursuit.num_lights(); ++light)
-        if (pursuit.irradiance(light) != Rgb(0.0))
-            chosen.push_back({.direction = candidates[pursuit.candidate(light)],
-                              .irradiance = pursuit.irradiance(light)});
+    for (const Pursuit::Light& light : pursuit.lights())
+        if (light.irradiance != Rgb(0.0))
+            chosen.push_back({.direction = candidates[light.candidate], .irradiance = light.irradiance});
     return chosen;
 }
 
