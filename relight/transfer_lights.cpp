@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -24,6 +25,9 @@ namespace {
 // Candidates are the centres of light of cells of this level, 2.8 degrees wide; at most 6,144 of them, 200 MB with 8,192 receivers.
 constexpr std::uint32_t CandidateLevel = 5;
 
+// A cell with a larger share of the power is cut further, so that a sun or a lamp can be given several lights.
+constexpr double LargestShare = 1.0 / 1024.0;
+
 // A column is a combination of others when less than this part of it is new: well above float rounding.
 constexpr float LeastNewPart = 1e-4f;
 
@@ -39,30 +43,43 @@ using Rgb = glm::dvec3;
 /// Candidates of one task of sums over lights: tens of microseconds, and they stay in the cache.
 constexpr std::size_t CandidatesPerTask = 1024;
 
-/// The cells of CandidateLevel below one, depth first.
-void append_cells(const prt::Cell& cell, std::vector<prt::Cell>& cells) {
-    if (cell.level == CandidateLevel) {
-        cells.push_back(cell);
-        return;
+/// Unit directions where lights could be, neighbours together: the centres of light of cells of CandidateLevel, and of smaller ones where there
+/// is more light.
+class Candidates {
+public:
+    explicit Candidates(const cubemap::CubeMap& environment)
+        : environment_(environment), binning_(environment.resolution),
+          texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))) {
+        const glm::dvec3 power = cubemap::total_power(environment);
+        const glm::dvec3 luminance_weights(0.2126, 0.7152, 0.0722);
+        most_power_ = glm::dot(luminance_weights, power) * LargestShare;
+        for (const cubemap::Face face : cubemap::AllFaces)
+            add({.face = face});
     }
-    for (std::uint32_t i = 0; i < 4; ++i)
-        append_cells(cell.child(i), cells);
-}
 
-/// Unit directions where lights could be; neighbours stand together.
-std::vector<glm::dvec3> candidates_of(const cubemap::CubeMap& environment) {
-    const LightBinning binning(environment.resolution);
-    std::vector<glm::dvec3> directions;
-    std::vector<prt::Cell> cells;
-    for (const cubemap::Face face : cubemap::AllFaces)
-        append_cells({.face = face}, cells);
-    for (const VectorIrradiance& sum : binning.sums(environment, cells)) {
-        const glm::dvec3 luminance = sum.luminance();
-        if (luminance != glm::dvec3(0.0))
-            directions.push_back(glm::normalize(luminance));
+    [[nodiscard]] std::vector<glm::dvec3>&& directions() && { return std::move(directions_); }
+
+private:
+    void add(const prt::Cell& cell) {
+        if (cell.level >= CandidateLevel) {
+            const glm::dvec3 luminance = binning_.sum(environment_, cell).luminance();
+            const double power = glm::length(luminance);
+            if (power <= most_power_ || cell.level >= texel_level_) {
+                if (power > 0.0)
+                    directions_.push_back(luminance / power);
+                return;
+            }
+        }
+        for (std::uint32_t i = 0; i < 4; ++i)
+            add(cell.child(i));
     }
-    return directions;
-}
+
+    const cubemap::CubeMap& environment_;
+    LightBinning binning_;
+    std::uint32_t texel_level_; ///< where a cell is no larger than a texel
+    double most_power_ = 0.0;
+    std::vector<glm::dvec3> directions_;
+};
 
 /// Evenly spread places of receivers that have a normal.
 std::vector<std::size_t> places_of(const prt::Transfer& transfer, std::size_t count) {
@@ -352,7 +369,7 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
         throw std::invalid_argument("expected a relighter with an environment and shadow rays");
     if (count == 0)
         throw std::invalid_argument("expected at least one light");
-    const std::vector<glm::dvec3> candidates = candidates_of(relighter.environment());
+    const std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();
     const prt::Transfer& transfer = relighter.transfer();
     const std::vector<std::size_t> places = places_of(transfer, options.num_receivers);
     if (candidates.empty() || places.empty())
