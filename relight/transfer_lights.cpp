@@ -34,6 +34,9 @@ constexpr float LeastNewPart = 1e-4f;
 // An exchange that lowers the error by less is rounding, and could go on for ever.
 constexpr double LeastGain = 1e-9;
 
+// Steps in degrees by which a light may move from its candidate's direction: those are 2.8 degrees apart.
+constexpr std::array RefiningSteps = {1.0, 0.4};
+
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
 const int ExchangePasses = getenv("EP") ? atoi(getenv("EP")) : 2;
@@ -80,6 +83,21 @@ private:
     double most_power_ = 0.0;
     std::vector<glm::dvec3> directions_;
 };
+
+/// A direction and eight around it, so many degrees to the sides and corners.
+void append_around(const glm::dvec3& direction, double degrees, std::vector<glm::dvec3>& directions) {
+    const glm::dvec3 other =
+        std::abs(direction.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
+    const double step = std::tan(degrees * std::numbers::pi / 180.0);
+    const glm::dvec3 right = step * glm::normalize(glm::cross(other, direction));
+    const glm::dvec3 up = glm::cross(direction, right);
+    directions.push_back(direction);
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            if (x != 0 || y != 0)
+                directions.push_back(
+                    glm::normalize(direction + static_cast<double>(x) * right + static_cast<double>(y) * up));
+}
 
 /// Evenly spread places of receivers that have a normal.
 std::vector<std::size_t> places_of(const prt::Transfer& transfer, std::size_t count) {
@@ -178,6 +196,13 @@ public:
             targets_[c] = matrix.products(channel);
         }
         correlations_ = targets_;
+    }
+
+    /// Takes these candidates.
+    void take(std::span<const std::size_t> lights) {
+        for (const std::size_t candidate : lights)
+            push_back(candidate, Rgb(0.0));
+        fit();
     }
 
     /// Takes the candidate that lowers the error most; false where none does.
@@ -369,37 +394,59 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
         throw std::invalid_argument("expected a relighter with an environment and shadow rays");
     if (count == 0)
         throw std::invalid_argument("expected at least one light");
-    const std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();
+    std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();
     const prt::Transfer& transfer = relighter.transfer();
     const std::vector<std::size_t> places = places_of(transfer, options.num_receivers);
     if (candidates.empty() || places.empty())
         return {};
-
-    const TransferMatrix matrix(relighter, candidates, places);
     std::vector<glm::vec3> radiance;
     for (const std::size_t place : places)
         radiance.push_back(relighter.radiance()[transfer.order[place]]);
-    double bb = 0;
-    for (auto& q : radiance)
-        bb += glm::dot(Rgb(q), Rgb(q));
-    Pursuit pursuit(matrix, radiance);
-    for (std::size_t i = 0; i < std::min(count, candidates.size()) && pursuit.take_best(); ++i) {
+    const auto poll = [&](double progress) {
         if (options.stop.stop_requested())
             throw prt::Cancelled();
         if (options.on_progress)
-            options.on_progress(static_cast<double>(i + 1) / static_cast<double>(count));
-    }
-    for (int pass = 0; pass < ExchangePasses && pursuit.lights().size() <= MaxExchanged; ++pass) {
-        fprintf(stderr, "pass %d error %.5f\n", pass, std::sqrt(std::max(0.0, bb + pursuit.error()) / bb));
-        if (!pursuit.exchange())
-            break;
-    }
+            options.on_progress(progress);
+    };
 
-    std::vector<lights::DistantLight> chosen;
-    for (const Pursuit::Light& light : pursuit.lights())
+    std::vector<Pursuit::Light> chosen;
+    {
+        const TransferMatrix matrix(relighter, candidates, places);
+        Pursuit pursuit(matrix, radiance);
+        count = std::min(count, candidates.size());
+        while (pursuit.lights().size() < count && pursuit.take_best())
+            poll(0.5 * static_cast<double>(pursuit.lights().size()) / static_cast<double>(count));
+        for (int pass = 0; pass < ExchangePasses && count <= MaxExchanged && pursuit.exchange(); ++pass)
+            poll(0.5);
+        chosen.assign(pursuit.lights().begin(), pursuit.lights().end());
+    }
+    // Then each may move by less than the candidates' distance.
+    for (const double step : RefiningSteps) {
+        poll(0.75);
+        std::vector<glm::dvec3> nearby;
+        std::vector<std::size_t> unmoved;
+        for (const Pursuit::Light& light : chosen) {
+            unmoved.push_back(nearby.size());
+            append_around(candidates[light.candidate], step, nearby);
+        }
+        const TransferMatrix matrix(relighter, nearby, places);
+        Pursuit pursuit(matrix, radiance);
+        pursuit.take(unmoved);
+        double bb = 0;
+        for (auto& q : radiance)
+            bb += glm::dot(Rgb(q), Rgb(q));
+        fprintf(stderr, "error %.5f ", std::sqrt(std::max(0.0, bb + pursuit.error()) / bb));
+        for (int pass = 0; pass < ExchangePasses && count <= MaxExchanged && pursuit.exchange(); ++pass)
+            poll(0.75);
+        fprintf(stderr, "-> error %.5f\n", std::sqrt(std::max(0.0, bb + pursuit.error()) / bb));
+        chosen.assign(pursuit.lights().begin(), pursuit.lights().end());
+        candidates = std::move(nearby);
+    }
+    std::vector<lights::DistantLight> result;
+    for (const Pursuit::Light& light : chosen)
         if (light.irradiance != Rgb(0.0))
-            chosen.push_back({.direction = candidates[light.candidate], .irradiance = light.irradiance});
-    return chosen;
+            result.push_back({.direction = candidates[light.candidate], .irradiance = light.irradiance});
+    return result;
 }
 
 } // namespace relumine::relight

@@ -13,8 +13,7 @@ namespace relumine::relight {
 
 struct TransferLightOptions {
     std::size_t num_receivers = 8192; ///< that the lights are fitted to, spread evenly over the scene
-    std::vector<glm::dvec3> start = {};
-    std::stop_token stop = {};                    ///< polled after each light; prt::Cancelled is thrown
+    std::stop_token stop = {};        ///< polled after each light; prt::Cancelled is thrown
     std::function<void(double)> on_progress = {}; ///< fraction in [0, 1]
 };
 
