@@ -95,7 +95,7 @@ void say_light(const Findings& found, const Session& session) {
 
 void say_warnings(const Findings& found, const Session& session) {
     if (found.clipped)
-        session.say(fmt::format("warning             a clipped sun is likely towards {}: {}",
+        session.say(fmt::format("warning             a clipped or veiled sun is likely towards {}: {}",
                                 direction_text(found.clipped->direction), found.clipped->why));
     for (const cubemap::SeamFault& fault : found.faults)
         session.say(fmt::format("warning             {} out of line: {:.2g} EV, beside it {:.2g} EV",

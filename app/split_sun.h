@@ -4,18 +4,36 @@
 #include <filesystem>
 #include <string>
 
-#include "app/session.h"
+#include <nlohmann/json.hpp>
+
+#include "cubemap/cube_map.h"
 #include "cubemap/environment.h"
+#include "cubemap/sun.h"
+#include "files/output_file.h"
 
 namespace relumine::app {
 
-/// Where the sun of a map goes: "out.exr" -> "out.sun.json".
-[[nodiscard]] std::filesystem::path sun_path(const std::filesystem::path& map_path);
+/// The file that takes the sun split off a map: "out.exr" has "out.sun.json", a light list of one light (direction, irradiance, solid
+/// angle) in the map's world axes.
+class SunFile {
+public:
+    /// Creates a temporary file beside the map's, so that an unwritable folder is found before any work is done.
+    explicit SunFile(const std::filesystem::path& map_path);
 
-/// Takes the sun out of an image (the sky around fills its place) and writes it as a light list of one light to sun_path(map_path).
-/// The caller writes the map. Returns the sun's figures for the session's report. Throws std::runtime_error "path: expected a sun
-/// ..., got none: why" where there is none; `image_path` names the image in it.
-nlohmann::json split_sun(cubemap::EnvironmentImage& image, const std::string& image_path,
-                         const std::filesystem::path& map_path, const Session& session);
+    /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary file. Returns the sun's figures for
+    /// the session's report. Throws std::runtime_error "source: expected a sun to split off, got none: why"; `source` names the map.
+    nlohmann::json split(cubemap::EnvironmentImage& image, const std::string& source);
+    nlohmann::json split(cubemap::CubeMap& map, const std::string& source);
+
+    /// Lets the file appear. To be called when the map without the sun is written.
+    void commit() { file_.commit(); }
+
+    [[nodiscard]] std::string path() const { return file_.target().string(); }
+
+private:
+    nlohmann::json write(const cubemap::SunSearch& found, const std::string& source);
+
+    files::OutputFile file_;
+};
 
 } // namespace relumine::app

@@ -23,7 +23,7 @@ namespace {
 constexpr double WrapFactor = 2.0, WrapLeastEv = 0.15; ///< against the most uneven hundredth of the columns
 constexpr double PoleFactor = 3.0, PoleLeastEv = 0.2;  ///< against the most uneven of the next rows
 constexpr double AroundFactor = 4.0, AroundLeastEv = 0.4; ///< around the pole, against one row's step
-constexpr double EdgeFactor = 4.0, EdgeLeastEv = 0.15;    ///< against one texel's step beside the edge
+constexpr double EdgeFactor = 2.5, EdgeLeastEv = 0.15;    ///< against one texel's step beside the edge
 constexpr std::size_t NumPoleRows = 8;
 constexpr std::uint32_t LeastHeight = 16, LeastFace = 8;
 /// Luminance below this part of the mean is dark, however many stops it varies.
