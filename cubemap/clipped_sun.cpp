@@ -37,7 +37,8 @@ struct BrightPixel {
     PixelPlace place;
 };
 
-/// The largest group of adjacent pixels at the maximum. Pixels are adjacent when their texels touch.
+/// The largest group of adjacent pixels at the maximum. Neighbours may have a texel between them: texels at a cube's corners are
+/// half as wide as a lat-long's pixels.
 Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint32_t resolution) {
     std::vector<BrightPixel> pixels;
     for_each_pixel({image.layout, image.sampling, image.width, image.height},
@@ -49,8 +50,8 @@ Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint3
     std::stable_sort(pixels.begin(), pixels.end(),
                      [](const BrightPixel& a, const BrightPixel& b) { return a.texel < b.texel; });
     Plateau largest;
-    // More than a twentieth of the image at its maximum is no sun.
-    if (pixels.size() > image.pixels.size() / 20)
+    // More than a hundredth of the image at its maximum is no sun.
+    if (pixels.size() > image.pixels.size() / 100)
         return largest;
     std::vector<bool> seen(pixels.size(), false);
     for (std::size_t start = 0; start < pixels.size(); ++start) {
@@ -60,7 +61,7 @@ Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint3
         std::vector<std::uint32_t> front = {pixels[start].texel};
         while (!front.empty()) {
             std::vector<std::uint32_t> next;
-            for (const std::uint32_t texel : grown(front, resolution)) {
+            for (const std::uint32_t texel : grown(grown(front, resolution), resolution)) {
                 auto pixel = std::lower_bound(
                     pixels.begin(), pixels.end(), texel,
                     [](const BrightPixel& a, std::uint32_t value) { return a.texel < value; });
