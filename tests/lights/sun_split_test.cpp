@@ -79,6 +79,27 @@ TEST(SunSplit, SumLightsLikeTheOriginal) {
     }
 }
 
+/// The light is round and the sun's pixels are not. That shows where the sun sets on a surface, and only there: by a part of its light that is
+/// small against its radius.
+TEST(SunSplit, WhereTheSunSetsOnASurface) {
+    for (const std::uint32_t resolution : {64u, 256u}) {
+        const cubemap::CubeMap map = data_gen::sun_and_sky(resolution);
+        const auto split = split_sun(map);
+        ASSERT_TRUE(split);
+        const glm::dvec3 side = glm::normalize(glm::cross(split->sun.direction, glm::dvec3(0.0, 1.0, 0.0)));
+        const glm::dvec3 other = glm::cross(split->sun.direction, side);
+        const double radius = std::sqrt(split->sun.solid_angle / 3.14159265);
+        for (int i = 0; i < 64; ++i) {
+            const double turn = 0.7 * i, height = radius * (i % 9 - 4) / 2.0;
+            const glm::dvec3 normal = glm::normalize(std::cos(turn) * side + std::sin(turn) * other +
+                                                     height * split->sun.direction);
+            const double expected = irradiance_of(map, normal).y;
+            const double result = irradiance_of(split->rest, normal).y + irradiance(split->sun, normal).y;
+            EXPECT_NEAR(result, expected, 0.2 * radius * split->sun.irradiance.y) << resolution << ' ' << i;
+        }
+    }
+}
+
 TEST(SunSplit, TheGeneratedSunsIrradiance) {
     const data_gen::DaylightOptions options{.sun_elevation_degrees = 40.0, .sun_azimuth_degrees = 20.0};
     const data_gen::Daylight daylight(options);
