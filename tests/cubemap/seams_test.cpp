@@ -104,9 +104,10 @@ TEST(Seams, Poles) {
 
 TEST(Seams, OneFaceUnlikeTheOthers) {
     EnvironmentImage image = world(Layout::Cube, Sampling::TexelCentres, 64);
+    constexpr std::size_t PositiveY = std::size_t{2} * 64 * 64;
     for (std::size_t y = 0; y < 64; ++y)
-        for (std::size_t x = 0; x < y; ++x) // +Y, mirrored at its diagonal
-            std::swap(image.pixels[(2 * 64 + y) * 64 + x], image.pixels[(2 * 64 + x) * 64 + y]);
+        for (std::size_t x = 0; x < y; ++x) // mirrored at its diagonal
+            std::swap(image.pixels[PositiveY + y * 64 + x], image.pixels[PositiveY + x * 64 + y]);
     EXPECT_THAT(places(image), testing::UnorderedElementsAre("edge of +X and +Y", "edge of -X and +Y",
                                                              "edge of +Y and +Z", "edge of +Y and -Z"));
     // One face exposed half a stop more.
