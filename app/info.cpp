@@ -2,14 +2,13 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/environment_options.h"
-#include "cubemap/environment.h"
-#include "cubemap/statistics.h"
+#include "app/info_environment.h"
 #include "mesh/load.h"
 #include "prt/scene_file.h"
 
@@ -20,54 +19,11 @@ namespace {
 struct Options {
     std::string path;
     std::string layout;
+    std::string picture;
 };
 
 nlohmann::json array(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
-}
-
-void describe_environment(const Options& options, const Session& session) {
-    cubemap::LoadOptions load_options{.refuse_bad_pixels = false};
-    if (!options.layout.empty())
-        load_options.layout = parse_layout(options.layout);
-    const cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
-    const cubemap::EnvironmentStatistics s = cubemap::statistics(image);
-    const cubemap::BadPixels& bad = image.bad_pixels;
-
-    session.say(fmt::format("layout              {} {} x {}", cubemap::name(image.layout), image.width,
-                            image.height));
-    session.say(fmt::format("assumed             {}", image.assumptions));
-    session.say(fmt::format("samples             {}", image.sampling == cubemap::Sampling::Borders
-                                                          ? "on the borders"
-                                                          : "at texel centres"));
-    session.say(fmt::format("as a cube map       6 x {0} x {0}", cubemap::natural_resolution(image)));
-    session.say(fmt::format("mean radiance       {:.5g} {:.5g} {:.5g}, luminance {:.5g}", s.mean_radiance.r,
-                            s.mean_radiance.g, s.mean_radiance.b, s.mean_luminance));
-    session.say(fmt::format("luminance range     {:.4g} to {:.4g}, {:.1f} EV", s.min_positive_luminance,
-                            s.max_luminance, s.dynamic_range_ev));
-    session.say(fmt::format("brightest towards   {:.4f} {:.4f} {:.4f}", s.brightest_direction.x,
-                            s.brightest_direction.y, s.brightest_direction.z));
-    session.say(fmt::format("bad pixels          {} NaN, {} infinite, {} negative{}", bad.num_nan,
-                            bad.num_infinite, bad.num_negative,
-                            bad.count() == 0 ? ""
-                                             : fmt::format("; first at ({}, {}); light with --fix-env",
-                                                           bad.first_x, bad.first_y)));
-    session.report({{"kind", "environment"},
-                    {"layout", cubemap::name(image.layout)},
-                    {"assumptions", image.assumptions},
-                    {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
-                    {"width", image.width},
-                    {"height", image.height},
-                    {"face_resolution", cubemap::natural_resolution(image)},
-                    {"mean_radiance", array(s.mean_radiance)},
-                    {"mean_luminance", s.mean_luminance},
-                    {"max_luminance", s.max_luminance},
-                    {"min_positive_luminance", s.min_positive_luminance},
-                    {"dynamic_range_ev", s.dynamic_range_ev},
-                    {"brightest_direction", array(s.brightest_direction)},
-                    {"num_nan", bad.num_nan},
-                    {"num_infinite", bad.num_infinite},
-                    {"num_negative", bad.num_negative}});
 }
 
 void describe_scene(const Options& options, const Session& session) {
@@ -132,10 +88,15 @@ void run(const Options& options, const Session& session) {
     std::string extension = std::filesystem::path(options.path).extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool is_environment = extension == ".exr" || extension == ".hdr";
+    if (!options.picture.empty() && !is_environment)
+        throw std::runtime_error(fmt::format(
+            "{}: expected an environment (.exr or .hdr) to draw with --picture, got something else",
+            options.path));
     if (extension == ".prt")
         describe_scene(options, session);
-    else if (extension == ".exr" || extension == ".hdr")
-        describe_environment(options, session);
+    else if (is_environment)
+        describe_environment({options.path, options.layout, options.picture}, session);
     else
         describe_mesh(options, session);
 }
@@ -148,6 +109,8 @@ void add_info(CLI::App& program, Session& session) {
     command.add_option("FILE", options->path, ".prt, .exr, .hdr, .obj, .ply, .off or .stl")->required();
     command.add_option("--layout", options->layout, "layout of an environment, where the file does not tell")
         ->check(CLI::IsMember({"latlong", "cube", "cross"}));
+    command.add_option("--picture", options->picture,
+                       "draw an environment: lat-long .png with the axes and the sun marked");
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

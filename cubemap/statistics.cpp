@@ -35,6 +35,12 @@ EnvironmentStatistics statistics(const EnvironmentImage& image) {
                            return;
                        result.mean_radiance += glm::dvec3(radiance) * place.solid_angle;
                        solid_angle += place.solid_angle;
+                       const glm::dvec3 power = glm::dvec3(radiance) * place.solid_angle;
+                       for (int axis = 0; axis < 3; ++axis) {
+                           const double cosine = place.direction[axis];
+                           result.axis_irradiance[static_cast<std::size_t>(2 * axis + (cosine < 0.0))] +=
+                               power * std::abs(cosine);
+                       }
                        const double value = luminance(radiance);
                        if (value > result.max_luminance) {
                            result.max_luminance = value;

@@ -1,6 +1,8 @@
 // What is worth knowing about an environment before it lights anything.
 #pragma once
 
+#include <array>
+
 #include <glm/vec3.hpp>
 
 #include "cubemap/environment.h"
@@ -15,6 +17,8 @@ struct EnvironmentStatistics {
     double min_positive_luminance = 0.0; ///< smallest luminance above zero, 0 when there is none
     double dynamic_range_ev = 0.0;       ///< log2(max / min positive)
     glm::dvec3 brightest_direction{0.0}; ///< unit; centre of the brightest pixel
+    /// Irradiance of unshadowed surfaces that face +X, -X, +Y (up), -Y, +Z, -Z, the order of Face.
+    std::array<glm::dvec3, 6> axis_irradiance{};
 };
 
 [[nodiscard]] EnvironmentStatistics statistics(const EnvironmentImage& image);

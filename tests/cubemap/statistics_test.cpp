@@ -39,6 +39,25 @@ TEST(Statistics, BrightestPixelAndRange) {
     EXPECT_NEAR(result.dynamic_range_ev, 7.0, 1e-9);
 }
 
+TEST(Statistics, IrradianceOfAConstantAndOfOneSide) {
+    for (const Layout layout : {Layout::LatLong, Layout::Cube, Layout::VerticalCross}) {
+        EnvironmentImage image = black_image(layout, Sampling::TexelCentres, 128);
+        paint(image, [](const glm::dvec3&) { return glm::vec3(1.0f, 2.0f, 0.0f); });
+        for (const glm::dvec3& irradiance : statistics(image).axis_irradiance) {
+            EXPECT_NEAR(irradiance.x, 3.14159265, 1e-3);
+            EXPECT_NEAR(irradiance.y, 2.0 * 3.14159265, 2e-3);
+            EXPECT_EQ(irradiance.z, 0.0);
+        }
+        // Light from x > 0 only: pi on +X, half of it on the sides.
+        paint(image, [](const glm::dvec3& w) { return glm::vec3(w.x > 0.0 ? 1.0f : 0.0f); });
+        const auto irradiance = statistics(image).axis_irradiance;
+        EXPECT_NEAR(irradiance[0].x, 3.14159265, 1e-3);
+        EXPECT_EQ(irradiance[1].x, 0.0);
+        for (std::size_t side = 2; side < 6; ++side)
+            EXPECT_NEAR(irradiance[side].x, 0.5 * 3.14159265, 1e-3);
+    }
+}
+
 TEST(Statistics, LeavesBadPixelsOut) {
     EnvironmentImage image = black_image(Layout::Cube, Sampling::TexelCentres, 8);
     image.pixels.assign(image.pixels.size(), glm::vec3(1.0f));

@@ -1,0 +1,19 @@
+// `relumine info ENV`: the environment's doctor.
+#pragma once
+
+#include <string>
+
+#include "app/session.h"
+
+namespace relumine::app {
+
+struct EnvironmentInfoOptions {
+    std::string path;
+    std::string layout;  ///< empty: as the file says
+    std::string picture; ///< empty: none
+};
+
+/// Says what an environment is and what may be wrong with it; docs/environment-doctor.md explains every line.
+void describe_environment(const EnvironmentInfoOptions& options, const Session& session);
+
+} // namespace relumine::app

@@ -1,0 +1,39 @@
+// --split-sun: the sun of an environment as a file of its own.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/environment.h"
+#include "cubemap/sun.h"
+#include "files/output_file.h"
+
+namespace relumine::app {
+
+/// The file that takes the sun split off a map: "out.exr" has "out.sun.json", a light list of one light (direction, irradiance, solid
+/// angle) in the map's world axes.
+class SunFile {
+public:
+    /// Creates a temporary file beside the map's, so that an unwritable folder is found before any work is done.
+    explicit SunFile(const std::filesystem::path& map_path);
+
+    /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary file. Returns the sun's figures for
+    /// the session's report. Throws std::runtime_error "source: expected a sun to split off, got none: why"; `source` names the map.
+    nlohmann::json split(cubemap::EnvironmentImage& image, const std::string& source);
+    nlohmann::json split(cubemap::CubeMap& map, const std::string& source);
+
+    /// Lets the file appear. To be called when the map without the sun is written.
+    void commit() { file_.commit(); }
+
+    [[nodiscard]] std::string path() const { return file_.target().string(); }
+
+private:
+    nlohmann::json write(const cubemap::SunSearch& found, const std::string& source);
+
+    files::OutputFile file_;
+};
+
+} // namespace relumine::app

@@ -1,0 +1,45 @@
+// Bright spots of a cube map: connected texels that stand out of what surrounds them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+
+namespace relumine::cubemap {
+
+/// One spot. Luminance has Rec. 709 weights.
+struct BrightSpot {
+    std::vector<std::uint32_t>
+        texels; ///< indices into CubeMap::texels, connected (also over face edges and corners), ascending
+    glm::dvec3 peak_direction{0.0}; ///< unit; the brightest texel
+    double peak_luminance = 0.0;
+    double surrounding_luminance = 0.0; ///< median around the spot
+    double irradiance = 0.0;  ///< luminance above the surroundings, summed over the texels' solid angles
+    double solid_angle = 0.0; ///< of all texels
+    bool is_cut = false;      ///< wider than SpotOptions::max_radius_degrees: the texels are those within it
+};
+
+struct SpotOptions {
+    std::size_t max_spots = 8;
+    double max_radius_degrees = 12.0; ///< how far from its peak a spot is followed
+};
+
+/// The spots around the brightest texels, in the order of their peaks; none in a map without light. A texel belongs to a spot when its luminance
+/// is above twice the surroundings' and above a hundredth of the peak's, and when such texels join it with the peak.
+/// What lies close around a spot (bloom, aureole) is no spot of its own.
+[[nodiscard]] std::vector<BrightSpot> bright_spots(const CubeMap& map, const SpotOptions& options = {});
+
+/// The texels given and those next to them, also over edges and corners of faces; ascending.
+[[nodiscard]] std::vector<std::uint32_t> grown(const std::vector<std::uint32_t>& texels,
+                                               std::uint32_t resolution);
+
+/// Index of the texel that a direction (any length but zero) goes through.
+[[nodiscard]] std::uint32_t texel_index(const glm::dvec3& direction, std::uint32_t resolution);
+
+/// Luminance with Rec. 709 weights.
+[[nodiscard]] double luminance(const glm::dvec3& radiance);
+
+} // namespace relumine::cubemap

@@ -1,0 +1,31 @@
+// The sun taken out of an environment: one light, and the map without it.
+#pragma once
+
+#include <optional>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/environment.h"
+#include "cubemap/sun.h"
+#include "lights/light_list.h"
+
+namespace relumine::lights {
+
+/// The sun as a light. Light and map together light a surface like the original (irradiance() of disc_light.h).
+[[nodiscard]] DistantLight sun_light(const cubemap::Sun& sun);
+
+/// Puts the sky around the sun in its place. `sun` must have been found in this image or map.
+void remove_sun(cubemap::EnvironmentImage& image, const cubemap::Sun& sun);
+void remove_sun(cubemap::CubeMap& map, const cubemap::Sun& sun);
+
+template<typename Map>
+struct SunSplit {
+    DistantLight sun;
+    Map rest;
+};
+
+/// Both in one call; nothing where cubemap::find_sun() finds no sun.
+[[nodiscard]] std::optional<SunSplit<cubemap::EnvironmentImage>>
+split_sun(const cubemap::EnvironmentImage& image);
+[[nodiscard]] std::optional<SunSplit<cubemap::CubeMap>> split_sun(const cubemap::CubeMap& map);
+
+} // namespace relumine::lights
