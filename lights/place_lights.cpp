@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "cubemap/resample.h"
 #include "lights/importance_sampling.h"
@@ -48,8 +49,43 @@ Placement place(Method method, const cubemap::EnvironmentImage& lat_long, std::s
     return result;
 }
 
+namespace {
+
+glm::dvec3 power(const LatLongGrid& grid) {
+    glm::dvec3 sum(0.0);
+    for (std::uint32_t y = 0; y < grid.height(); ++y) {
+        glm::dvec3 row(0.0);
+        for (std::uint32_t x = 0; x < grid.width(); ++x)
+            row += grid.radiance(x, y) * grid.solid_angle(x, y);
+        sum += row;
+    }
+    return sum;
+}
+
+} // namespace
+
 cubemap::EnvironmentImage lat_long_of(const cubemap::CubeMap& map) {
-    return cubemap::to_image(map, cubemap::Layout::LatLong, 4 * map.resolution, 2 * map.resolution);
+    cubemap::EnvironmentImage image =
+        cubemap::to_image(map, cubemap::Layout::LatLong, 4 * map.resolution, 2 * map.resolution);
+    // What is negative in the map itself stays, to be refused.
+    const auto is_positive = [](const glm::vec3& texel) {
+        return texel.r >= 0.0f && texel.g >= 0.0f && texel.b >= 0.0f;
+    };
+    if (image.pixels.empty() || !std::all_of(map.texels.begin(), map.texels.end(), is_positive))
+        return image;
+    // The mean over overlaps of patches may leave -1e-28 beside a bright texel, and of a single bright texel up to 1e-6 is lost: lights have
+    // to keep the power better than that.
+    for (glm::vec3& pixel : image.pixels)
+        pixel = glm::max(pixel, glm::vec3(0.0f));
+    const glm::dvec3 wanted = cubemap::total_power(map);
+    const glm::dvec3 got = power(LatLongGrid(image));
+    glm::dvec3 factor(1.0);
+    for (int channel = 0; channel < 3; ++channel)
+        if (got[channel] > 0.0)
+            factor[channel] = wanted[channel] / got[channel];
+    for (glm::vec3& pixel : image.pixels)
+        pixel = glm::vec3(glm::dvec3(pixel) * factor);
+    return image;
 }
 
 std::vector<DistantLight> place_lights(Method method, const cubemap::CubeMap& map, std::size_t num_lights,

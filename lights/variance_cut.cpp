@@ -1,6 +1,7 @@
 #include "lights/variance_cut.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <glm/geometric.hpp>
@@ -26,19 +27,22 @@ public:
                   row[x] = luminance(grid.radiance(x, y)) * grid.moments(x, y);
           }) {}
 
-    [[nodiscard]] double variance(const PixelRectangle& region) const {
-        return lights::variance(table_.sum(region));
+    /// E^2 d = E sqrt(E variance)
+    [[nodiscard]] double expected_error(const PixelRectangle& region) const {
+        const glm::dvec4 moments = table_.sum(region);
+        const double energy = std::max(moments.w, 0.0);
+        return energy * std::sqrt(energy * variance(moments));
     }
 
     [[nodiscard]] Halves cut(const PixelRectangle& region) const {
         const glm::dvec4 whole = table_.sum(region);
-        if (lights::variance(whole) <= 0.0)
+        if (variance(whole) <= 0.0)
             return cut_in_the_middle(grid_, region);
         double smallest = std::numeric_limits<double>::infinity();
         Halves best;
         const auto consider = [&](const Halves& halves) {
             const glm::dvec4 before = table_.sum(halves.first);
-            const double sum = lights::variance(before) + lights::variance(whole - before);
+            const double sum = variance(before) + variance(whole - before);
             if (sum < smallest) {
                 smallest = sum;
                 best = halves;
@@ -62,7 +66,8 @@ std::vector<PixelRectangle> variance_cut(const LatLongGrid& grid, std::size_t nu
     const MomentTable table(grid);
     std::vector<PixelRectangle> regions = {grid.whole()};
     cut_heaviest(
-        grid, regions, num_regions, [&](const PixelRectangle& region) { return table.variance(region); },
+        grid, regions, num_regions,
+        [&](const PixelRectangle& region) { return table.expected_error(region); },
         [&](const PixelRectangle& region) { return table.cut(region); });
     return regions;
 }

@@ -120,12 +120,18 @@ TEST_P(EveryMethod, RepeatsItselfForAnyNumberOfThreads) {
 }
 
 TEST_P(EveryMethod, TakesCubeMaps) {
-    cubemap::CubeMap map(8, glm::vec3(0.25f));
-    map.at(cubemap::Face::PositiveX, 3, 4) = {100.0f, 50.0f, 20.0f};
-    const glm::dvec3 expected = cubemap::total_power(map);
-    const glm::dvec3 got = total_irradiance(place_lights(GetParam(), map, 12));
-    for (int channel = 0; channel < 3; ++channel)
-        EXPECT_NEAR(got[channel], expected[channel], 1e-6 * expected[channel]);
+    cubemap::CubeMap studio(8, glm::vec3(0.25f));
+    studio.at(cubemap::Face::PositiveX, 3, 4) = {100.0f, 50.0f, 20.0f};
+    cubemap::CubeMap lamp(32);
+    lamp.at(cubemap::Face::PositiveX, 15, 16) = {512.0f, 512.0f, 0.0f};
+    for (const cubemap::CubeMap& map : {studio, lamp}) {
+        const glm::dvec3 expected = cubemap::total_power(map);
+        const glm::dvec3 got = total_irradiance(place_lights(GetParam(), map, 12));
+        for (int channel = 0; channel < 3; ++channel)
+            EXPECT_NEAR(got[channel], expected[channel], 2e-7 * expected[channel]);
+    }
+    lamp.texels[7].g = -1.0f;
+    EXPECT_THROW((void)place_lights(GetParam(), lamp, 12), std::invalid_argument);
 }
 
 TEST_P(EveryMethod, RefusesWhatCannotBe) {

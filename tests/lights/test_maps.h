@@ -4,10 +4,12 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <ostream>
 #include <random>
 
 #include "cubemap/environment.h"
 #include "cubemap/image_layout.h"
+#include "lights/lat_long_grid.h"
 
 namespace relumine::lights {
 
@@ -48,6 +50,11 @@ inline glm::dvec3 power(const cubemap::EnvironmentImage& image) {
                                 sum += glm::dvec3(image.pixels[pixel]) * place.solid_angle;
                             });
     return sum;
+}
+
+/// For messages of failed tests.
+inline void PrintTo(const PixelRectangle& region, std::ostream* out) {
+    *out << "[" << region.x0 << ", " << region.x1 << ") x [" << region.y0 << ", " << region.y1 << ")";
 }
 
 } // namespace relumine::lights
