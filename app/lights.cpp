@@ -148,6 +148,7 @@ void add_lights(CLI::App& program, Session& session) {
         ->check(number_between(1, 1e9))
         ->capture_default_str();
     std::vector<std::string> methods;
+    methods.reserve(lights::AllMethods.size());
     for (const lights::Method method : lights::AllMethods)
         methods.emplace_back(lights::name(method));
     command
@@ -160,6 +161,7 @@ void add_lights(CLI::App& program, Session& session) {
         ->check(number_between(0, 0x1p53))
         ->capture_default_str();
     std::vector<std::string> formats;
+    formats.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         formats.emplace_back(lights::name(format));
     command.add_option("--format", options->format, "format of the light list, whatever its extension")
