@@ -11,6 +11,7 @@ void add_precompute(CLI::App& program, Session& session);
 void add_relight(CLI::App& program, Session& session);
 void add_edit(CLI::App& program, Session& session);
 void add_verify(CLI::App& program, Session& session);
+void add_lights(CLI::App& program, Session& session);
 void add_info(CLI::App& program, Session& session);
 void add_generate(CLI::App& program, Session& session);
 void add_view(CLI::App& program, Session& session);

@@ -41,25 +41,34 @@ void EnvironmentOptions::add_to(CLI::App& command) {
         ->capture_default_str();
 }
 
-LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session) {
-    LoadedEnvironment result;
-    Stopwatch watch;
+cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Session& session) {
     cubemap::LoadOptions load_options{.fix_bad_pixels = options.fix};
     if (!options.layout.empty())
         load_options.layout = parse_layout(options.layout);
-    const cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
-    result.assumptions = image.assumptions;
-    result.seconds_load = watch.lap();
+    cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
     session.detail(fmt::format("{}: {}", options.path, image.assumptions));
     if (image.fixed)
         session.say(fmt::format("{}: replaced {} bad pixels", options.path, image.bad_pixels.count()));
     session.poll();
+    return image;
+}
 
+cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image, const EnvironmentOptions& options) {
     const std::uint32_t resolution =
         options.face_resolution != 0 ? options.face_resolution : cubemap::natural_resolution(image);
-    result.map = cubemap::resample(image, resolution);
+    cubemap::CubeMap map = cubemap::resample(image, resolution);
     if (options.rotate_degrees != 0.0)
-        result.map = cubemap::rotated(result.map, options.rotate_degrees);
+        map = cubemap::rotated(map, options.rotate_degrees);
+    return map;
+}
+
+LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session) {
+    LoadedEnvironment result;
+    Stopwatch watch;
+    const cubemap::EnvironmentImage image = load_image(options, session);
+    result.assumptions = image.assumptions;
+    result.seconds_load = watch.lap();
+    result.map = cube_map_of(image, options);
     result.seconds_resample = watch.lap();
     session.poll();
     return result;

@@ -32,6 +32,13 @@ struct LoadedEnvironment {
     double seconds_resample = 0.0; ///< with the rotation
 };
 
+/// The image as the file has it. Says on -v what was assumed, and always when pixels were fixed.
+[[nodiscard]] cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Session& session);
+
+/// An image resampled to a cube map and rotated.
+[[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
+                                           const EnvironmentOptions& options);
+
 /// Loads, resamples and rotates. Says on -v what was assumed, and always when pixels were fixed.
 [[nodiscard]] LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session);
 

@@ -35,6 +35,7 @@ int main(int argc, char** argv) {
     app::add_relight(program, session);
     app::add_edit(program, session);
     app::add_verify(program, session);
+    app::add_lights(program, session);
     app::add_info(program, session);
     app::add_generate(program, session);
     app::add_view(program, session);

@@ -1,10 +1,12 @@
 // Times of the steps that run when an environment changes, on a generated scene. See `./dev bench kernels --help`.
+#include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
+#include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
 #include "relight/relighter.h"
@@ -58,5 +60,19 @@ void BM_Edit(benchmark::State& state) {
             relighter.update_region({cubemap::Face::PositiveZ, 100, 60, 113, 73}, radiance));
 }
 BENCHMARK(BM_Edit)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// 64 lights for a lat-long twice as wide as range(1), by method range(0).
+void BM_PlaceLights(benchmark::State& state) {
+    const auto height = static_cast<std::uint32_t>(state.range(1));
+    const cubemap::EnvironmentImage map = lights::lat_long_of(data_gen::two_soft_boxes(height / 2));
+    const auto method = lights::AllMethods.at(static_cast<std::size_t>(state.range(0)));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(lights::place(method, map, 64));
+    state.SetLabel(std::string(lights::name(method)));
+}
+BENCHMARK(BM_PlaceLights)
+    ->ArgsProduct({{0, 1, 2}, {512, 2048}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 } // namespace

@@ -1,0 +1,157 @@
+#include "lights/importance_sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <tbb/parallel_for.h>
+
+namespace relumine::lights {
+
+namespace {
+
+/// A number in [0, 1) that depends on its arguments only (the mixing steps of splitmix64), the same on every machine.
+double random(std::uint64_t seed, std::uint64_t index) {
+    std::uint64_t bits = seed * 0x9e3779b97f4a7c15u + index;
+    for (int round = 0; round < 2; ++round) {
+        bits += 0x9e3779b97f4a7c15u;
+        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+        bits ^= bits >> 31;
+    }
+    return static_cast<double>(bits >> 11) * 0x1p-53;
+}
+
+/// What the directions are distributed by: energy, or solid angle for a map without light.
+class Distribution {
+public:
+    explicit Distribution(const LatLongGrid& grid) : grid_(grid), marginal_(grid.height() + 1, 0.0) {
+        sum_rows();
+        if (marginal_.back() <= 0.0) {
+            is_black_ = true;
+            sum_rows();
+        }
+    }
+
+    [[nodiscard]] double weight(std::uint32_t x, std::uint32_t y) const {
+        return is_black_ ? grid_.solid_angle(x, y) : grid_.energy(x, y);
+    }
+    /// [height + 1] sums over the rows above.
+    [[nodiscard]] const std::vector<double>& marginal() const { return marginal_; }
+
+    /// The row's weights added from the left, always in the same order.
+    [[nodiscard]] double row_sum(std::uint32_t y) const {
+        double sum = 0.0;
+        for (std::uint32_t x = 0; x < grid_.width(); ++x)
+            sum += weight(x, y);
+        return sum;
+    }
+
+    /// The direction at a share of the marginal sum and of the conditional one.
+    [[nodiscard]] glm::dvec3 direction(double down, double across) const {
+        const double wanted_down = down * marginal_.back();
+        // the last row that begins at or before it and has light
+        auto row = std::upper_bound(marginal_.begin(), marginal_.end(), wanted_down) - 1;
+        if (row == marginal_.end() - 1) // beyond the last by rounding
+            row = std::lower_bound(marginal_.begin(), marginal_.end(), marginal_.back()) - 1;
+        const auto y = static_cast<std::uint32_t>(row - marginal_.begin());
+        const double part_down = std::clamp((wanted_down - row[0]) / (row[1] - row[0]), 0.0, 1.0);
+
+        const double wanted = across * row_sum(y);
+        double before = 0.0;
+        std::uint32_t column = 0;
+        double part_across = 0.5;
+        for (std::uint32_t x = 0; x < grid_.width(); ++x) {
+            const double value = weight(x, y);
+            if (value > 0.0) {
+                column = x;
+                part_across = std::clamp((wanted - before) / value, 0.0, 1.0);
+            }
+            before += value;
+            if (wanted < before)
+                break;
+        }
+        return grid_.direction(column, y, part_across, part_down);
+    }
+
+private:
+    void sum_rows() {
+        std::vector<double> rows(grid_.height());
+        tbb::parallel_for(std::uint32_t{0}, grid_.height(), [&](std::uint32_t y) { rows[y] = row_sum(y); });
+        for (std::size_t y = 0; y < rows.size(); ++y)
+            marginal_[y + 1] = marginal_[y] + rows[y];
+    }
+
+    const LatLongGrid& grid_;
+    bool is_black_ = false;
+    std::vector<double> marginal_;
+};
+
+/// Adds the share `down` of an image row to the strata of a row of strata, each getting as much of the conditional sum.
+void share_row(const LatLongGrid& grid, const Distribution& distribution, std::uint32_t y, double down,
+               std::vector<DistantLight>::iterator strata, std::size_t num_strata) {
+    const double sum = distribution.row_sum(y);
+    const auto border = [&](std::size_t stratum) {
+        return sum * static_cast<double>(stratum) / static_cast<double>(num_strata);
+    };
+    std::size_t stratum = 0;
+    double before = 0.0;
+    for (std::uint32_t x = 0; x < grid.width(); ++x) {
+        const double weight = distribution.weight(x, y);
+        if (weight <= 0.0)
+            continue;
+        const glm::dvec3 irradiance = grid.radiance(x, y) * grid.solid_angle(x, y);
+        const double after = before + weight;
+        double from = before;
+        // The parts of the pixel's share of the sum that end at a border of strata; the last stratum has none.
+        while (stratum + 1 < num_strata && border(stratum + 1) < after) {
+            const double part = down * (std::max(border(stratum + 1), from) - from) / weight;
+            strata[static_cast<std::ptrdiff_t>(stratum)].irradiance += part * irradiance;
+            strata[static_cast<std::ptrdiff_t>(stratum)].solid_angle += part * grid.solid_angle(x, y);
+            from = std::max(border(stratum + 1), from);
+            ++stratum;
+        }
+        const double part = down * (after - from) / weight;
+        strata[static_cast<std::ptrdiff_t>(stratum)].irradiance += part * irradiance;
+        strata[static_cast<std::ptrdiff_t>(stratum)].solid_angle += part * grid.solid_angle(x, y);
+        before = after;
+    }
+}
+
+} // namespace
+
+std::vector<DistantLight> importance_sample(const LatLongGrid& grid, std::size_t num_lights,
+                                            std::uint64_t seed) {
+    const Distribution distribution(grid);
+    const std::vector<double>& marginal = distribution.marginal();
+    // The image is twice as wide as high: strata are about square where the distribution is even.
+    const auto num_rows =
+        std::clamp(static_cast<std::size_t>(std::lround(std::sqrt(0.5 * static_cast<double>(num_lights)))),
+                   std::size_t{1}, num_lights);
+    const auto first_of_row = [&](std::size_t row) {
+        return row * num_lights / num_rows;
+    };
+    std::vector<DistantLight> lights(num_lights);
+    tbb::parallel_for(std::size_t{0}, num_rows, [&](std::size_t row) {
+        const std::size_t first = first_of_row(row);
+        const std::size_t num_strata = first_of_row(row + 1) - first;
+        const double top = static_cast<double>(first) / static_cast<double>(num_lights);
+        const double bottom = static_cast<double>(first + num_strata) / static_cast<double>(num_lights);
+        const double top_sum = top * marginal.back();
+        const double bottom_sum = row + 1 < num_rows ? bottom * marginal.back() : marginal.back();
+        for (std::uint32_t y = 0; y < grid.height(); ++y) {
+            const double part = std::min(marginal[y + 1], bottom_sum) - std::max(marginal[y], top_sum);
+            if (part > 0.0)
+                share_row(grid, distribution, y, part / (marginal[y + 1] - marginal[y]),
+                          lights.begin() + static_cast<std::ptrdiff_t>(first), num_strata);
+        }
+        for (std::size_t i = 0; i < num_strata; ++i) {
+            const double down = top + (bottom - top) * random(seed, 2 * (first + i));
+            const double across = (static_cast<double>(i) + random(seed, 2 * (first + i) + 1)) /
+                                  static_cast<double>(num_strata);
+            lights[first + i].direction = distribution.direction(down, across);
+        }
+    });
+    return lights;
+}
+
+} // namespace relumine::lights

@@ -1,0 +1,191 @@
+#include "lights/light_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cubemap/json_value.h"
+#include "files/output_file.h"
+
+namespace relumine::lights {
+
+namespace {
+
+constexpr double Version = 1.0;
+constexpr double FullSphere = 12.566370614359172;
+
+/// What is wrong with a light, or nothing. Also what is told of a file's lights.
+struct Fault {
+    std::string_view field;
+    std::string expected, got;
+};
+
+std::string text(const glm::dvec3& v) {
+    return fmt::format("[{}, {}, {}]", v.x, v.y, v.z);
+}
+
+std::optional<Fault> fault(const DistantLight& light) {
+    const double length = glm::length(light.direction);
+    if (!(std::abs(length - 1.0) <= 1e-3))
+        return Fault{"direction", "a direction of length 1",
+                     fmt::format("{} of length {:.6g}", text(light.direction), length)};
+    for (int channel = 0; channel < 3; ++channel) {
+        const double value = light.irradiance[channel];
+        if (!(value >= 0.0 && std::isfinite(value)))
+            return Fault{"irradiance", "irradiance that is finite and not negative", text(light.irradiance)};
+    }
+    // Rounding of sums may leave a whole sphere a little larger.
+    if (!(light.solid_angle >= 0.0 && light.solid_angle <= FullSphere * (1.0 + 1e-9)))
+        return Fault{"solid_angle", "a solid angle from 0 to 4 pi", fmt::format("{}", light.solid_angle)};
+    return std::nullopt;
+}
+
+class LightFileReader {
+public:
+    explicit LightFileReader(const std::filesystem::path& path) : path_(path), json_(path.string()) {}
+
+    LightList read() const {
+        const cubemap::JsonValue root = json_.parse(files::read(path_));
+        const auto& members = json_.object(root, "a light list");
+        known(members, std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
+              "a light list");
+        const cubemap::JsonValue& version = required(root, members, "version");
+        if (const double got = json_.number(version, "\"version\""); got != Version)
+            json_.refuse(version.line, fmt::format("version {}", Version), fmt::format("{}", got));
+        LightList result;
+        if (const auto* value = cubemap::JsonReader::find(members, "environment"))
+            result.environment = json_.string(*value, "\"environment\"");
+        if (const auto* value = cubemap::JsonReader::find(members, "method"))
+            result.method = json_.string(*value, "\"method\"");
+        if (const auto* value = cubemap::JsonReader::find(members, "seed"))
+            result.seed = seed(*value);
+        const cubemap::JsonValue& lights = required(root, members, "lights");
+        for (const cubemap::JsonValue& value : json_.array(lights, "\"lights\""))
+            result.lights.push_back(light(value));
+        if (result.lights.empty())
+            json_.refuse(lights.line, "one light at least", "none");
+        return result;
+    }
+
+private:
+    const cubemap::JsonValue& required(const cubemap::JsonValue& owner,
+                                       const cubemap::JsonValue::Object& members,
+                                       std::string_view field) const {
+        const cubemap::JsonValue* found = cubemap::JsonReader::find(members, field);
+        if (found == nullptr)
+            json_.refuse(owner.line, fmt::format("\"{}\"", field), "none");
+        return *found;
+    }
+
+    void known(const cubemap::JsonValue::Object& members, std::span<const std::string_view> names,
+               std::string_view what) const {
+        for (const auto& [name, value] : members) {
+            if (std::find(names.begin(), names.end(), name) == names.end())
+                json_.refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
+                             fmt::format("\"{}\"", name));
+        }
+    }
+
+    glm::dvec3 vector3(const cubemap::JsonValue& value, std::string_view what) const {
+        const auto& array = json_.array(value, what);
+        if (array.size() != 3)
+            json_.refuse(value.line, fmt::format("{} of 3 numbers", what), fmt::format("{}", array.size()));
+        return {json_.number(array[0], what), json_.number(array[1], what), json_.number(array[2], what)};
+    }
+
+    /// Numbers beyond 2^53 are not whole in JSON.
+    std::uint64_t seed(const cubemap::JsonValue& value) const {
+        const double number = json_.number(value, "\"seed\"");
+        if (!(number >= 0.0 && number <= 0x1p53 && number == std::floor(number)))
+            json_.refuse(value.line, "\"seed\" to be a whole number from 0 to 2^53",
+                         fmt::format("{}", number));
+        return static_cast<std::uint64_t>(number);
+    }
+
+    DistantLight light(const cubemap::JsonValue& value) const {
+        const auto& members = json_.object(value, "a light");
+        known(members, std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"}, "a light");
+        DistantLight result;
+        result.direction = vector3(required(value, members, "direction"), "\"direction\"");
+        result.irradiance = vector3(required(value, members, "irradiance"), "\"irradiance\"");
+        if (const auto* solid_angle = cubemap::JsonReader::find(members, "solid_angle"))
+            result.solid_angle = json_.number(*solid_angle, "\"solid_angle\"");
+        if (const auto wrong = fault(result))
+            json_.refuse(cubemap::JsonReader::find(members, wrong->field)->line, wrong->expected, wrong->got);
+        // What was written by hand or with few digits; our own files stay as they are, bit by bit.
+        if (std::abs(glm::length(result.direction) - 1.0) > 1e-12)
+            result.direction = glm::normalize(result.direction);
+        return result;
+    }
+
+    std::filesystem::path path_;
+    cubemap::JsonReader json_;
+};
+
+} // namespace
+
+LightList load_lights(const std::filesystem::path& path) {
+    return LightFileReader(path).read();
+}
+
+void validate(const LightList& list) {
+    if (list.lights.empty())
+        throw std::invalid_argument("light list: expected one light at least, got none");
+    if (list.seed && *list.seed > (std::uint64_t{1} << 53))
+        throw std::invalid_argument(
+            fmt::format("light list: expected a seed of 2^53 at most, got {}", *list.seed));
+    for (std::size_t i = 0; i < list.lights.size(); ++i) {
+        if (const auto wrong = fault(list.lights[i]))
+            throw std::invalid_argument(
+                fmt::format("light {}: expected {}, got {}", i, wrong->expected, wrong->got));
+    }
+}
+
+std::string json_text(const LightList& list) {
+    validate(list);
+    using Json = nlohmann::ordered_json;
+    const auto array = [](const glm::dvec3& v) {
+        return Json::array({v.x, v.y, v.z});
+    };
+    Json head = {{"version", 1}};
+    if (!list.environment.empty())
+        head["environment"] = list.environment;
+    if (!list.method.empty())
+        head["method"] = list.method;
+    if (list.seed)
+        head["seed"] = *list.seed;
+    try {
+        // One light per line: a list of hundreds stays readable, and an error's line is the light's.
+        std::string result = head.dump(2);
+        result.resize(result.size() - 2); // "\n}"
+        result += ",\n  \"lights\": [";
+        const char* separator = "\n    ";
+        for (const DistantLight& light : list.lights) {
+            const Json value = {{"direction", array(light.direction)},
+                                {"irradiance", array(light.irradiance)},
+                                {"solid_angle", light.solid_angle}};
+            result += separator + value.dump();
+            separator = ",\n    ";
+        }
+        return result + "\n  ]\n}\n";
+    } catch (const Json::exception&) {
+        throw std::invalid_argument("light list: expected names in UTF-8, got other bytes");
+    }
+}
+
+void save_lights(const std::filesystem::path& path, const LightList& list) {
+    const std::string content = json_text(list);
+    files::OutputFile file(path);
+    file.write(std::as_bytes(std::span(content)));
+    file.commit();
+}
+
+} // namespace relumine::lights

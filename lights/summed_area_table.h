@@ -1,0 +1,67 @@
+// Sums over rectangles of an image in constant time.
+// Based on: F. Crow, "Summed-area tables for texture mapping", SIGGRAPH 1984.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "lights/lat_long_grid.h"
+
+namespace relumine::lights {
+
+/// Prefix sums of values of type T (double, or a vector of doubles) over the columns and rows of an image. A sum is off by rounding of
+/// the whole image's sum, about 1e-16 of it, so that of a rectangle of zeros need not be 0 exactly.
+template<typename T>
+class SummedAreaTable {
+public:
+    /// `row_values(y, T* row)` writes the values of a row. O(pixels), in parallel; bitwise the same for any number of threads.
+    template<typename RowValues>
+    SummedAreaTable(std::uint32_t width, std::uint32_t height, const RowValues& row_values);
+
+    /// Over pixels [x0, x1) x [y0, y1).
+    [[nodiscard]] T sum(const PixelRectangle& region) const {
+        return (at(region.x1, region.y1) - at(region.x0, region.y1)) -
+               (at(region.x1, region.y0) - at(region.x0, region.y0));
+    }
+
+private:
+    [[nodiscard]] const T& at(std::uint32_t x, std::uint32_t y) const { return table_[y * stride_ + x]; }
+
+    std::size_t stride_;
+    std::unique_ptr<T[]> table_; ///< [(height + 1) * (width + 1)]: sums over the pixels left of and above
+};
+
+template<typename T>
+template<typename RowValues>
+SummedAreaTable<T>::SummedAreaTable(std::uint32_t width, std::uint32_t height, const RowValues& row_values)
+    : stride_(std::size_t{width} + 1),
+      table_(std::make_unique_for_overwrite<T[]>(stride_ * (std::size_t{height} + 1))) {
+    std::fill_n(table_.get(), stride_, T(0.0));
+    tbb::parallel_for(std::uint32_t{0}, height, [&](std::uint32_t y) {
+        T* row = table_.get() + (std::size_t{y} + 1) * stride_;
+        row[0] = T(0.0);
+        row_values(y, row + 1);
+        for (std::size_t x = 1; x < stride_; ++x)
+            row[x] += row[x - 1];
+    });
+    // 4 KiB of each row at a time: the row above is still in the cache when it is added.
+    constexpr std::size_t Grain = 4096 / sizeof(T);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, stride_, Grain),
+        [&](const tbb::blocked_range<std::size_t>& columns) {
+            for (std::size_t y = 1; y <= height; ++y) {
+                const T* above = table_.get() + (y - 1) * stride_;
+                T* row = table_.get() + y * stride_;
+                for (std::size_t x = columns.begin(); x < columns.end(); ++x)
+                    row[x] += above[x];
+            }
+        },
+        tbb::simple_partitioner{});
+}
+
+} // namespace relumine::lights
