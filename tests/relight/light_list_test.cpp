@@ -110,7 +110,8 @@ TEST(RelighterLights, ThroughTheClustersALightPerTexelIsTheEnvironment) {
     Relighter of_lights(scene.transfer);
     of_lights.set_lights(lights);
     const std::vector<glm::vec3> expected = relight(scene.transfer, environment);
-    EXPECT_LT(relative_l2({expected.begin(), expected.end()}, of_lights.radiance()), 2e-4);
+    const std::vector<glm::dvec3> of_map(expected.begin(), expected.end());
+    EXPECT_LT(relative_l2(of_map, of_lights.radiance()), 2e-4);
 }
 
 TEST(RelighterLights, AnEnvironmentAfterwardsIsAsIfThereHadBeenNone) {
