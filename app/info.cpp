@@ -147,7 +147,7 @@ void add_info(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
     command.add_option("FILE", options->path, ".prt, .exr, .hdr, .obj, .ply, .off or .stl")->required();
     command.add_option("--layout", options->layout, "layout of an environment, where the file does not tell")
-        ->check(CLI::IsMember({"latlong", "cube", "cross"}));
+        ->check(CLI::IsMember(layout_names()));
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }
