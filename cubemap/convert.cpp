@@ -224,7 +224,8 @@ EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target
             fmt::format("convert: a {} cannot be {}x{}", name(target.layout), target.width, target.height));
     if (auto copy = copied(image, target, reorientation))
         return std::move(*copy);
-    const bool grows = natural_resolution(target) > natural_resolution(shape_of(image));
+    // At about the same size there is nothing to make smooth, and hardly room for corrections.
+    const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(shape_of(image));
     // Rounds cost as much as two conversions each. In pictures this large no sun is lost in a pixel any more.
     constexpr std::size_t Large = std::size_t{1} << 21;
     const bool is_large = std::max(image.pixels.size(), std::size_t{target.width} * target.height) > Large;

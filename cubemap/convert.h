@@ -23,8 +23,8 @@ struct Reorientation {
 /// - Where each target pixel shows one source pixel (the faces of a cube in another arrangement, a lat-long turned by whole pixels) pixels
 ///   are copied bit by bit.
 /// - What shrinks is averaged over area: each target pixel is the mean of the source's patches under it.
-/// - What grows (in natural resolution) is interpolated smoothly across all seams and then corrected until the mean over each source pixel's patch is that
-///   pixel again, so that shrinking it back gives the source: with samples never negative, constants constant, total power kept.
+/// - What grows (in natural resolution) is interpolated smoothly across all seams and then corrected, so that the mean over each source pixel's patch is nearly
+///   that pixel again and shrinking it back gives the source: with samples never negative, constants constant, total power kept.
 ///
 /// Bitwise independent of the thread count. Throws std::invalid_argument for sizes that do not fit the layout.
 [[nodiscard]] EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
