@@ -125,6 +125,19 @@ TEST(ProjectionResample, ConstantsStayAndPowerIsKept) {
     }
 }
 
+TEST(ProjectionResample, NothingBecomesNegativeBesideABrightTexel) {
+    CubeMap map(40);
+    for (const Face face : AllFaces)
+        for (std::uint32_t i = 3; i < 40; i += 9)
+            map.at(face, i, 40 - i) = glm::vec3(1e6f);
+    for (const Layout layout :
+         {Layout::AngularMap, Layout::MirrorBall, Layout::Octahedral, Layout::LatLong}) {
+        const ImageSize size = natural_size(layout, 40);
+        for (const glm::vec3& pixel : to_image(map, layout, size.width, size.height).pixels)
+            EXPECT_GE(pixel.x, 0.0f) << name(layout);
+    }
+}
+
 TEST(ProjectionResample, LightAtTheRimSurvives) {
     // The rim is one direction only, and every pixel along it shows it.
     for (const auto& [layout, rim] : {std::pair(Layout::AngularMap, glm::dvec3(0, 0, 1)),
