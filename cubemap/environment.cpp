@@ -78,7 +78,7 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
         why = fmt::format("{} image without envmap attribute", proportions(image.layout));
     }
     if (!fits(image.layout, image.width, image.height))
-        throw std::runtime_error(fmt::format("{}: expected a {} image for a {}, got {}", path,
+        throw std::runtime_error(fmt::format("{}: expected a {} image for layout {}, got {}", path,
                                              proportions(image.layout), name(image.layout), size));
     // The attribute's border rule belongs to the attribute's layout.
     image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;

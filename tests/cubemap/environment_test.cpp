@@ -56,7 +56,7 @@ TEST(Environment, TheAttributeDecidesLayoutAndSampling) {
 
     write(folder / "b.exr", encode_exr(grey(Layout::Cube, Sampling::Borders, 20, 10)));
     EXPECT_EQ(message_of([&] { (void)load_environment(folder / "b.exr"); }),
-              (folder / "b.exr").string() + ": expected a 1:6 image for a cube, got 20x10");
+              (folder / "b.exr").string() + ": expected a 1:6 image for layout cube, got 20x10");
 }
 
 TEST(Environment, TheCallerMayKnowBetter) {
