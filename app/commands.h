@@ -14,6 +14,7 @@ void add_verify(CLI::App& program, Session& session);
 void add_lights(CLI::App& program, Session& session);
 void add_info(CLI::App& program, Session& session);
 void add_generate(CLI::App& program, Session& session);
+void add_env(CLI::App& program, Session& session);
 void add_view(CLI::App& program, Session& session);
 
 } // namespace relumine::app

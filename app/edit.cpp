@@ -42,10 +42,7 @@ struct Options {
 
 void check_saved_environment(const Options& options) {
     const std::string& path = options.saved_environment;
-    const std::string extension = std::filesystem::path(path).extension().string();
-    if (extension != ".exr" && extension != ".hdr")
-        throw std::runtime_error(
-            fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path, extension));
+    cubemap::check_environment_name(path);
     if (std::filesystem::path(path).lexically_normal() ==
         std::filesystem::path(options.output.path).lexically_normal())
         throw std::runtime_error(fmt::format("{}: expected another name than the output's", path));

@@ -1,10 +1,10 @@
 #include "app/environment_options.h"
 
-#include <map>
-#include <utility>
-#include <vector>
+#include <array>
+#include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "cubemap/resample.h"
 
@@ -12,23 +12,30 @@ namespace relumine::app {
 
 namespace {
 
-const std::map<std::string, cubemap::Layout>& layouts() {
-    static const std::map<std::string, cubemap::Layout> Layouts = {{"latlong", cubemap::Layout::LatLong},
-                                                                   {"cube", cubemap::Layout::Cube},
-                                                                   {"cross", cubemap::Layout::VerticalCross}};
-    return Layouts;
-}
+struct NamedLayout {
+    const char* name;
+    cubemap::Layout layout;
+};
+constexpr std::array<NamedLayout, cubemap::AllLayouts.size()> Layouts = {{
+    {"latlong", cubemap::Layout::LatLong},
+    {"cube", cubemap::Layout::Cube},
+    {"strip", cubemap::Layout::HorizontalStrip},
+    {"cross", cubemap::Layout::VerticalCross},
+    {"hcross", cubemap::Layout::HorizontalCross},
+    {"angular", cubemap::Layout::AngularMap},
+    {"mirrorball", cubemap::Layout::MirrorBall},
+    {"octahedral", cubemap::Layout::Octahedral},
+}};
 
 } // namespace
 
 void EnvironmentOptions::add_to(CLI::App& command) {
-    command.add_option("ENV", path, "environment: .exr or .hdr; lat-long, OpenEXR cube or vertical cross")
+    command
+        .add_option("ENV", path,
+                    "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz")
         ->required();
-    std::vector<std::string> names;
-    for (const auto& entry : layouts())
-        names.push_back(entry.first);
     command.add_option("--layout", layout, "layout of the environment, where the file does not tell")
-        ->check(CLI::IsMember(names));
+        ->check(CLI::IsMember(layout_names()));
     command
         .add_option("--face-resolution", face_resolution,
                     "texels along a cube face's edge, 0 for the environment's own")
@@ -74,8 +81,29 @@ LoadedEnvironment load_environment(const EnvironmentOptions& options, const Sess
     return result;
 }
 
+const std::vector<std::string>& layout_names() {
+    static const std::vector<std::string> Names = [] {
+        std::vector<std::string> names;
+        for (const NamedLayout& each : Layouts)
+            names.emplace_back(each.name);
+        return names;
+    }();
+    return Names;
+}
+
+std::string option_name(cubemap::Layout layout) {
+    for (const NamedLayout& each : Layouts)
+        if (each.layout == layout)
+            return each.name;
+    return {};
+}
+
 cubemap::Layout parse_layout(const std::string& name) {
-    return layouts().at(name);
+    for (const NamedLayout& each : Layouts)
+        if (name == each.name)
+            return each.layout;
+    throw std::invalid_argument(
+        fmt::format("layout: expected one of {}, got {}", fmt::join(layout_names(), ", "), name));
 }
 
 } // namespace relumine::app

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -41,6 +42,12 @@ struct LoadedEnvironment {
 
 /// Loads, resamples and rotates. Says on -v what was assumed, and always when pixels were fixed.
 [[nodiscard]] LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session);
+
+/// The names that --layout takes.
+[[nodiscard]] const std::vector<std::string>& layout_names();
+
+/// The name that --layout takes for it.
+[[nodiscard]] std::string option_name(cubemap::Layout layout);
 
 /// The layout of a name given on the command line.
 [[nodiscard]] cubemap::Layout parse_layout(const std::string& name);

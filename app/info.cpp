@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/environment_options.h"
 #include "app/info_environment.h"
 #include "mesh/load.h"
 #include "prt/scene_file.h"
@@ -108,7 +109,7 @@ void add_info(CLI::App& program, Session& session) {
     auto options = std::make_shared<Options>();
     command.add_option("FILE", options->path, ".prt, .exr, .hdr, .obj, .ply, .off or .stl")->required();
     command.add_option("--layout", options->layout, "layout of an environment, where the file does not tell")
-        ->check(CLI::IsMember({"latlong", "cube", "cross"}));
+        ->check(CLI::IsMember(layout_names()));
     command.add_option("--picture", options->picture,
                        "draw an environment: lat-long .png with the axes and the sun marked");
     session.add_common_options(command);

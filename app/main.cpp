@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <exception>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,7 @@ int main(int argc, char** argv) {
     app::add_lights(program, session);
     app::add_info(program, session);
     app::add_generate(program, session);
+    app::add_env(program, session);
     app::add_view(program, session);
 
     // A script's unset variable must not read as 0 or as the current folder.
@@ -46,10 +48,15 @@ int main(int argc, char** argv) {
             return text.empty() ? std::string("expected a value, got ''") : std::string();
         },
         "");
-    for (CLI::App* command : program.get_subcommands({}))
-        for (CLI::Option* option : command->get_options())
-            if (option->get_expected_min() > 0)
-                option->check(not_empty);
+    const std::function<void(CLI::App&)> refuse_empty = [&](CLI::App& app) {
+        for (CLI::App* command : app.get_subcommands({})) {
+            for (CLI::Option* option : command->get_options())
+                if (option->get_expected_min() > 0)
+                    option->check(not_empty);
+            refuse_empty(*command);
+        }
+    };
+    refuse_empty(program);
 
     // The subcommand runs after parsing, so that wrong usage and failed work cannot be confused.
     std::unique_ptr<tbb::global_control> thread_limit;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -46,6 +47,14 @@ relight::Camera camera_of(const OutputOptions& options, const mesh::TriangleMesh
     if (!options.eye.empty())
         camera.eye = parse_vec3("--eye", options.eye);
     return camera;
+}
+
+/// In small letters.
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
 }
 
 /// The factor of --albedo, nothing for the mesh's own colours.
@@ -99,7 +108,7 @@ void OutputOptions::add_to(CLI::App& command) {
 
 void OutputOptions::check(const std::vector<std::string>& inputs) const {
     constexpr std::array<const char*, 5> Known = {".png", ".exr", ".ply", ".glb", ".npy"};
-    const std::string extension = std::filesystem::path(path).extension().string();
+    const std::string extension = extension_of(path);
     if (std::find(Known.begin(), Known.end(), extension) == Known.end())
         throw std::runtime_error(
             fmt::format("{}: expected .png, .exr, .ply, .glb or .npy, got '{}'", path, extension));
@@ -115,7 +124,7 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
                          const cubemap::CubeMap& environment) const {
     const prt::Scene& scene = lit.scene();
     std::vector<glm::vec3> colors = coloured(albedo, scene.mesh, radiance);
-    const std::string extension = std::filesystem::path(path).extension().string();
+    const std::string extension = extension_of(path);
     if (extension == ".png" || extension == ".exr") {
         const relight::Picture picture = relight::draw(scene.mesh, lit.rays(), colors, environment,
                                                        camera_of(*this, scene.mesh), parse_size(size));
@@ -145,7 +154,7 @@ void save_map(const std::string& path, const cubemap::CubeMap& map, double expos
     const cubemap::EnvironmentImage image =
         cubemap::to_image(map, cubemap::Layout::LatLong, 4 * map.resolution, 2 * map.resolution);
     double white_ev = 0.0;
-    if (std::filesystem::path(path).extension() == ".png") {
+    if (extension_of(path) == ".png") {
         // One pixel in a thousand may be brighter than white: a sun must not leave the rest black.
         std::vector<float> brightness;
         for (const glm::vec3& pixel : image.pixels)

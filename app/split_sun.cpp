@@ -6,51 +6,32 @@
 #include <fmt/format.h>
 
 #include "cubemap/sky_angles.h"
+#include "cubemap/sun.h"
+#include "lights/light_file.h"
 #include "lights/sun_split.h"
 
 namespace relumine::app {
 
-namespace {
-
-std::filesystem::path sun_path(std::filesystem::path map_path) {
+std::filesystem::path SunFile::path_beside(std::filesystem::path map_path) {
     return map_path.replace_extension(".sun.json");
 }
 
-nlohmann::ordered_json array(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
+SunFile::SunFile(const std::filesystem::path& map_path) : file_(path_beside(map_path)) {}
 
-} // namespace
-
-SunFile::SunFile(const std::filesystem::path& map_path) : file_(sun_path(map_path)) {}
-
-nlohmann::json SunFile::split(cubemap::EnvironmentImage& image, const std::string& source) {
+nlohmann::json SunFile::split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
+                              const std::string& source) {
     const cubemap::SunSearch found = cubemap::find_sun(image);
-    nlohmann::json figures = write(found, source);
-    lights::remove_sun(image, *found.sun);
-    return figures;
-}
-
-nlohmann::json SunFile::split(cubemap::CubeMap& map, const std::string& source) {
-    const cubemap::SunSearch found = cubemap::find_sun(map);
-    nlohmann::json figures = write(found, source);
-    lights::remove_sun(map, *found.sun);
-    return figures;
-}
-
-nlohmann::json SunFile::write(const cubemap::SunSearch& found, const std::string& source) {
     if (!found.sun)
         throw std::runtime_error(
             fmt::format("{}: expected a sun to split off, got none: {}", source, found.why_none));
-    const lights::DistantLight light = lights::sun_light(*found.sun);
-    const nlohmann::ordered_json list = {
-        {"version", 1},
-        {"environment", std::filesystem::path(source).filename().string()},
-        {"method", "sun"},
-        {"lights", nlohmann::ordered_json::array({{{"direction", array(light.direction)},
-                                                   {"irradiance", array(light.irradiance)},
-                                                   {"solid_angle", light.solid_angle}}})}};
-    const std::string text = list.dump(2) + "\n";
+    lights::remove_sun(image, *found.sun);
+
+    lights::DistantLight light = lights::sun_light(*found.sun);
+    light.direction = world_from_image * light.direction;
+    const std::string text =
+        lights::json_text({.lights = {light},
+                           .environment = std::filesystem::path(source).filename().string(),
+                           .method = "sun"});
     file_.write(std::as_bytes(std::span(text)));
     const cubemap::SkyAngles angles = cubemap::sky_angles(light.direction);
     return {{"file", path()},

@@ -4,26 +4,29 @@
 #include <filesystem>
 #include <string>
 
+#include <glm/mat3x3.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/cube_map.h"
 #include "cubemap/environment.h"
-#include "cubemap/sun.h"
 #include "files/output_file.h"
 
 namespace relumine::app {
 
 /// The file that takes the sun split off a map: "out.exr" has "out.sun.json", a light list of one light (direction, irradiance, solid
-/// angle) in the map's world axes.
+/// angle) in world axes.
 class SunFile {
 public:
+    /// Where it will be.
+    [[nodiscard]] static std::filesystem::path path_beside(std::filesystem::path map_path);
+
     /// Creates a temporary file beside the map's, so that an unwritable folder is found before any work is done.
     explicit SunFile(const std::filesystem::path& map_path);
 
-    /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary file. Returns the sun's figures for
-    /// the session's report. Throws std::runtime_error "source: expected a sun to split off, got none: why"; `source` names the map.
-    nlohmann::json split(cubemap::EnvironmentImage& image, const std::string& source);
-    nlohmann::json split(cubemap::CubeMap& map, const std::string& source);
+    /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary file, its direction carried by
+    /// `world_from_image`. Returns the sun's figures for the session's report. Throws std::runtime_error "source: expected a sun to
+    /// split off, got none: why"; `source` names the map.
+    nlohmann::json split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
+                         const std::string& source);
 
     /// Lets the file appear. To be called when the map without the sun is written.
     void commit() { file_.commit(); }
@@ -31,8 +34,6 @@ public:
     [[nodiscard]] std::string path() const { return file_.target().string(); }
 
 private:
-    nlohmann::json write(const cubemap::SunSearch& found, const std::string& source);
-
     files::OutputFile file_;
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "cubemap/face.h"
@@ -48,6 +49,13 @@ struct CubeMap {
 
 /// The integral of radiance over the sphere, per channel, in double.
 [[nodiscard]] glm::dvec3 total_power(const CubeMap& map);
+
+/// The map turned by a matrix that carries axes to axes, mirror images among them: what was seen in direction w is seen in `turn` w.
+/// Texels go to texels.
+[[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn);
+
+/// The matrix of rotated(): exact for whole quarters.
+[[nodiscard]] glm::dmat3 turn_about_y(double degrees);
 
 /// The map turned about +Y by an angle in degrees: light that came from +Z comes from +X after 90 degrees (counter-clockwise seen
 /// from above, right-handed). Energy is kept as in resample().

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -18,12 +19,15 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// The layout that the proportions suggest.
+/// Width of an octahedral map over a cube face's resolution: pixels as wide as a lat-long's of width 4 R, 4 R / sqrt(pi).
+constexpr double OctahedralWidth = 2.25;
+
+/// The layout that the proportions suggest. Squares do not tell.
 std::optional<Layout> guess_layout(std::uint32_t width, std::uint32_t height) {
     if (width == 2 * std::uint64_t{height})
         return Layout::LatLong;
-    for (const Layout layout : {Layout::Cube, Layout::VerticalCross}) {
-        if (fits(layout, width, height))
+    for (const Layout layout : AllLayouts) {
+        if (has_faces(layout) && fits(layout, width, height))
             return layout;
     }
     return std::nullopt;
@@ -36,9 +40,14 @@ std::string_view proportions(Layout layout) {
     case Layout::Cube:
         return "1:6";
     case Layout::VerticalCross:
-        break;
+        return "3:4";
+    case Layout::HorizontalStrip:
+        return "6:1";
+    case Layout::HorizontalCross:
+        return "4:3";
+    default:
+        return "1:1";
     }
-    return "3:4";
 }
 
 /// Decides layout and sampling and says why.
@@ -56,12 +65,20 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
         const auto layout = guess_layout(image.width, image.height);
         if (!layout)
             throw std::runtime_error(
-                fmt::format("{}: expected a 2:1 lat-long, a 1:6 cube or a 3:4 cross, got {}", path, size));
+                image.width == image.height
+                    ? fmt::format(
+                          "{}: expected --layout angular, mirrorball or octahedral for a square picture "
+                          "(or a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 cross), got {}",
+                          path, size)
+                    : fmt::format(
+                          "{}: expected a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 cross, or a 1:1 "
+                          "picture with --layout, got {}",
+                          path, size));
         image.layout = *layout;
         why = fmt::format("{} image without envmap attribute", proportions(image.layout));
     }
     if (!fits(image.layout, image.width, image.height))
-        throw std::runtime_error(fmt::format("{}: expected a {} image for a {}, got {}", path,
+        throw std::runtime_error(fmt::format("{}: expected a {} image for layout {}, got {}", path,
                                              proportions(image.layout), name(image.layout), size));
     // The attribute's border rule belongs to the attribute's layout.
     image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;
@@ -119,20 +136,73 @@ void fix_bad_pixels(EnvironmentImage& image) {
     image.fixed = true;
 }
 
-} // namespace
+/// Where six files are meant, `{face}` stands for px, nx, ...
+constexpr std::string_view FacePlace = "{face}";
 
-EnvironmentImage load_environment(const std::filesystem::path& path, const LoadOptions& options) {
+ImageFile decode(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
     if (!is_exr(bytes) && !is_hdr(bytes))
         throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}",
                                              path.string(),
                                              bytes.empty() ? "an empty file" : "something else"));
-    ImageFile file = is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
+    return is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
+}
+
+/// Six square files, one below the other.
+ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
+    ImageFile all;
+    for (const std::filesystem::path& path : paths) {
+        ImageFile face = decode(path);
+        if (face.width != face.height)
+            throw std::runtime_error(fmt::format("{}: expected a square cube face, got {}x{}", path.string(),
+                                                 face.width, face.height));
+        if (!all.pixels.empty() && face.width != all.width)
+            throw std::runtime_error(fmt::format("{}: expected {}x{} pixels as in {}, got {}x{}",
+                                                 path.string(), all.width, all.width, paths.front().string(),
+                                                 face.width, face.height));
+        all.width = face.width;
+        all.height += face.height;
+        all.pixels.insert(all.pixels.end(), face.pixels.begin(), face.pixels.end());
+        if (all.remarks.empty())
+            all.remarks = face.remarks;
+    }
+    return all;
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+} // namespace
+
+std::vector<std::filesystem::path> environment_files(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    const std::size_t place = text.find(FacePlace);
+    if (place == std::string::npos)
+        return {path};
+    std::vector<std::filesystem::path> paths;
+    for (const std::string_view face : FaceFileNames)
+        paths.emplace_back(
+            fmt::format("{}{}{}", text.substr(0, place), face, text.substr(place + FacePlace.size())));
+    return paths;
+}
+
+EnvironmentImage load_environment(const std::filesystem::path& path, const LoadOptions& options) {
+    const std::vector<std::filesystem::path> paths = environment_files(path);
+    if (paths.size() > 1 && options.layout && *options.layout != Layout::Cube)
+        throw std::runtime_error(fmt::format("{}: expected layout cube for six files, got {}", path.string(),
+                                             name(*options.layout)));
+    ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
     EnvironmentImage image;
     image.width = file.width;
     image.height = file.height;
     image.pixels = std::move(file.pixels);
     interpret(file, options, path.string(), image);
+    if (paths.size() > 1)
+        image.assumptions = fmt::format("cube of six files, {}", image.assumptions);
 
     image.bad_pixels = find_bad_pixels(image);
     if (image.bad_pixels.count() == 0)
@@ -149,48 +219,89 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
 }
 
 std::uint32_t natural_resolution(const EnvironmentImage& image) {
-    switch (image.layout) {
-    case Layout::LatLong:
-        return std::max(1U, (image.width + 2) / 4);
-    case Layout::Cube:
-        return image.width;
-    case Layout::VerticalCross:
-        break;
-    }
-    return std::max(1U, image.width / 3);
+    if (has_faces(image.layout))
+        return FaceCells(image.layout, image.width, image.height).resolution();
+    if (image.layout == Layout::Octahedral)
+        return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
+    return std::max(1U, (image.width + 2) / 4);
 }
 
-void save_environment(const std::filesystem::path& path, const CubeMap& map, Layout layout) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
+    const std::uint32_t r = face_resolution;
+    switch (layout) {
+    case Layout::LatLong:
+        return {4 * r, 2 * r};
+    case Layout::Cube:
+        return {r, 6 * r};
+    case Layout::VerticalCross:
+        return {3 * r, 4 * r};
+    case Layout::HorizontalStrip:
+        return {6 * r, r};
+    case Layout::HorizontalCross:
+        return {4 * r, 3 * r};
+    case Layout::AngularMap:
+    case Layout::MirrorBall:
+        return {4 * r, 4 * r};
+    case Layout::Octahedral:
+        break;
+    }
+    const auto width = std::max(1U, static_cast<std::uint32_t>(std::lround(OctahedralWidth * r)));
+    return {width, width};
+}
+
+void check_environment_name(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
     if (extension != ".exr" && extension != ".hdr")
         throw std::invalid_argument(
             fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(), extension));
+}
 
-    files::OutputFile file(path);
-    const std::uint32_t resolution = map.resolution;
-    // The specification of the `envmap` attribute puts samples on the borders; it knows no cross, and .hdr no attribute.
-    const Sampling sampling =
-        extension == ".exr" && layout != Layout::VerticalCross ? Sampling::Borders : Sampling::TexelCentres;
-    EnvironmentImage image;
-    switch (layout) {
-    case Layout::LatLong:
-        image = to_image(map, layout, 4 * resolution, 2 * resolution, sampling);
-        break;
-    case Layout::Cube:
-        image = to_image(map, layout, resolution, 6 * resolution, sampling);
-        break;
-    case Layout::VerticalCross:
-        image = to_image(map, layout, 3 * resolution, 4 * resolution, sampling);
-        break;
-    }
+void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {
+    check_environment_name(path);
+    const std::vector<std::filesystem::path> paths = environment_files(path);
+    if (paths.size() > 1 && image.layout != Layout::Cube)
+        throw std::invalid_argument(
+            fmt::format("{}: expected layout cube for six files, got {}", path.string(), name(image.layout)));
+    const auto encode = [&](const EnvironmentImage& part) {
+        return extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
+    };
+    std::vector<std::unique_ptr<files::OutputFile>> outputs;
+    for (const std::filesystem::path& each : paths)
+        outputs.push_back(std::make_unique<files::OutputFile>(each));
     try {
-        file.write(extension == ".exr" ? encode_exr(image) : encode_hdr(image));
+        if (paths.size() == 1) {
+            outputs.front()->write(encode(image));
+        } else {
+            EnvironmentImage face;
+            face.width = face.height = image.width;
+            face.sampling = Sampling::TexelCentres;
+            const std::size_t num_pixels = std::size_t{face.width} * face.width;
+            for (std::size_t i = 0; i < paths.size(); ++i) {
+                const auto first = image.pixels.begin() + static_cast<std::ptrdiff_t>(i * num_pixels);
+                face.pixels.assign(first, first + static_cast<std::ptrdiff_t>(num_pixels));
+                outputs[i]->write(encode(face));
+            }
+        }
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
     }
-    file.commit();
+    for (const auto& output : outputs)
+        output->commit();
+}
+
+Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
+    // The specification of the `envmap` attribute puts samples on the borders; it knows two layouts, and .hdr no attribute.
+    const bool has_attribute = extension_of(path) == ".exr" && environment_files(path).size() == 1 &&
+                               (layout == Layout::LatLong || layout == Layout::Cube);
+    return has_attribute ? Sampling::Borders : Sampling::TexelCentres;
+}
+
+void save_environment(const std::filesystem::path& path, const CubeMap& map, Layout layout) {
+    check_environment_name(path);
+    const ImageSize size = natural_size(layout, map.resolution);
+    for (const std::filesystem::path& each : environment_files(path))
+        files::OutputFile{each}; // whatever cannot be written is found before the work
+    save_image(path, to_image(map, layout, size.width, size.height, default_sampling(path, layout)));
 }
 
 } // namespace relumine::cubemap

@@ -265,9 +265,11 @@ private:
     /// A data window smaller than an environment's display window is the part of it that is not black.
     void fill_display_window(const Imf::Header& header, ImageFile& image) const {
         const Window display = window(header.displayWindow());
-        const bool is_environment = display.width == 2 * std::uint64_t{display.height} ||
-                                    fits(Layout::Cube, display.width, display.height) ||
-                                    fits(Layout::VerticalCross, display.width, display.height);
+        const bool is_environment =
+            display.width == 2 * std::uint64_t{display.height} ||
+            std::any_of(AllLayouts.begin(), AllLayouts.end(), [&](Layout layout) {
+                return layout != Layout::LatLong && fits(layout, display.width, display.height);
+            });
         const Imath::Box2i& inner = header.dataWindow();
         const Imath::Box2i& outer = header.displayWindow();
         const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
@@ -313,6 +315,9 @@ ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) 
         if (message.starts_with(name + ": ")) // our own, complete already
             throw;
         std::replace(message.begin(), message.end(), '\n', ' ');
+        // OpenEXR quotes the name of the stream, which is always "file" here.
+        for (std::size_t at = 0; (at = message.find("\"file\"")) != std::string::npos;)
+            message.replace(at, 6, "it");
         throw std::runtime_error(fmt::format("{}: expected an intact OpenEXR image, got: {}", name, message));
     }
 }
@@ -320,7 +325,8 @@ ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) 
 std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
-    if (image.sampling == Sampling::Borders && image.layout != Layout::VerticalCross)
+    if (image.sampling == Sampling::Borders &&
+        (image.layout == Layout::LatLong || image.layout == Layout::Cube))
         Imf::addEnvmap(header, image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
     Imf::FrameBuffer buffer;
     // OpenEXR reads only, but its frame buffers are for both ways.

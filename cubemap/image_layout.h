@@ -20,6 +20,7 @@ struct ImageShape {
     Sampling sampling = Sampling::TexelCentres;
     std::uint32_t width = 0;
     std::uint32_t height = 0;
+    bool operator==(const ImageShape&) const = default;
 };
 
 /// The borders of n cells side by side over [0, 1], [n + 1] ascending from 0 to 1. At texel centres all cells are equally wide;
@@ -29,13 +30,14 @@ struct ImageShape {
 /// Position in [0, 1] of sample i of n: the cell's centre, or i / (n - 1) with samples on the borders.
 [[nodiscard]] double sample_position(std::uint32_t index, std::uint32_t num_samples, Sampling sampling);
 
-/// True if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n for VerticalCross.
+/// True if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n for VerticalCross and so on; n x n for a
+/// Projection.
 [[nodiscard]] bool fits(Layout layout, std::uint32_t width, std::uint32_t height);
 
-/// The squares of a Cube or VerticalCross image that hold the six faces.
+/// The squares of an image that hold the six faces.
 class FaceCells {
 public:
-    /// Throws std::invalid_argument for proportions that do not fit, or for LatLong.
+    /// Throws std::invalid_argument for proportions that do not fit, or for a layout without faces.
     FaceCells(Layout layout, std::uint32_t width, std::uint32_t height);
 
     [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
@@ -65,6 +67,9 @@ struct PixelPlace {
     double solid_angle = 0.0;  ///< of the patch it stands for
 };
 
+/// The pixel whose sample lies in a unit direction to 1e-6 of a pixel's width, if there is one.
+[[nodiscard]] std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction);
+
 /// Calls `visit(pixel_index, PixelPlace)` for every pixel that shows a part of the sphere (a cross has cells that do not), in an order
 /// that depends on the shape only.
 template<typename Visit>
@@ -84,6 +89,9 @@ struct LatLongColumn {
 };
 [[nodiscard]] std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape);
 
+/// All pixels of a Projection, [height * width]. On the rim of a disc a pixel stands for its part inside, with the mean direction.
+[[nodiscard]] std::vector<PixelPlace> projected_places(const ImageShape& shape);
+
 } // namespace detail
 
 template<typename Visit>
@@ -97,6 +105,14 @@ void for_each_pixel(const ImageShape& shape, const Visit& visit) {
                 visit(index++, PixelPlace{{row.sin_polar * column.sin_longitude, row.cos_polar,
                                            row.sin_polar * column.cos_longitude},
                                           row.height * column.width});
+        }
+        return;
+    }
+    if (!has_faces(shape.layout)) {
+        const std::vector<PixelPlace> places = detail::projected_places(shape);
+        for (std::size_t index = 0; index < places.size(); ++index) {
+            if (places[index].solid_angle > 0.0)
+                visit(index, places[index]);
         }
         return;
     }

@@ -11,6 +11,7 @@
 
 #include "cubemap/image_layout.h"
 #include "cubemap/resample_lat_long.h"
+#include "cubemap/resample_projection.h"
 #include "cubemap/spherical_overlap.h"
 
 namespace relumine::cubemap {
@@ -149,6 +150,8 @@ CubeMap resample(const EnvironmentImage& image, std::uint32_t resolution) {
     check(image);
     if (image.layout == Layout::LatLong)
         return detail::cube_from_lat_long(image, resolution);
+    if (!has_faces(image.layout))
+        return detail::cube_from_projection(image, resolution);
     CubeMap map(resolution);
     const FaceCells cells(image.layout, image.width, image.height);
     resample_faces(
@@ -184,6 +187,10 @@ EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width
     check(image);
     if (layout == Layout::LatLong) {
         fill_lat_long(map, image);
+        return image;
+    }
+    if (!has_faces(layout)) {
+        detail::fill_projection(map, image);
         return image;
     }
     const FaceCells cells(layout, width, height);

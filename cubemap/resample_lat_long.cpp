@@ -57,8 +57,9 @@ double turn_of(Face face) {
 /// of edge and pole). So polygons have their texel's solid angle to a few 1e-6, whatever the resolution.
 class TexelRow {
 public:
-    TexelRow(Face face, std::uint32_t resolution)
+    TexelRow(Face face, std::uint32_t resolution, Sampling sampling)
         : face_(face), turn_(turn_of(face)), polar_(is_polar(face)), resolution_(resolution),
+          borders_(cell_borders(resolution, sampling)),
           negligible_(NegligibleArea * 2.0 / (6.0 * resolution * resolution)) {}
 
     /// Makes row y the current one; cheaper if the current one is y - 1.
@@ -87,7 +88,7 @@ public:
         if (polar_)
             append_reversed(uprights_, x, out);
         // Around u = 0 a polar texel may hold the pole or the seam of longitudes.
-        if (polar_ && 2 * x <= resolution_ && 2 * (x + 1) >= resolution_)
+        if (polar_ && borders_[x] <= 0.5 && borders_[x + 1] >= 0.5)
             unroll(out);
     }
 
@@ -111,9 +112,7 @@ private:
         std::vector<std::size_t> begins;
     };
 
-    [[nodiscard]] double coordinate(std::uint32_t i) const {
-        return 2.0 * (i / static_cast<double>(resolution_)) - 1.0;
-    }
+    [[nodiscard]] double coordinate(std::uint32_t i) const { return 2.0 * borders_[i] - 1.0; }
 
     [[nodiscard]] Point point(double u, double v) const {
         const double squared = u * u + v * v;
@@ -247,7 +246,8 @@ private:
     double turn_;
     bool polar_;
     std::uint32_t resolution_;
-    double negligible_; ///< area that an edge's chords may cut off
+    std::vector<double> borders_; ///< of texels in [0, 1]
+    double negligible_;           ///< area that an edge's chords may cut off
     std::uint32_t next_row_ = 0;
     Edges top_, bottom_, uprights_;
     Polygon raw_;
@@ -268,11 +268,25 @@ std::vector<double> row_heights(const EnvironmentImage& image, Face face) {
     return heights;
 }
 
+/// Solid angles of one face's cells, [R * R] row by row.
+std::vector<double> cell_solid_angles(std::uint32_t resolution, Sampling sampling) {
+    if (sampling == Sampling::TexelCentres)
+        return texel_solid_angles(resolution);
+    const std::vector<double> borders = cell_borders(resolution, sampling);
+    std::vector<double> angles;
+    angles.reserve(static_cast<std::size_t>(resolution) * resolution);
+    for (std::size_t y = 0; y < resolution; ++y) {
+        for (std::size_t x = 0; x < resolution; ++x)
+            angles.push_back(solid_angle(borders[x], borders[y], borders[x + 1], borders[y + 1]));
+    }
+    return angles;
+}
+
 } // namespace
 
-CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution) {
+CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution, Sampling sampling) {
     CubeMap map(resolution);
-    const std::vector<double> solid_angles = texel_solid_angles(resolution);
+    const std::vector<double> solid_angles = cell_solid_angles(resolution, sampling);
     const std::vector<double> column_borders = cell_borders(image.width, image.sampling);
     for (const Face face : AllFaces) {
         const std::vector<double> heights = row_heights(image, face);
@@ -280,7 +294,7 @@ CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resoluti
             GridLines columns(column_borders, true);
             GridLines rows(heights, false);
             GridCutter cutter;
-            TexelRow texels(face, resolution);
+            TexelRow texels(face, resolution, sampling);
             Polygon polygon;
             for (std::uint32_t y = rows_of_texels.begin(); y != rows_of_texels.end(); ++y) {
                 texels.move_to(y);

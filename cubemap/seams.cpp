@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <span>
-#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -186,15 +184,6 @@ void check_edges(const EnvironmentImage& image, const FaceCells& cells, std::vec
     }
 }
 
-/// Nothing for a layout without faces.
-std::optional<FaceCells> face_cells(const EnvironmentImage& image) {
-    try {
-        return FaceCells(image.layout, image.width, image.height);
-    } catch (const std::invalid_argument&) {
-        return std::nullopt;
-    }
-}
-
 } // namespace
 
 std::vector<SeamFault> seam_faults(const EnvironmentImage& image) {
@@ -206,9 +195,10 @@ std::vector<SeamFault> seam_faults(const EnvironmentImage& image) {
         check.wrap();
         check.pole(true);
         check.pole(false);
-    } else if (const auto cells = face_cells(image)) {
-        if (cells->resolution() >= LeastFace)
-            check_edges(image, *cells, faults);
+    } else if (has_faces(image.layout)) {
+        const FaceCells cells(image.layout, image.width, image.height);
+        if (cells.resolution() >= LeastFace)
+            check_edges(image, cells, faults);
     }
     return faults;
 }

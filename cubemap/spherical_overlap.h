@@ -130,7 +130,8 @@ private:
             const glm::dvec2 centre((2.0 * static_cast<double>(column) + 1.0) / n - 1.0,
                                     (2.0 * static_cast<double>(row) + 1.0) / n - 1.0);
             const double overlap = solid_angle_about(centre, scaled_);
-            if (overlap != 0.0)
+            // Slivers may come out negative by rounding, and a bright texel would make a dark pixel negative with them.
+            if (overlap > 0.0)
                 visit(face, static_cast<std::uint32_t>(column / cells_per_texel_),
                       static_cast<std::uint32_t>(row / cells_per_texel_), overlap);
         });

@@ -1,6 +1,7 @@
 #include "relight/picture.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -166,9 +167,12 @@ void save_picture(const std::filesystem::path& path, const Picture& picture, dou
                                                 picture.width, picture.height, picture.pixels.size()));
     const auto scale = static_cast<float>(std::exp2(exposure_ev));
     std::vector<std::byte> bytes;
-    if (path.extension() == ".png") {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    if (extension == ".png") {
         bytes = encode_png(picture, scale);
-    } else if (path.extension() == ".exr") {
+    } else if (extension == ".exr") {
         cubemap::EnvironmentImage image;
         image.width = picture.width;
         image.height = picture.height;

@@ -24,8 +24,8 @@ namespace {
 /// Receivers of one task that traces sharp lights: about 50 microseconds of work, well above the cost of starting a task.
 constexpr std::size_t ReceiversPerTask = 64;
 
-/// How far from 1 the length of a direction read from a file may be.
-constexpr double UnitTolerance = 1e-4;
+/// How far from 1 the length of a light's direction may be, as in files of lights.
+constexpr double UnitTolerance = 1e-3;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -166,7 +166,7 @@ TEST_F(Relight, BadOptionsAreRefused) {
         refuse({"--fov", fov}, 1);
     for (const char* albedo : {"red", "1,2", "nan", "inf", "1,2,3,4", "Mesh"})
         refuse({"--albedo", albedo}, 2);
-    refuse({"--layout", "octahedral"}, 2);
+    refuse({"--layout", "fisheye"}, 2);
     refuse({"--face-resolution", "-1"}, 2);
     refuse({"--face-resolution", "3.5"}, 2);
     for (const char* resolution : {"16385", "4000000000"})

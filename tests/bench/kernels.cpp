@@ -4,6 +4,7 @@
 
 #include <benchmark/benchmark.h>
 
+#include "cubemap/convert.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "lights/place_lights.h"
@@ -59,6 +60,17 @@ void BM_Edit(benchmark::State& state) {
         benchmark::DoNotOptimize(
             relighter.update_region({cubemap::Face::PositiveZ, 100, 60, 113, 73}, radiance));
 }
+void BM_CubeFromLatLong(benchmark::State& state) {
+    cubemap::EnvironmentImage image;
+    image.width = 4096;
+    image.height = 2048;
+    image.pixels.assign(std::size_t{image.width} * image.height, glm::vec3(1.0f));
+    for (auto _ : state)
+        benchmark::DoNotOptimize(
+            cubemap::convert(image, {cubemap::Layout::Cube, cubemap::Sampling::TexelCentres, 1024, 6144}));
+}
+BENCHMARK(BM_CubeFromLatLong)->Unit(benchmark::kMillisecond)->UseRealTime();
+
 BENCHMARK(BM_Edit)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// 64 lights for a lat-long twice as wide as range(1), by method range(0).

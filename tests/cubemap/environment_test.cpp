@@ -41,8 +41,9 @@ TEST(Environment, LayoutsAreToldByTheirProportions) {
     EXPECT_EQ(layout_of(5, 30).first, Layout::Cube);
     EXPECT_EQ(layout_of(12, 16).first, Layout::VerticalCross);
     EXPECT_EQ(message_of([&] { (void)layout_of(10, 10); }),
-              (folder / "a.hdr").string() +
-                  ": expected a 2:1 lat-long, a 1:6 cube or a 3:4 cross, got 10x10");
+              (folder / "a.hdr").string() + ": expected --layout angular, mirrorball or octahedral for a "
+                                            "square picture (or a 2:1 lat-long, a 1:6 or 6:1 "
+                                            "cube, a 3:4 or 4:3 cross), got 10x10");
 }
 
 TEST(Environment, TheAttributeDecidesLayoutAndSampling) {
@@ -55,7 +56,7 @@ TEST(Environment, TheAttributeDecidesLayoutAndSampling) {
 
     write(folder / "b.exr", encode_exr(grey(Layout::Cube, Sampling::Borders, 20, 10)));
     EXPECT_EQ(message_of([&] { (void)load_environment(folder / "b.exr"); }),
-              (folder / "b.exr").string() + ": expected a 1:6 image for a cube, got 20x10");
+              (folder / "b.exr").string() + ": expected a 1:6 image for layout cube, got 20x10");
 }
 
 TEST(Environment, TheCallerMayKnowBetter) {

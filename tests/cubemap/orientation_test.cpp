@@ -2,11 +2,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <numbers>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "cubemap/convert.h"
 #include "cubemap/image_file.h"
 #include "cubemap/resample.h"
 #include "files/output_file.h"
@@ -130,6 +132,27 @@ TEST_F(ExrEnvmapTest, ReadsWhatSaveEnvironmentWrites) {
     paint(image, radiance);
     save_environment(folder_ / "in.exr", resample(image, 64), Layout::Cube);
     EXPECT_LT(largest_error(resample(converted("-l -w 256"), 64)), Blur);
+}
+
+double mean_difference(const EnvironmentImage& a, const EnvironmentImage& b) {
+    double sum = 0.0;
+    for_each_pixel(shape_of(a), [&](std::size_t i, const PixelPlace& place) {
+        sum += place.solid_angle * glm::distance(a.pixels[i], b.pixels[i]);
+    });
+    return sum / (4.0 * std::numbers::pi);
+}
+
+TEST_F(ExrEnvmapTest, ConversionsAreTheirsPixelByPixelBothWays) {
+    if (!has_exrenvmap())
+        GTEST_SKIP() << "needs the program exrenvmap (package openexr)";
+    EnvironmentImage lat_long = black_image(Layout::LatLong, Sampling::Borders, 128);
+    paint(lat_long, radiance);
+    write(lat_long);
+    const EnvironmentImage cube = converted("-c -w 64");
+    EXPECT_LT(mean_difference(cube, convert(lat_long, shape_of(cube))), 0.002);
+    write(cube);
+    const EnvironmentImage back = converted("-l -w 256");
+    EXPECT_LT(mean_difference(back, convert(cube, shape_of(back))), 0.002);
 }
 
 double log_luminance(const glm::vec3& radiance) {

@@ -28,17 +28,14 @@ inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint3
     return image;
 }
 
-/// An image of the layout whose height is `size` (LatLong) or whose faces are `size` (others).
+/// An image of the layout whose height is `size` (LatLong), whose faces are `size`, or whose side is (squares).
 inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint32_t size) {
-    switch (layout) {
-    case Layout::LatLong:
+    if (layout == Layout::LatLong)
         return black_image(layout, sampling, 2 * size, size);
-    case Layout::Cube:
-        return black_image(layout, sampling, size, 6 * size);
-    case Layout::VerticalCross:
-        break;
-    }
-    return black_image(layout, sampling, 3 * size, 4 * size);
+    if (!has_faces(layout))
+        return black_image(layout, sampling, size, size);
+    const ImageSize pixels = natural_size(layout, size);
+    return black_image(layout, sampling, pixels.width, pixels.height);
 }
 
 inline ImageShape shape_of(const EnvironmentImage& image) {

@@ -1,0 +1,284 @@
+#include <cstdio>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/commands.h"
+#include "app/environment_options.h"
+#include "app/output_options.h"
+#include "app/split_sun.h"
+#include "cubemap/convention.h"
+#include "cubemap/convert.h"
+#include "cubemap/image_layout.h"
+#include "cubemap/statistics.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct Options {
+    std::string input;
+    std::string output;
+    std::string layout; ///< of the input; empty: as the file says
+    std::string from = "openexr";
+    std::string to_layout; ///< empty: what `to` usually reads
+    std::string to = "openexr";
+    std::string size; ///< W or WxH
+    std::uint32_t face_resolution = 0;
+    std::string samples = "auto";
+    double rotate_degrees = 0.0;
+    bool fix = false;
+    bool split_sun = false;
+};
+
+/// The layouts' names on the command line, in words.
+std::string layouts_of(const cubemap::Convention& convention) {
+    std::vector<std::string> names;
+    for (const cubemap::Layout layout : convention.layouts)
+        names.push_back(option_name(layout));
+    return fmt::format("{}", fmt::join(names, ", "));
+}
+
+cubemap::EnvironmentImage load(const Options& options, const cubemap::Convention& from,
+                               const Session& session) {
+    cubemap::LoadOptions load_options{.fix_bad_pixels = options.fix};
+    if (!options.layout.empty()) {
+        load_options.layout = parse_layout(options.layout);
+        if (!from.reads(*load_options.layout))
+            throw CLI::ValidationError("--layout", fmt::format("expected {} with --from {}, got {}",
+                                                               layouts_of(from), from.name, options.layout));
+    } else if (from.layouts.size() == 1) {
+        load_options.layout = from.layouts.front();
+    }
+    cubemap::EnvironmentImage image = cubemap::load_environment(options.input, load_options);
+    if (!from.reads(image.layout))
+        throw std::runtime_error(fmt::format("{}: expected {} with --from {}, got a {}", options.input,
+                                             layouts_of(from), from.name, cubemap::name(image.layout)));
+    // Programs other than OpenEXR's own do not look at the attribute.
+    if (!from.has_attribute && image.sampling == cubemap::Sampling::Borders) {
+        image.sampling = cubemap::Sampling::TexelCentres;
+        image.assumptions = fmt::format("{} as {} reads it, samples at texel centres",
+                                        cubemap::name(image.layout), from.name);
+    }
+    session.detail(fmt::format("{}: {}", options.input, image.assumptions));
+    if (image.fixed)
+        session.say(fmt::format("{}: replaced {} bad pixels", options.input, image.bad_pixels.count()));
+    return image;
+}
+
+/// --size: W, or WxH.
+std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
+    if (text.empty())
+        return std::nullopt;
+    unsigned width = 0;
+    unsigned height = 0;
+    char rest = 0;
+    const int found = std::sscanf(text.c_str(), "%ux%u%c", &width, &height,
+                                  &rest); // NOLINT(cert-err34-c): checked by the count
+    if ((found != 2 && !(found == 1 && text.find('x') == std::string::npos)) || text.front() == '-' ||
+        text != (found == 2 ? fmt::format("{}x{}", width, height) : fmt::format("{}", width)))
+        throw CLI::ValidationError("--size", fmt::format("expected W or WxH, got '{}'", text));
+    return cubemap::ImageSize{width, found == 2 ? height : 0};
+}
+
+/// Throws what a layout cannot be.
+cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layout) {
+    constexpr std::uint64_t MostPixels = std::uint64_t{1} << 28; // 3 GB
+    if (!cubemap::fits(layout, size.width, size.height))
+        throw CLI::ValidationError("--size", fmt::format("expected the proportions of a {}, got {}x{}",
+                                                         cubemap::name(layout), size.width, size.height));
+    if (std::uint64_t{size.width} * size.height > MostPixels)
+        throw CLI::ValidationError("--size", fmt::format("expected at most {} pixels, got {}x{}", MostPixels,
+                                                         size.width, size.height));
+    return size;
+}
+
+cubemap::ImageSize target_size(const Options& options, const cubemap::EnvironmentImage& image,
+                               cubemap::Layout layout) {
+    const auto size = parse_size(options.size);
+    if (size && options.face_resolution != 0)
+        throw CLI::ValidationError("--size", "expected either --size or --face-resolution");
+    if (size) {
+        if (size->height != 0)
+            return checked(*size, layout);
+        // The height that belongs to a width.
+        const cubemap::ImageSize unit = layout == cubemap::Layout::LatLong ? cubemap::ImageSize{2, 1}
+                                        : cubemap::has_faces(layout)       ? cubemap::natural_size(layout, 1)
+                                                                           : cubemap::ImageSize{1, 1};
+        if (size->width % unit.width != 0)
+            throw CLI::ValidationError("--size",
+                                       fmt::format("expected a multiple of {} as the width of a {}, got {}",
+                                                   unit.width, cubemap::name(layout), size->width));
+        const std::uint64_t height = std::uint64_t{size->width} / unit.width * unit.height;
+        return checked({size->width, static_cast<std::uint32_t>(std::min<std::uint64_t>(
+                                         height, std::numeric_limits<std::uint32_t>::max()))},
+                       layout);
+    }
+    if (options.face_resolution != 0) {
+        constexpr std::uint32_t Largest = 16384;
+        if (options.face_resolution > Largest)
+            throw CLI::ValidationError("--face-resolution", fmt::format("expected 1 to {}, got {}", Largest,
+                                                                        options.face_resolution));
+        return checked(cubemap::natural_size(layout, options.face_resolution), layout);
+    }
+    if (layout == image.layout)
+        return {image.width, image.height};
+    const bool same_faces = cubemap::has_faces(layout) && cubemap::has_faces(image.layout);
+    return cubemap::natural_size(layout, same_faces ? cubemap::natural_resolution(image)
+                                                    : cubemap::conversion_resolution(image));
+}
+
+cubemap::Layout target_layout(const Options& options, const cubemap::EnvironmentImage& image,
+                              const cubemap::Convention& to) {
+    const bool six_files = cubemap::environment_files(options.output).size() > 1;
+    cubemap::Layout layout = to.has_attribute ? image.layout : to.usual_layout;
+    if (six_files)
+        layout = cubemap::Layout::Cube;
+    if (!options.to_layout.empty())
+        layout = parse_layout(options.to_layout);
+    if (!to.reads(layout))
+        throw CLI::ValidationError("--to-layout", fmt::format("expected {} with --to {}, got {}",
+                                                              layouts_of(to), to.name, option_name(layout)));
+    if (six_files && layout != cubemap::Layout::Cube)
+        throw CLI::ValidationError("--to-layout",
+                                   fmt::format("expected cube for six files, got {}", option_name(layout)));
+    return layout;
+}
+
+nlohmann::json described(const cubemap::EnvironmentImage& image, const cubemap::Convention& convention) {
+    const glm::dvec3 mean = cubemap::statistics(image).mean_radiance;
+    return {{"layout", cubemap::name(image.layout)},
+            {"convention", convention.name},
+            {"width", image.width},
+            {"height", image.height},
+            {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
+            {"mean_radiance", {mean.x, mean.y, mean.z}}};
+}
+
+void run(const Options& options, Session& session) {
+    const cubemap::Convention& from = *cubemap::find_convention(options.from);
+    const cubemap::Convention& to = *cubemap::find_convention(options.to);
+    cubemap::check_environment_name(options.output);
+    static_cast<void>(parse_size(options.size));
+    std::vector<std::string> inputs;
+    for (const auto& path : cubemap::environment_files(options.input))
+        inputs.push_back(path.string());
+    for (const auto& path : cubemap::environment_files(options.output))
+        check_output(path.string(), inputs);
+    std::optional<SunFile> sun_file;
+    if (options.split_sun) {
+        check_output(SunFile::path_beside(options.output).string(), inputs);
+        sun_file.emplace(options.output);
+    }
+
+    Stopwatch watch;
+    cubemap::EnvironmentImage image = load(options, from, session);
+    const double seconds_load = watch.lap();
+    session.poll();
+
+    const cubemap::Layout layout = target_layout(options, image, to);
+    const cubemap::ImageSize size = target_size(options, image, layout);
+    cubemap::Sampling sampling = to.has_attribute ? cubemap::default_sampling(options.output, layout)
+                                                  : cubemap::Sampling::TexelCentres;
+    if (options.samples == "centres")
+        sampling = cubemap::Sampling::TexelCentres;
+    nlohmann::json result = {{"input", described(image, from)}};
+    watch.lap();
+    if (from.swaps_z_faces)
+        cubemap::swap_z_faces(image);
+    const cubemap::Reorientation turn = {.world_from_source = from.world_from(image.layout),
+                                         .degrees_about_y = options.rotate_degrees,
+                                         .world_from_target = to.world_from(layout)};
+    if (sun_file)
+        result["sun"] =
+            sun_file->split(image, turn.world_from_target * turn.target_from_source(), options.input);
+    cubemap::EnvironmentImage converted =
+        cubemap::convert(image, {layout, sampling, size.width, size.height}, turn);
+    if (to.swaps_z_faces)
+        cubemap::swap_z_faces(converted);
+    const double seconds_convert = watch.lap();
+    session.poll();
+    cubemap::save_image(options.output, converted);
+    if (sun_file)
+        sun_file->commit();
+    const double seconds_save = watch.lap();
+
+    session.say(fmt::format("{}: {} {} x {}, as {} reads it", options.output, cubemap::name(layout),
+                            size.width, size.height, to.name));
+    if (sun_file)
+        session.say(fmt::format("{}: the sun, {:.2g} % of the light", sun_file->path(),
+                                100.0 * result["sun"]["share_of_power"].get<double>()));
+    result["output"] = described(converted, to);
+    result["assumptions"] = image.assumptions;
+    result["seconds_load"] = seconds_load;
+    result["seconds_convert"] = seconds_convert;
+    result["seconds_save"] = seconds_save;
+    session.report(result);
+}
+
+void add_convert(CLI::App& group, Session& session) {
+    CLI::App& command = *group.add_subcommand("convert", "from one layout and program to another");
+    auto options = std::make_shared<Options>();
+    std::vector<std::string> names;
+    std::string list = "\n\nCONVENTIONS (u to the right, v down, both in [0, 1]; docs/environments.md)\n";
+    for (const cubemap::Convention& convention : cubemap::conventions()) {
+        names.emplace_back(convention.name);
+        list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
+    }
+    command.footer(list);
+    command
+        .add_option("IN", options->input,
+                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
+        ->required();
+    command.add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
+        ->required();
+    command.add_option("--layout", options->layout, "layout of IN, where the file does not tell")
+        ->check(CLI::IsMember(layout_names()));
+    command.add_option("--from", options->from, "whose convention IN follows")
+        ->check(CLI::IsMember(names))
+        ->capture_default_str();
+    command
+        .add_option("--to-layout", options->to_layout,
+                    "layout of OUT (IN's; with --to, what that program reads)")
+        ->check(CLI::IsMember(layout_names()));
+    command.add_option("--to", options->to, "whose convention OUT follows")
+        ->check(CLI::IsMember(names))
+        ->capture_default_str();
+    command.add_option("--size", options->size,
+                       "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face)");
+    command.add_option("--face-resolution", options->face_resolution,
+                       "the same as a cube face: a lat-long gets 4R x 2R pixels");
+    command
+        .add_option(
+            "--samples", options->samples,
+            "centres: at texel centres and without the envmap attribute, even in OpenEXR's lat-long and cube")
+        ->check(CLI::IsMember({"auto", "centres"}))
+        ->capture_default_str();
+    command
+        .add_option("--rotate", options->rotate_degrees,
+                    "turn the environment about +Y, degrees: +Z goes to +X at 90")
+        ->check(number_between(-36000.0, 36000.0))
+        ->capture_default_str();
+    command.add_flag(
+        "--split-sun", options->split_sun,
+        "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a light, in world axes");
+    command.add_flag("--fix-env", options->fix,
+                     "replace NaN and negative radiance by 0, infinite by the largest finite");
+    session.add_common_options(command);
+    command.callback([options, &session] { run(*options, session); });
+}
+
+} // namespace
+
+void add_env(CLI::App& program, Session& session) {
+    CLI::App& group = *program.add_subcommand("env", "environments: `env convert`");
+    group.require_subcommand(1);
+    add_convert(group, session);
+}
+
+} // namespace relumine::app
