@@ -22,7 +22,8 @@ struct EnvironmentOptions {
     bool fix = false;
     double rotate_degrees = 0.0;
 
-    void add_to(CLI::App& command);
+    /// Adds ENV and its options; returns ENV, which is required until its caller says otherwise.
+    CLI::Option* add_to(CLI::App& command);
 };
 
 /// An environment ready to light, and where the time went.

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -10,11 +13,16 @@
 
 #include "app/commands.h"
 #include "app/environment_options.h"
+#include "app/light_comparison.h"
+#include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "lights/light_export.h"
 #include "lights/place_lights.h"
 #include "lights/region_picture.h"
+#include "relight/exact.h"
+#include "relight/light_packets.h"
 #include "relight/picture.h"
+#include "relight/relighter.h"
 
 namespace relumine::app {
 
@@ -26,7 +34,11 @@ struct Options {
     std::string picture;
     std::string format; ///< empty: by the output's extension
     std::string method = std::string(lights::name(lights::Method::VarianceCut));
-    std::size_t num_lights = 64;
+    std::vector<std::size_t> numbers = {64};
+    std::string scene;   ///< .prt: the lights' error on it is said; the transfer method chooses for it
+    std::string compare; ///< .prt: all methods are compared on it
+    std::string plot;
+    std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
     lights::ExportOptions export_options;
 };
@@ -45,6 +57,10 @@ lights::LightFormat format_of(const Options& options) {
 
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const Options& options) {
+    if (options.numbers.size() != 1)
+        throw CLI::ValidationError("--number", "expected one number of lights, or --compare");
+    if (!options.plot.empty())
+        throw CLI::ValidationError("--plot", "expected --compare with it");
     if (options.path.empty() && options.picture.empty())
         throw CLI::RequiredError("-o or --picture");
     if (!options.path.empty()) {
@@ -75,23 +91,84 @@ cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, const
     return lights::lat_long_of(cube_map_of(image, options));
 }
 
-lights::Placement place(const Options& options, lights::Method method, const cubemap::EnvironmentImage& map) {
+/// A scene under the environment, for what depends on both.
+struct Lit {
+    LitScene scene;
+    relight::Relighter relighter;
+
+    Lit(const std::string& path, const cubemap::CubeMap& environment)
+        : scene({.path = path}), relighter(scene.scene().transfer, scene.shadow_rays()) {
+        relighter.set_environment(environment);
+    }
+
+    /// Relative L2 difference of what the lights give to all receivers, traced, from what the environment gives.
+    [[nodiscard]] double error(std::span<const lights::DistantLight> list) const {
+        const prt::Receivers receivers = prt::vertex_receivers(scene.scene().mesh);
+        std::vector<std::uint32_t> all(receivers.size());
+        std::iota(all.begin(), all.end(), 0u);
+        const std::vector<glm::vec3> under_lights = [&] {
+            const auto radiance = relight::radiance_under(list, receivers.normals, all, scene.shadow_rays());
+            return std::vector<glm::vec3>(radiance.begin(), radiance.end());
+        }();
+        const std::span<const glm::vec3> environment = relighter.radiance();
+        return relight::compare(all, std::vector<glm::dvec3>(environment.begin(), environment.end()),
+                                under_lights)
+            .relative_l2;
+    }
+};
+
+lights::Placement place(const Options& options, const cubemap::EnvironmentImage& map, const Lit* lit,
+                        Session& session) {
+    const std::size_t count = options.numbers.front();
     try {
-        return lights::place(method, map, options.num_lights, options.seed);
+        if (options.method == TransferMethod)
+            return {.lights = lights_for_scene(lit->relighter, count, session), .regions = {}};
+        return lights::place(*lights::method_named(options.method), map, count, options.seed);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", options.environment.path, error.what()));
     }
 }
 
-void run(const Options& options, const Session& session) {
+void compare(const Options& options, Session& session) {
+    if (!options.path.empty() || !options.picture.empty() || !options.scene.empty())
+        throw CLI::ValidationError("--compare", "expected neither -o nor --picture nor --scene with it");
+    if (!options.plot.empty()) {
+        if (std::filesystem::path(options.plot).extension() != ".svg")
+            throw std::runtime_error(fmt::format("{}: expected .svg", options.plot));
+        check_output(options.plot, {options.environment.path, options.compare});
+    }
+    compare_methods({.scene = options.compare,
+                     .numbers = options.numbers,
+                     .seed = options.seed,
+                     .num_samples = options.num_samples,
+                     .plot = options.plot},
+                    options.environment, session);
+}
+
+void run(const Options& options, Session& session) {
+    if (!options.compare.empty()) {
+        compare(options, session);
+        return;
+    }
     check_outputs(options);
-    const lights::Method method = *lights::method_named(options.method);
+    if (options.method == TransferMethod && options.scene.empty())
+        throw CLI::ValidationError("--method", "expected --scene SCENE.prt with transfer");
     Stopwatch watch;
     const cubemap::EnvironmentImage map = load_lat_long(options.environment, session);
     const double seconds_load = watch.lap();
     session.poll();
-    const lights::Placement placement = place(options, method, map);
+    std::optional<Lit> lit;
+    if (!options.scene.empty()) {
+        EnvironmentOptions turned = options.environment;
+        turned.rotate_degrees = 0.0; // load_lat_long() has done that
+        lit.emplace(options.scene, cube_map_of(map, turned));
+    }
+    watch.lap();
+    const lights::Placement placement = place(options, map, lit ? &*lit : nullptr, session);
     const double seconds_place = watch.lap();
+    if (placement.lights.empty())
+        throw std::runtime_error(fmt::format("{}: expected light that reaches {}, got none",
+                                             options.environment.path, options.scene));
     session.poll();
 
     if (!options.path.empty()) {
@@ -99,7 +176,7 @@ void run(const Options& options, const Session& session) {
                                .environment =
                                    std::filesystem::path(options.environment.path).filename().string(),
                                .method = options.method};
-        if (method == lights::Method::Importance)
+        if (options.method == lights::name(lights::Method::Importance))
             list.seed = options.seed;
         lights::export_lights(options.path, list, format_of(options), options.export_options);
     }
@@ -122,15 +199,22 @@ void run(const Options& options, const Session& session) {
     session.say(
         fmt::format("power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
                     power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
-    session.report({{"method", options.method},
-                    {"lights", placement.lights.size()},
-                    {"width", map.width},
-                    {"height", map.height},
-                    {"power", {power.r, power.g, power.b}},
-                    {"smallest_share", scale * *dimmest},
-                    {"largest_share", scale * *brightest},
-                    {"seconds_load", seconds_load},
-                    {"seconds_place", seconds_place}});
+    nlohmann::json result = {{"method", options.method},
+                             {"lights", placement.lights.size()},
+                             {"width", map.width},
+                             {"height", map.height},
+                             {"power", {power.r, power.g, power.b}},
+                             {"smallest_share", scale * *dimmest},
+                             {"largest_share", scale * *brightest},
+                             {"seconds_load", seconds_load},
+                             {"seconds_place", seconds_place}};
+    if (lit) {
+        const double error = lit->error(placement.lights);
+        session.say(fmt::format("{} lights: {:.2g} % relative L2 on this asset", placement.lights.size(),
+                                100.0 * error));
+        result["relative_l2"] = error;
+    }
+    session.report(result);
 }
 
 } // namespace
@@ -144,17 +228,28 @@ void add_lights(CLI::App& program, Session& session) {
                        "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf");
     command.add_option("--picture", options->picture,
                        "the environment with regions and lights drawn: .png or .exr");
-    command.add_option("-n,--number", options->num_lights, "how many lights")
+    command.add_option("-n,--number", options->numbers, "how many lights; with --compare several, 16,64,256")
+        ->delimiter(',')
         ->check(number_between(1, 1e9))
         ->capture_default_str();
+    command.add_option("--scene", options->scene,
+                       "scene file: says how well the lights light it; --method transfer chooses for it");
+    command.add_option("--compare", options->compare,
+                       "scene file: a table of all methods' errors on it against exact integration");
+    command.add_option("--samples", options->num_samples, "--compare: receivers chosen at random, 0 for all")
+        ->check(number_between(0, 1e9))
+        ->capture_default_str();
+    command.add_option("--plot", options->plot, "--compare: error against number of lights, .svg");
     std::vector<std::string> methods;
     methods.reserve(lights::AllMethods.size());
     for (const lights::Method method : lights::AllMethods)
         methods.emplace_back(lights::name(method));
+    methods.emplace_back(TransferMethod);
     command
         .add_option("--method", options->method,
                     "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
-                    "close together (Viriyothai and Debevec); importance: random directions, stratified")
+                    "close together (Viriyothai and Debevec); importance: random directions, stratified; "
+                    "transfer: those that light --scene most like the environment")
         ->check(CLI::IsMember(methods))
         ->capture_default_str();
     command.add_option("--seed", options->seed, "of importance sampling")

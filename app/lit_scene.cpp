@@ -1,17 +1,51 @@
 #include "app/lit_scene.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "mesh/load.h"
+#include "prt/receivers.h"
 
 namespace relumine::app {
 
 void SceneOptions::add_to(CLI::App& command) {
-    command.add_option("SCENE", path, "scene file from `relumine precompute`")->required();
+    command
+        .add_option("SCENE", path,
+                    mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
+                             : "scene file from `relumine precompute`")
+        ->required();
     command.add_flag("--clusters-only", clusters_only,
                      "light the sun through its cluster too, without shadow rays of its own");
 }
 
+namespace {
+
+prt::Scene load(const SceneOptions& options) {
+    std::string extension = std::filesystem::path(options.path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const bool is_mesh =
+        extension == ".obj" || extension == ".ply" || extension == ".off" || extension == ".stl";
+    if (!options.mesh_too || !is_mesh)
+        return prt::load_scene(options.path);
+    if (options.clusters_only)
+        throw std::runtime_error(
+            fmt::format("{}: expected a scene file with --clusters-only, got a mesh", options.path));
+    prt::Scene scene;
+    scene.mesh = mesh::load(options.path);
+    scene.settings.bias = prt::automatic_bias(scene.mesh);
+    return scene;
+}
+
+} // namespace
+
 LitScene::LitScene(const SceneOptions& options)
-    : scene_(prt::load_scene(options.path)), rays_(scene_.mesh), clusters_only_(options.clusters_only) {}
+    : scene_(load(options)), rays_(scene_.mesh), clusters_only_(options.clusters_only) {}
 
 relight::ShadowRays LitScene::shadow_rays() const {
     if (clusters_only_)

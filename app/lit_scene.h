@@ -13,8 +13,9 @@ namespace relumine::app {
 
 /// The SCENE argument and its options.
 struct SceneOptions {
-    std::string path;
+    std::string path = {};
     bool clusters_only = false;
+    bool mesh_too = false; ///< a mesh will do: lit without clusters
 
     void add_to(CLI::App& command);
 };
@@ -27,6 +28,8 @@ public:
     LitScene& operator=(const LitScene&) = delete;
 
     [[nodiscard]] const prt::Scene& scene() const { return scene_; }
+    /// False for a mesh: its transfer is empty.
+    [[nodiscard]] bool has_clusters() const { return scene_.transfer.num_receivers() != 0; }
     [[nodiscard]] const prt::RayScene& rays() const { return rays_; }
     /// For the Relighter: tracing of sharp lights, unless --clusters-only.
     [[nodiscard]] relight::ShadowRays shadow_rays() const;

@@ -1,5 +1,7 @@
 #include <filesystem>
 #include <memory>
+#include <numeric>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -9,6 +11,8 @@
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
+#include "lights/light_file.h"
+#include "relight/light_packets.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {
@@ -16,15 +20,18 @@ namespace relumine::app {
 namespace {
 
 struct Options {
-    SceneOptions scene;
+    SceneOptions scene{.mesh_too = true};
     EnvironmentOptions environment;
+    std::string lights; ///< a light list in place of an environment
     OutputOptions output;
 };
 
-void run(const Options& options, Session& session) {
-    options.output.check({options.scene.path, options.environment.path});
+void light_with_environment(const Options& options, Session& session) {
     Stopwatch watch;
     const LitScene lit(options.scene);
+    if (!lit.has_clusters())
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene file (`relumine precompute`) or --lights, got a mesh", options.scene.path));
     const prt::Scene& scene = lit.scene();
     const double seconds_load_scene = watch.lap();
     session.poll();
@@ -59,14 +66,67 @@ void run(const Options& options, Session& session) {
                     {"seconds_output", seconds_output}});
 }
 
+/// Radiance of all vertices, each light with shadow rays of its own, or through its cluster.
+std::vector<glm::vec3> radiance_under(const lights::LightList& list, const LitScene& lit) {
+    if (lit.has_clusters()) {
+        relight::Relighter relighter(lit.scene().transfer, lit.shadow_rays());
+        relighter.set_lights(list.lights);
+        return {relighter.radiance().begin(), relighter.radiance().end()};
+    }
+    const prt::Receivers receivers = prt::vertex_receivers(lit.scene().mesh);
+    std::vector<std::uint32_t> all(receivers.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const std::vector<glm::dvec3> radiance =
+        relight::radiance_under(list.lights, receivers.normals, all, lit.shadow_rays());
+    return {radiance.begin(), radiance.end()};
+}
+
+void light_with_list(const Options& options, Session& session) {
+    Stopwatch watch;
+    const lights::LightList list = lights::load_lights(options.lights);
+    const LitScene lit(options.scene);
+    const double seconds_load_scene = watch.lap();
+    session.poll();
+    const std::vector<glm::vec3> radiance = radiance_under(list, lit);
+    const double seconds_light = watch.lap();
+    session.poll();
+    options.output.save(lit, radiance, cubemap::CubeMap(1)); // nothing but lights: a black background
+    const double seconds_output = watch.lap();
+
+    session.say(
+        fmt::format("{}: {} receivers under {} lights of {} in {:.1f} ms, {}", options.output.path,
+                    radiance.size(), list.lights.size(), options.lights, 1e3 * seconds_light,
+                    options.scene.clusters_only ? "through the clusters" : "each with its shadow rays"));
+    session.report({{"receivers", radiance.size()},
+                    {"lights", list.lights.size()},
+                    {"traced", !options.scene.clusters_only},
+                    {"seconds_load_scene", seconds_load_scene},
+                    {"seconds_light", seconds_light},
+                    {"seconds_output", seconds_output}});
+}
+
+void run(const Options& options, Session& session) {
+    if (options.environment.path.empty() == options.lights.empty())
+        throw CLI::ValidationError("relight", "expected either ENV or --lights");
+    const bool with_list = !options.lights.empty();
+    options.output.check({options.scene.path, with_list ? options.lights : options.environment.path});
+    if (with_list)
+        light_with_list(options, session);
+    else
+        light_with_environment(options, session);
+}
+
 } // namespace
 
 void add_relight(CLI::App& program, Session& session) {
-    CLI::App& command =
-        *program.add_subcommand("relight", "light a scene with an environment: a picture, a mesh or numbers");
+    CLI::App& command = *program.add_subcommand(
+        "relight", "light a scene with an environment or a light list: a picture, a mesh or numbers");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
-    options->environment.add_to(command);
+    options->environment.add_to(command)->required(false);
+    command.add_option(
+        "--lights", options->lights,
+        "in place of ENV: a light list (.json, from `relumine lights`), a shadow ray for each light");
     options->output.add_to(command);
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });

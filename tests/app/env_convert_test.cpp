@@ -90,6 +90,30 @@ TEST_F(EnvConvert, ConventionsThereAndBackLightTheSame) {
     EXPECT_EQ(lit("same.hdr"), expected); // columns were moved, nothing else
 }
 
+// What lit the scene before is in the sun's file and the map without it, in whatever axes the map is written.
+TEST_F(EnvConvert, SplitsTheSunOff) {
+    make_scene();
+    succeed({"generate", "sun_sky", "-o", ".", "--face-resolution", "64", "-q"});
+    const std::vector<float> whole = lit("sun_sky.exr");
+    for (const std::string to : {"openexr", "blender", "opengl"}) {
+        const auto report =
+            succeed({"env", "convert", "sun_sky.exr", "-o", "sky.exr", "--to", to, "--split-sun", "--json"})
+                .json();
+        EXPECT_GT(report["sun"]["share_of_power"].get<double>(), 0.3);
+        EXPECT_EQ(report["sun"]["file"], "sky.sun.json");
+        succeed({"env", "convert", "sky.exr", "-o", "back.exr", "--from", to, "-q"});
+        const std::vector<float> sky = lit("back.exr");
+        succeed({"relight", "mesh.obj", "--lights", "sky.sun.json", "-o", "sun.npy", "-q"});
+        const auto sun = npy_values(read("sun.npy"));
+        ASSERT_EQ(sun.size(), whole.size());
+        for (std::size_t i = 0; i < whole.size(); ++i)
+            EXPECT_NEAR(sky[i] + sun[i][1], whole[i], 0.02f * whole[2]) << to << " vertex " << i;
+    }
+    write("white.hdr", white_hdr());
+    fail({"env", "convert", "white.hdr", "-o", "white.exr", "--split-sun"},
+         {"white.hdr: expected a sun to split off"});
+}
+
 TEST_F(EnvConvert, SaysWhatIsWrong) {
     write("env.hdr", white_hdr());
     write("square.hdr", hdr_file(32, 32, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));

@@ -123,5 +123,72 @@ TEST_F(Lights, ABlackMapGivesBlackLights) {
     EXPECT_EQ(report["lights"], 128);
 }
 
+TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
+    write("mesh.obj", octahedron_obj());
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    const auto transfer = succeed({"lights", "lamp.hdr", "-n", "4", "--method", "transfer", "--scene",
+                                   "scene.prt", "-o", "lights.json", "--json"})
+                              .json();
+    EXPECT_LE(transfer["lights"].get<int>(), 4);
+    EXPECT_LT(transfer["relative_l2"].get<double>(), 0.05);
+    const Result said =
+        succeed({"lights", "lamp.hdr", "-n", "4", "--scene", "scene.prt", "-o", "lights.json"});
+    EXPECT_THAT(said.out, HasSubstr("% relative L2 on this asset"));
+    misuse({"lights", "lamp.hdr", "--method", "transfer", "-o", "lights.json"},
+           "expected --scene SCENE.prt with transfer");
+}
+
+TEST_F(Lights, ComparesAllMethodsOnAScene) {
+    write("mesh.obj", octahedron_obj());
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    const auto report = succeed({"lights", "lamp.hdr", "--compare", "scene.prt", "-n", "1,8", "--samples",
+                                 "0", "--plot", "plot.svg", "--json"})
+                            .json();
+    ASSERT_EQ(report["rows"].size(), 8u); // four methods, two numbers
+    for (const auto& row : report["rows"]) {
+        EXPECT_GE(row["relative_l2"].get<double>(), 0.0);
+        EXPECT_LT(row["relative_l2"].get<double>(), 1.5) << row["method"];
+    }
+    EXPECT_THAT(read("plot.svg"), HasSubstr("median-cut"));
+    EXPECT_THAT(succeed({"lights", "lamp.hdr", "--compare", "scene.prt", "-n", "2"}).out,
+                HasSubstr("| transfer | 2 |"));
+    misuse({"lights", "lamp.hdr", "-n", "1,2", "-o", "a.json"}, "expected one number of lights");
+    misuse({"lights", "lamp.hdr", "--compare", "scene.prt", "-o", "a.json"}, "expected neither -o");
+    fail({"lights", "lamp.hdr", "--compare", "scene.prt", "--plot", "a.png"}, {"a.png: expected .svg"});
+}
+
+// The lamp's one light gives what the lamp gives, traced, through the clusters, and on the mesh alone.
+TEST_F(Lights, LightASceneOrAMesh) {
+    write("mesh.obj", octahedron_obj());
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lamp.json"});
+    const auto lit = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.end(), {"-o", "lit.npy", "-q"});
+        succeed(arguments);
+        return npy_values(read("lit.npy"));
+    };
+    const auto expected = lit({"relight", "scene.prt", "lamp.hdr"});
+    for (const auto& radiance : {lit({"relight", "scene.prt", "--lights", "lamp.json"}),
+                                 lit({"relight", "scene.prt", "--lights", "lamp.json", "--clusters-only"}),
+                                 lit({"relight", "mesh.obj", "--lights", "lamp.json"})}) {
+        ASSERT_EQ(radiance.size(), expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            EXPECT_NEAR(radiance[i][1], expected[i][1], 0.02f * expected[0][1]) << i;
+    }
+}
+
+TEST_F(Lights, RelightingWithThemSaysWhatIsWrong) {
+    write("mesh.obj", octahedron_obj());
+    succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lamp.json"});
+    misuse({"relight", "mesh.obj", "-o", "a.npy"}, "expected either ENV or --lights");
+    misuse({"relight", "mesh.obj", "lamp.hdr", "--lights", "lamp.json", "-o", "a.npy"},
+           "expected either ENV or --lights");
+    fail({"relight", "mesh.obj", "lamp.hdr", "-o", "a.npy"}, {"mesh.obj: expected a scene file"});
+    fail({"relight", "mesh.obj", "--lights", "lamp.json", "--clusters-only", "-o", "a.npy"},
+         {"mesh.obj: expected a scene file with --clusters-only"});
+    write("bad.json", R"({"version": 1, "lights": [{"direction": [0, 1, 0], "irradiance": [1, -1, 1]}]})");
+    fail({"relight", "mesh.obj", "--lights", "bad.json", "-o", "a.npy"}, {"bad.json:1"});
+}
+
 } // namespace
 } // namespace relumine::app

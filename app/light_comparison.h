@@ -1,0 +1,37 @@
+// `relumine lights --compare`: the error of every method on one scene.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/environment_options.h"
+#include "app/lit_scene.h"
+#include "app/session.h"
+#include "lights/light_list.h"
+#include "relight/relighter.h"
+
+namespace relumine::app {
+
+/// The name of relight::transfer_lights() beside those of lights::AllMethods.
+inline constexpr const char* TransferMethod = "transfer";
+
+struct ComparisonOptions {
+    std::string scene;                     ///< .prt
+    std::vector<std::size_t> numbers = {}; ///< of lights
+    std::uint64_t seed = 1;                ///< of importance sampling and of the choice of receivers
+    std::size_t num_samples = 2000;        ///< receivers, 0 for all
+    std::string plot = {};                 ///< .svg, or empty
+};
+
+/// Lights chosen for a scene by transfer_lights(); what went wrong names the environment.
+[[nodiscard]] std::vector<lights::DistantLight> lights_for_scene(const relight::Relighter& relighter,
+                                                                 std::size_t count, Session& session);
+
+/// Lights the scene's receivers with the lists of all methods and all numbers of lights, a shadow ray for each light; says a Markdown table of
+/// relative L2 errors against exact integration and times, reports the same, and draws it.
+void compare_methods(const ComparisonOptions& options, const EnvironmentOptions& environment,
+                     Session& session);
+
+} // namespace relumine::app
