@@ -241,7 +241,7 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
 }
 
 TEST_F(Relight, AnotherKindOfFileIsToldApart) {
-    fail({"relight", "mesh.obj", "white.hdr", "-o", "new.npy"}, {"mesh.obj", "expected a .prt scene"});
+    fail({"relight", "mesh.obj", "white.hdr", "-o", "new.npy"}, {"mesh.obj", "expected a scene file"});
     fail({"relight", "white.hdr", "scene.prt", "-o", "new.npy"}, {"white.hdr", "expected a .prt scene"});
     fail({"relight", "scene.prt", "mesh.obj", "-o", "new.npy"}, {"mesh.obj", "expected"});
     fail({"relight", "scene.prt", "scene.prt", "-o", "new.npy"}, {"scene.prt", "expected"});
