@@ -217,6 +217,16 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
     }
 }
 
+std::vector<float> coverage_map(const Region& region, std::uint32_t resolution) {
+    const LightLayer layer{.name = "region", .region = region, .effect = Emit{}};
+    const CubeMap map = composite(CubeMap(resolution, glm::vec3(0.0f)), {&layer, 1});
+    std::vector<float> coverage;
+    coverage.reserve(map.texels.size());
+    for (const glm::vec3& texel : map.texels)
+        coverage.push_back(texel.r);
+    return coverage;
+}
+
 CubeMap composite(const CubeMap& base, std::span<const LightLayer> layers) {
     CubeMap target(base.resolution);
     composite(base, layers, all_texels(base.resolution), target);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -41,29 +42,45 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
             }
 }
 
+/// The report of a relighting of everything.
+UpdateReport report_of(const RelightTimes& times, const prt::Transfer& transfer) {
+    return {.num_clusters = transfer.num_clusters(),
+            .num_receivers = transfer.num_receivers(),
+            .num_sharp_lights = times.num_sharp_lights,
+            .seconds = times.seconds_bin + times.seconds_trace + times.seconds_relight};
+}
+
 } // namespace
 
 LightEditor::LightEditor(const prt::Transfer& transfer, const ShadowRays& rays)
     : relighter_(transfer, rays), history_(1) {}
 
 RelightTimes LightEditor::set_base(cubemap::CubeMap base) {
-    base_ = std::move(base);
-    return relight_all();
+    auto next = std::make_shared<const cubemap::CubeMap>(std::move(base));
+    if (next->resolution == 0)
+        throw std::invalid_argument("expected a base with texels");
+    const std::shared_ptr<const cubemap::CubeMap> before = std::exchange(base_, std::move(next));
+    try {
+        const RelightTimes times = relight_all();
+        if (!before)
+            for (State& state : history_)
+                state.base = base_;
+        return times;
+    } catch (const std::invalid_argument&) { // too bright, alone or under its layers
+        base_ = before;
+        turn_base();
+        throw;
+    }
 }
 
 UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
-    if (base.resolution != base_.resolution || rotation_degrees_ != 0.0) {
-        const RelightTimes times = set_base(std::move(base));
-        return {.num_clusters = relighter_.transfer().num_clusters(),
-                .num_receivers = relighter_.transfer().num_receivers(),
-                .num_sharp_lights = times.num_sharp_lights,
-                .seconds = times.seconds_bin + times.seconds_trace + times.seconds_relight};
-    }
+    if (!base_ || base.resolution != base_->resolution || rotation_degrees_ != 0.0)
+        return report_of(set_base(std::move(base)), relighter_.transfer());
     dirty_.clear();
-    append_changed_tiles(base_, base, dirty_);
+    append_changed_tiles(*base_, base, dirty_);
     require_radiance(base.texels);
     const UpdateReport report = update_dirty(base, turned_layers_);
-    base_ = std::move(base);
+    base_ = std::make_shared<const cubemap::CubeMap>(std::move(base));
     return report;
 }
 
@@ -75,9 +92,9 @@ RelightTimes LightEditor::set_rotation(double degrees_about_y) {
 }
 
 RelightTimes LightEditor::relight_all() {
-    if (base_.resolution == 0)
+    if (!base_)
         return {};
-    turned_base_ = rotation_degrees_ == 0.0 ? cubemap::CubeMap() : cubemap::rotated(base_, rotation_degrees_);
+    turn_base();
     turn(layers_, turned_layers_);
     cubemap::CubeMap environment = turned_base();
     cubemap::composite(turned_base(), turned_layers_, cubemap::all_texels(environment.resolution),
@@ -85,6 +102,11 @@ RelightTimes LightEditor::relight_all() {
     const RelightTimes times = relighter_.set_environment(std::move(environment));
     publish();
     return times;
+}
+
+void LightEditor::turn_base() {
+    turned_base_ =
+        rotation_degrees_ == 0.0 || !base_ ? cubemap::CubeMap() : cubemap::rotated(*base_, rotation_degrees_);
 }
 
 void LightEditor::turn(std::span<const cubemap::LightLayer> layers,
@@ -118,7 +140,7 @@ UpdateReport LightEditor::set_layer(std::size_t index, const cubemap::LightLayer
 
 UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     turn(layers, next_layers_);
-    if (base_.resolution == 0) {
+    if (!base_) {
         std::swap(turned_layers_, next_layers_);
         return {};
     }
@@ -126,7 +148,7 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     // moved within the list is compared with its new neighbour, and so dirtied.
     dirty_.clear();
     const auto add = [&](const cubemap::LightLayer& layer) {
-        for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_.resolution))
+        for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_->resolution))
             add_merged(touched, dirty_);
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
@@ -165,13 +187,44 @@ UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,
 }
 
 void LightEditor::mark() {
+    State present{.layers = layers_, .rotation_degrees = rotation_degrees_, .base = base_};
     history_.resize(at_ + 1);
-    if (!std::equal(layers_.begin(), layers_.end(), history_[at_].begin(), history_[at_].end())) {
-        history_.push_back(layers_);
+    if (present != history_[at_]) {
+        history_.push_back(std::move(present));
         ++at_;
+        forget_oldest();
     }
     // A mark is a state to come back to bit by bit, however one came there.
-    if (base_.resolution != 0) {
+    if (base_) {
+        relighter_.resum();
+        publish();
+    }
+}
+
+void LightEditor::forget_oldest() {
+    const auto bytes_of = [](const cubemap::CubeMap& map) {
+        return map.texels.size() * sizeof(map.texels.front());
+    };
+    // From the newest mark back: how many fit?
+    std::set<const cubemap::CubeMap*> bases = {base_.get()};
+    std::size_t bytes = 0;
+    std::size_t first = history_.size();
+    while (first > 0) {
+        const cubemap::CubeMap* base = history_[first - 1].base.get();
+        if (base && bases.insert(base).second)
+            bytes += bytes_of(*base);
+        if (bytes > max_history_bytes_ && first + 2 <= history_.size())
+            break;
+        --first;
+    }
+    history_.erase(history_.begin(), history_.begin() + static_cast<std::ptrdiff_t>(first));
+    at_ -= first;
+}
+
+void LightEditor::forget_history() {
+    history_.assign(1, {.layers = layers_, .rotation_degrees = rotation_degrees_, .base = base_});
+    at_ = 0;
+    if (base_) {
         relighter_.resum();
         publish();
     }
@@ -187,9 +240,15 @@ UpdateReport LightEditor::redo() {
 
 UpdateReport LightEditor::go_to(std::size_t mark) {
     at_ = mark;
-    layers_ = history_[at_];
+    const State& state = history_[at_];
+    layers_ = state.layers;
+    if (state.base != base_ || state.rotation_degrees != rotation_degrees_) {
+        base_ = state.base;
+        rotation_degrees_ = state.rotation_degrees;
+        return report_of(relight_all(), relighter_.transfer());
+    }
     const UpdateReport report = apply(layers_);
-    if (base_.resolution != 0) {
+    if (base_) {
         relighter_.resum();
         publish();
     }

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <thread>
@@ -147,6 +148,106 @@ TEST(LightEditor, UndoAndRedoReturnBitwise) {
     editor.set_layers({});
     editor.mark();
     EXPECT_FALSE(editor.can_redo());
+}
+
+TEST(LightEditor, UndoBringsBackRotationAndBaseBitwise) {
+    // With shadow rays, so that the sharp lights of one base do not linger in another.
+    LightEditor editor(relit_scene().transfer, relit_scene().shadow_rays());
+    cubemap::CubeMap sunny = scenes::random_environment(32, 1);
+    sunny.at(cubemap::Face::PositiveY, 20, 17) = glm::vec3(1e5f, 9e4f, 8e4f);
+    editor.set_base(sunny);
+    editor.forget_history();
+    std::vector<std::vector<glm::vec3>> states = {copy(editor.radiance())};
+    std::vector<std::vector<glm::vec3>> environments = {editor.environment().texels};
+    const auto mark = [&] {
+        editor.mark();
+        states.push_back(copy(editor.radiance()));
+        environments.push_back(editor.environment().texels);
+    };
+    editor.set_layers({disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f))});
+    mark();
+    for (const double degrees : {5.0, 20.0, 33.0}) // as a slider moves
+        editor.set_rotation(degrees);
+    mark();
+    editor.set_layers({disc("lamp", {1.0, 0.5, 0.0}, 9.0, glm::vec3(2.0f))});
+    mark();
+    editor.set_base(scenes::random_environment(16, 3)); // another resolution, under the rotation
+    mark();
+    editor.set_rotation(0.0);
+    mark();
+    cubemap::CubeMap painted = *editor.base();
+    painted.at(cubemap::Face::NegativeX, 3, 4) = glm::vec3(20.0f);
+    editor.update_base(painted);
+    mark();
+    ASSERT_EQ(states.size(), 7u);
+    for (int round = 0; round < 2; ++round) {
+        for (std::size_t i = states.size() - 1; i-- > 0;) {
+            ASSERT_TRUE(editor.can_undo());
+            editor.undo();
+            EXPECT_EQ(copy(editor.radiance()), states[i]) << "undo to " << i;
+            EXPECT_EQ(editor.environment().texels, environments[i]);
+            std::vector<glm::vec3> seen;
+            editor.snapshot(seen);
+            EXPECT_EQ(seen, states[i]);
+        }
+        EXPECT_FALSE(editor.can_undo());
+        EXPECT_EQ(editor.rotation(), 0.0);
+        for (std::size_t i = 1; i < states.size(); ++i) {
+            ASSERT_TRUE(editor.can_redo());
+            editor.redo();
+            EXPECT_EQ(copy(editor.radiance()), states[i]) << "redo to " << i;
+            EXPECT_EQ(editor.environment().texels, environments[i]);
+        }
+    }
+}
+
+TEST(LightEditor, TheHistoryKeepsNoMoreBasesThanItMay) {
+    LightEditor editor(relit_scene().transfer);
+    constexpr std::uint32_t Resolution = 8;
+    constexpr std::size_t BytesOfBase = 6 * Resolution * Resolution * sizeof(glm::vec3);
+    editor.limit_history(2 * BytesOfBase);
+    std::vector<std::weak_ptr<const cubemap::CubeMap>> bases;
+    for (unsigned i = 0; i < 6; ++i) {
+        editor.set_base(scenes::random_environment(Resolution, i));
+        editor.mark();
+        bases.emplace_back(editor.base());
+        editor.set_layers({disc("lamp", {0.2, 0.5, 1.0 + i}, 12.0, glm::vec3(3.0f))});
+        editor.mark();
+    }
+    for (std::size_t i = 0; i < bases.size(); ++i)
+        EXPECT_EQ(bases[i].expired(), i + 3 < bases.size()) << "two and the present one: " << i;
+    int num_steps = 0;
+    for (; editor.can_undo(); ++num_steps)
+        editor.undo();
+    EXPECT_EQ(num_steps, 5) << "three bases with two marks each";
+    EXPECT_EQ(editor.base(), bases[3].lock());
+
+    // However small the limit, the last step can be undone.
+    editor.limit_history(0);
+    editor.set_base(scenes::random_environment(Resolution, 7));
+    editor.mark();
+    EXPECT_TRUE(editor.can_undo());
+    editor.undo();
+    EXPECT_EQ(editor.base(), bases[3].lock());
+}
+
+TEST(LightEditor, RefusesABadBaseAndStaysAsItWas) {
+    LightEditor editor(relit_scene().transfer);
+    EXPECT_THROW(editor.set_base(cubemap::CubeMap()), std::invalid_argument);
+    EXPECT_THROW(editor.set_base(cubemap::CubeMap(8, glm::vec3(-1.0f))), std::invalid_argument);
+    EXPECT_FALSE(editor.base());
+    editor.set_base(scenes::random_environment(16, 2));
+    editor.set_rotation(30.0);
+    editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    editor.mark();
+    const std::vector<glm::vec3> before = copy(editor.radiance());
+    const std::vector<glm::vec3> texels = editor.environment().texels;
+    EXPECT_THROW(editor.set_base(cubemap::CubeMap(32, glm::vec3(-1.0f))), std::invalid_argument);
+    EXPECT_EQ(copy(editor.radiance()), before);
+    EXPECT_EQ(editor.environment().texels, texels);
+    editor.set_layers({});
+    editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    EXPECT_EQ(editor.environment().texels, texels) << "the turned base is the old one";
 }
 
 TEST(LightEditor, SmallEditsTouchFewClusters) {
