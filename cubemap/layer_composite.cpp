@@ -76,8 +76,9 @@ void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& ran
         if (mean > 0.0)
             texel(range.x0, range.y0, mean);
     } else {
+        const auto& part_of_shape = narrowed(shape, grid, range);
         for (int i = 0; i < 4; ++i)
-            for_covered(shape, grid, range.quarter(i), rectangle, texel);
+            for_covered(part_of_shape, grid, range.quarter(i), rectangle, texel);
     }
 }
 
