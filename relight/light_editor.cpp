@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
+#include <optional>
 #include <set>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -40,6 +43,57 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
                 if (!equal)
                     tiles.push_back(tile);
             }
+}
+
+/// Adds what of a rectangle is in none of the list yet.
+void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t first,
+                      std::vector<cubemap::TexelRectangle>& list) {
+    for (std::size_t i = first; i < list.size(); ++i) {
+        const cubemap::TexelRectangle there = list[i];
+        if (there.face != rectangle.face || there.x0 >= rectangle.x1 || there.x1 <= rectangle.x0 ||
+            there.y0 >= rectangle.y1 || there.y1 <= rectangle.y0)
+            continue;
+        // Above and below as wide as it is, left and right between.
+        cubemap::TexelRectangle above = rectangle, below = rectangle, left = rectangle, right = rectangle;
+        above.y1 = left.y0 = right.y0 = std::max(rectangle.y0, there.y0);
+        below.y0 = left.y1 = right.y1 = std::min(rectangle.y1, there.y1);
+        left.x1 = std::max(rectangle.x0, there.x0);
+        right.x0 = std::min(rectangle.x1, there.x1);
+        for (const cubemap::TexelRectangle& part : {above, below, left, right})
+            if (part.x0 < part.x1 && part.y0 < part.y1)
+                append_uncovered(part, i + 1, list);
+        return;
+    }
+    list.push_back(rectangle);
+}
+
+/// Where two strokes differ of which one goes on where the other ends, as when one is painted: the new piece, a little wider.
+std::optional<cubemap::LightLayer> added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b,
+                                               std::uint32_t resolution) {
+    const auto* from = std::get_if<cubemap::Stroke>(&a.region);
+    const auto* to = std::get_if<cubemap::Stroke>(&b.region);
+    if (!from || !to || a.on != b.on || a.gain_ev != b.gain_ev || a.effect != b.effect ||
+        from->radius_degrees != to->radius_degrees || from->softness != to->softness)
+        return std::nullopt;
+    if (from->points.size() > to->points.size())
+        std::swap(from, to);
+    if (!std::equal(from->points.begin(), from->points.end(), to->points.begin()))
+        return std::nullopt;
+    // A texel at the rim of both is fitted to the distance at its corners, so a piece counts that comes near them without covering
+    // them: up to three times the chord from a texel's centre to its corner, one of which touched_texels() adds.
+    constexpr double Radian = 180.0 / std::numbers::pi;
+    const double margin = 2.0 * 1.5 / resolution;
+    const double chord = 2.0 * std::sin(0.5 * to->radius_degrees / Radian) + margin;
+    cubemap::LightLayer piece = b;
+    cubemap::Stroke stroke = *to;
+    stroke.points.assign(to->points.begin() + static_cast<std::ptrdiff_t>(from->points.size()) - 1,
+                         to->points.end());
+    stroke.radius_degrees = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) * Radian;
+    stroke.softness = 0.0;
+    if (stroke.radius_degrees > 90.0)
+        return std::nullopt;
+    piece.region = std::move(stroke);
+    return piece;
 }
 
 /// The report of a relighting of everything.
@@ -100,6 +154,7 @@ RelightTimes LightEditor::relight_all() {
     cubemap::composite(turned_base(), turned_layers_, cubemap::all_texels(environment.resolution),
                        environment);
     const RelightTimes times = relighter_.set_environment(std::move(environment));
+    dirty_ = cubemap::all_texels(relighter_.environment().resolution);
     publish();
     return times;
 }
@@ -140,27 +195,36 @@ UpdateReport LightEditor::set_layer(std::size_t index, const cubemap::LightLayer
 
 UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     turn(layers, next_layers_);
+    dirty_.clear();
+    touched_.clear();
     if (!base_) {
         std::swap(turned_layers_, next_layers_);
         return {};
     }
     // Layers at the same place in both lists that are equal change nothing; all others dirty what they cover, before and after. A layer that
     // moved within the list is compared with its new neighbour, and so dirtied.
-    dirty_.clear();
     const auto add = [&](const cubemap::LightLayer& layer) {
         for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_->resolution))
-            add_merged(touched, dirty_);
+            add_merged(touched, touched_);
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
     for (std::size_t i = 0; i < num_places; ++i) {
         const bool both = i < turned_layers_.size() && i < next_layers_.size();
         if (both && turned_layers_[i] == next_layers_[i])
             continue;
+        if (const auto piece =
+                both ? added_piece(turned_layers_[i], next_layers_[i], base_->resolution) : std::nullopt) {
+            add(*piece);
+            continue;
+        }
         if (i < turned_layers_.size())
             add(turned_layers_[i]);
         if (i < next_layers_.size())
             add(next_layers_[i]);
     }
+    // Rectangles that do not grow by it were made one; what of others overlaps is done once all the same.
+    for (const cubemap::TexelRectangle& touched : touched_)
+        append_uncovered(touched, 0, dirty_);
     const UpdateReport report = update_dirty(turned_base(), next_layers_);
     std::swap(turned_layers_, next_layers_);
     return report;

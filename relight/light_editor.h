@@ -78,6 +78,8 @@ public:
     /// Base and layers together, as they light the scene (turned).
     [[nodiscard]] const cubemap::CubeMap& environment() const { return relighter_.environment(); }
     [[nodiscard]] const Relighter& relighter() const { return relighter_; }
+    /// Rectangles that hold every texel of environment() that the last call which edits has changed; mark() changes none.
+    [[nodiscard]] std::span<const cubemap::TexelRectangle> changed_texels() const { return dirty_; }
 
 private:
     /// What a mark holds.
@@ -107,7 +109,8 @@ private:
     std::vector<cubemap::LightLayer> turned_layers_; ///< as they are composited
     cubemap::LightLayer next_layer_;                 ///< scratch of set_layer()
     std::vector<cubemap::LightLayer> next_layers_;   ///< scratch: the same after an edit
-    std::vector<cubemap::TexelRectangle> dirty_;     ///< scratch
+    std::vector<cubemap::TexelRectangle> dirty_;     ///< without overlaps
+    std::vector<cubemap::TexelRectangle> touched_;   ///< scratch of apply(): what the changed layers cover
     std::vector<State> history_;
     std::size_t at_ = 0; ///< the history's present
     std::size_t max_history_bytes_ = std::size_t{1} << 30;

@@ -20,30 +20,11 @@ void LightDesk::timed(Edit edit) {
     const auto start = std::chrono::steady_clock::now();
     last_cost_.report = edit();
     last_cost_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::span<const cubemap::TexelRectangle> changed = editor_.changed_texels();
+    changed_texels_.insert(changed_texels_.end(), changed.begin(), changed.end());
     ++version_;
     if (selected_ && *selected_ >= layers().size())
         selected_.reset();
-}
-
-void LightDesk::note_texels(const cubemap::LightLayer& layer) {
-    cubemap::LightLayer seen = layer;
-    seen.region = turned(layer.region, editor_.rotation());
-    const std::vector<cubemap::TexelRectangle> touched =
-        cubemap::touched_texels(seen, editor_.environment().resolution);
-    changed_texels_.insert(changed_texels_.end(), touched.begin(), touched.end());
-}
-
-void LightDesk::note_difference(std::span<const cubemap::LightLayer> before) {
-    for (std::size_t i = 0; i < std::max(before.size(), layers().size()); ++i) {
-        const cubemap::LightLayer* was = i < before.size() ? &before[i] : nullptr;
-        const cubemap::LightLayer* is = i < layers().size() ? &layers()[i] : nullptr;
-        if (was && is && *was == *is)
-            continue;
-        if (was)
-            note_texels(*was);
-        if (is)
-            note_texels(*is);
-    }
 }
 
 void LightDesk::note_all_texels() {
@@ -101,29 +82,20 @@ void LightDesk::reorder(std::size_t from, std::size_t to) {
 }
 
 void LightDesk::replace(std::vector<cubemap::LightLayer> changed) {
-    const std::vector<cubemap::LightLayer> before = copy();
     timed([&] { return editor_.set_layers(std::move(changed)); });
-    note_difference(before);
     editor_.mark();
 }
 
 void LightDesk::undo() {
-    const std::vector<cubemap::LightLayer> before = copy();
     timed([&] { return editor_.undo(); });
-    note_difference(before);
 }
 
 void LightDesk::redo() {
-    const std::vector<cubemap::LightLayer> before = copy();
     timed([&] { return editor_.redo(); });
-    note_difference(before);
 }
 
 void LightDesk::change(std::size_t index, const cubemap::LightLayer& layer) {
-    const cubemap::LightLayer before = layers()[index];
     timed([&] { return editor_.set_layer(index, layer); });
-    note_texels(before);
-    note_texels(layer);
 }
 
 void LightDesk::finish() {
@@ -181,7 +153,6 @@ void LightDesk::begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3&
     std::vector<cubemap::LightLayer> changed = copy();
     changed.push_back(layer);
     timed([&] { return editor_.set_layers(std::move(changed)); });
-    note_texels(layer);
     drag_seconds_.push_back(last_cost_.seconds);
     selected_ = layers().size() - 1;
     painting_ = true;
@@ -213,7 +184,6 @@ void LightDesk::set_rotation(double degrees) {
                                      .num_receivers = editor_.radiance().size(),
                                      .num_sharp_lights = times.num_sharp_lights};
     });
-    note_all_texels();
 }
 
 void LightDesk::set_base(cubemap::CubeMap base) {
@@ -223,7 +193,6 @@ void LightDesk::set_base(cubemap::CubeMap base) {
                                      .num_receivers = editor_.radiance().size(),
                                      .num_sharp_lights = times.num_sharp_lights};
     });
-    note_all_texels();
 }
 
 } // namespace relumine::viewer

@@ -93,8 +93,6 @@ private:
     };
     template<typename Edit>
     void timed(Edit edit);
-    void note_texels(const cubemap::LightLayer& layer);
-    void note_difference(std::span<const cubemap::LightLayer> before);
     void note_all_texels();
     [[nodiscard]] std::string unused_name(const std::string& name) const;
     [[nodiscard]] std::vector<cubemap::LightLayer> copy() const { return {layers().begin(), layers().end()}; }

@@ -1,5 +1,6 @@
 #include "relight/light_editor.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <memory>
@@ -248,6 +249,77 @@ TEST(LightEditor, RefusesABadBaseAndStaysAsItWas) {
     editor.set_layers({});
     editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     EXPECT_EQ(editor.environment().texels, texels) << "the turned base is the old one";
+}
+
+TEST(LightEditor, PaintingOnTouchesOnlyTheNewPieceAndLeavesNoTrace) {
+    const cubemap::CubeMap base = scenes::random_environment(64, 4);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int trial = 0; trial < 12; ++trial) {
+        LightEditor editor(relit_scene().transfer);
+        editor.set_base(base);
+        if (trial % 2 == 1)
+            editor.set_rotation(37.0);
+        cubemap::LightLayer layer = disc("stroke", {1, 0, 0}, 1.0, glm::vec3(2.0f));
+        cubemap::Stroke stroke{.points = {scenes::random_direction(random)},
+                               .radius_degrees = 0.5 + 12.0 * unit(random),
+                               .softness = trial % 3 == 0 ? 0.0 : unit(random)};
+        layer.region = stroke;
+        editor.set_layers({layer});
+        std::size_t most_touched = 0;
+        const auto set_points = [&](std::size_t count) {
+            cubemap::Stroke part = stroke;
+            part.points.resize(count);
+            layer.region = part;
+            most_touched = std::max(most_touched, editor.set_layer(0, layer).num_clusters);
+            // Texels that were not told to have changed are as they were, and all are as made from scratch.
+            LightEditor afresh(relit_scene().transfer);
+            afresh.set_base(base);
+            afresh.set_rotation(editor.rotation());
+            afresh.set_layers({layer});
+            ASSERT_EQ(editor.environment().texels, afresh.environment().texels) << trial << ", " << count;
+            EXPECT_LT(relative_difference(editor.radiance(), afresh.radiance()), 1e-6);
+        };
+        for (int i = 0; i < 15; ++i) { // also back over itself
+            stroke.points.push_back(glm::normalize(stroke.points.back()) +
+                                    0.15 * glm::dvec3(scenes::random_direction(random)));
+            set_points(stroke.points.size());
+        }
+        set_points(9); // and back, several points at once
+        set_points(stroke.points.size());
+        if (stroke.radius_degrees < 3.0) {
+            EXPECT_LT(most_touched, relit_scene().transfer.num_clusters() / 3);
+        }
+    }
+}
+
+TEST(LightEditor, ToldTexelsHoldEveryChangeOnceOnly) {
+    LightEditor editor(relit_scene().transfer);
+    editor.set_base(scenes::random_environment(64, 4));
+    std::mt19937 random(9);
+    cubemap::CubeMap kept = editor.environment();
+    std::vector<cubemap::LightLayer> layers = {random_layer(random), random_layer(random)};
+    for (int edit = 0; edit < 60; ++edit) {
+        if (edit % 7 == 3)
+            editor.undo();
+        else if (edit % 20 == 19)
+            editor.set_rotation(edit);
+        else {
+            layers[static_cast<std::size_t>(edit) % 2] = random_layer(random);
+            editor.set_layers(layers);
+            if (edit % 3 == 0)
+                editor.mark();
+        }
+        std::vector<int> told(kept.texels.size(), 0);
+        for (const TexelRectangle& part : editor.changed_texels())
+            for (std::uint32_t y = part.y0; y < part.y1; ++y)
+                for (std::uint32_t x = part.x0; x < part.x1; ++x) {
+                    kept.at(part.face, x, y) = editor.environment().at(part.face, x, y);
+                    ++told[kept.index(part.face, x, y)];
+                }
+        EXPECT_EQ(kept.texels, editor.environment().texels) << edit;
+        EXPECT_LE(*std::max_element(told.begin(), told.end()), 1) << edit;
+    }
 }
 
 TEST(LightEditor, SmallEditsTouchFewClusters) {
