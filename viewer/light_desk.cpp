@@ -11,7 +11,9 @@
 
 namespace relumine::viewer {
 
-LightDesk::LightDesk(relight::LightEditor& editor) : editor_(editor) {
+LightDesk::LightDesk(relight::LightEditor& editor, std::filesystem::path base_path) : editor_(editor) {
+    editor_.forget_history();
+    note_base_path(base_path);
     note_all_texels();
 }
 
@@ -177,22 +179,52 @@ void LightDesk::end_stroke() {
     finish();
 }
 
-void LightDesk::set_rotation(double degrees) {
-    timed([&] {
-        const relight::RelightTimes times = editor_.set_rotation(degrees);
-        return relight::UpdateReport{.num_clusters = editor_.relighter().transfer().num_clusters(),
-                                     .num_receivers = editor_.radiance().size(),
-                                     .num_sharp_lights = times.num_sharp_lights};
-    });
+void LightDesk::begin_lasso(const glm::dvec3& direction) {
+    lasso_ = {direction};
 }
 
-void LightDesk::set_base(cubemap::CubeMap base) {
-    timed([&] {
-        const relight::RelightTimes times = editor_.set_base(std::move(base));
-        return relight::UpdateReport{.num_clusters = editor_.relighter().transfer().num_clusters(),
-                                     .num_receivers = editor_.radiance().size(),
-                                     .num_sharp_lights = times.num_sharp_lights};
-    });
+void LightDesk::lasso_to(const glm::dvec3& direction, double spacing_degrees) {
+    if (!lasso_.empty() && angle_between(lasso_.back(), direction) >= spacing_degrees)
+        lasso_.push_back(direction);
+}
+
+bool LightDesk::end_lasso(cubemap::LightLayer layer) {
+    std::vector<glm::dvec3> points = std::exchange(lasso_, {});
+    if (points.size() < 3)
+        return false;
+    for (glm::dvec3& point : points)
+        point = turned(point, -editor_.rotation());
+    std::get<cubemap::Lasso>(layer.region).points = std::move(points);
+    add(std::move(layer));
+    return true;
+}
+
+void LightDesk::set_rotation(double degrees) {
+    timed([&] { return whole(editor_.set_rotation(degrees)); });
+}
+
+void LightDesk::set_base(cubemap::CubeMap base, const std::filesystem::path& path) {
+    timed([&] { return whole(editor_.set_base(std::move(base))); });
+    note_base_path(path);
+}
+
+relight::UpdateReport LightDesk::whole(const relight::RelightTimes& times) const {
+    return {.num_clusters = editor_.relighter().transfer().num_clusters(),
+            .num_receivers = editor_.radiance().size(),
+            .num_sharp_lights = times.num_sharp_lights};
+}
+
+void LightDesk::note_base_path(const std::filesystem::path& path) {
+    std::erase_if(base_paths_, [](const auto& entry) { return entry.first.expired(); });
+    if (editor_.base())
+        base_paths_.emplace_back(editor_.base(), path);
+}
+
+std::filesystem::path LightDesk::base_path() const {
+    for (const auto& [base, path] : base_paths_)
+        if (base.lock() == editor_.base())
+            return path;
+    return {};
 }
 
 } // namespace relumine::viewer
