@@ -96,12 +96,12 @@ void add_buttons(ViewState& state) {
 }
 
 const char* kind(const cubemap::LightLayer& layer) {
-    if (std::holds_alternative<cubemap::Gain>(layer.effect))
-        return "gain";
     if (std::holds_alternative<cubemap::ImagePatch>(layer.effect))
         return "image";
-    constexpr const char* Kinds[] = {"disc", "soft box", "lasso", "stroke"};
-    return Kinds[layer.region.index()];
+    constexpr const char* Lights[] = {"disc", "soft box", "lasso", "stroke"};
+    constexpr const char* Gains[] = {"gain disc", "gain box", "gain lasso", "gain stroke"};
+    return std::holds_alternative<cubemap::Gain>(layer.effect) ? Gains[layer.region.index()]
+                                                               : Lights[layer.region.index()];
 }
 
 /// Changes while an item is held, and a step of undo when it is let go.
@@ -166,12 +166,16 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
         };
     }
     ImGui::SameLine();
-    const float width = ImGui::GetContentRegionAvail().x - 190.0f;
+    const float right = ImGui::GetContentRegionMax().x;
+    const float width = ImGui::GetContentRegionAvail().x - 220.0f;
     if (ImGui::Selectable(layer.name.c_str(), state.desk.selected() == index, 0, {width, 0.0f}))
         state.desk.select(index);
-    ImGui::SameLine();
-    ImGui::TextDisabled("%-8s %+.1f", kind(layer), layer.gain_ev);
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - 80.0f);
+    ImGui::SameLine(right - 212.0f);
+    ImGui::TextDisabled("%s", kind(layer));
+    ImGui::SameLine(right - 130.0f);
+    ImGui::TextDisabled("%+.1f", layer.gain_ev);
+    hint("gain in stops");
+    ImGui::SameLine(right - 80.0f);
     const std::size_t top = state.desk.layers().size() - 1;
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && index < top)
         later = [&state, index] {

@@ -194,6 +194,87 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
     EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
 }
 
+TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
+    const PixelRectangle map = panel_layout(Width, Height).environment;
+    cubemap::save_environment(folder_ / "picture.exr", cubemap::CubeMap(8, glm::vec3(3.0f, 2.0f, 1.0f)),
+                              cubemap::Layout::LatLong);
+    const auto box = [&](double x0, double y0, double x1, double y1) {
+        return fmt::format("{} {} {} {}", std::lround(map.x + x0 * map.width),
+                           std::lround(map.y + y0 * map.height), std::lround(map.x + x1 * map.width),
+                           std::lround(map.y + y1 * map.height));
+    };
+    // The dialogue is in the window's middle; its second button makes a layer.
+    const std::string on_image_layer = fmt::format("{} {}", Width / 2 + 20, Height / 2 + 22);
+    ASSERT_EQ(play(fmt::format("lasso_env {}\n"
+                               "wait 1\n"
+                               "screenshot lasso.exr\n"
+                               "drop picture.exr\n"
+                               "wait 3\n"
+                               "screenshot asks.exr\n"
+                               "click {}\n"
+                               "wait 1\n"
+                               "screenshot layer.exr\n"
+                               "rotate 40\n"
+                               "wait 1\n"
+                               "screenshot rotated.exr\n"
+                               "undo\n"
+                               "wait 1\n"
+                               "screenshot unrotated.exr\n"
+                               "save_layers saved.json\n"
+                               "open picture.exr\n"
+                               "save_layers on_picture.json\n"
+                               "undo\n"
+                               "save_layers undone.json\n"
+                               "undo\n"
+                               "undo\n"
+                               "save_layers nothing.json\n",
+                               box(0.15, 0.3, 0.35, 0.6), on_image_layer)),
+              0)
+        << words("err.txt");
+    const cubemap::LightLayers saved = cubemap::load_layers(folder_ / "saved.json");
+    ASSERT_EQ(saved.layers.size(), 2u) << "the drop became a layer";
+    EXPECT_TRUE(std::holds_alternative<cubemap::Lasso>(saved.layers[0].region));
+    EXPECT_TRUE(std::holds_alternative<cubemap::Gain>(saved.layers[0].effect));
+    // The outline's middle is a quarter from the left: +X.
+    EXPECT_EQ(cubemap::coverage(saved.layers[0].region, direction_at({0.25, 0.45})), 1.0);
+    EXPECT_EQ(cubemap::coverage(saved.layers[0].region, direction_at({0.37, 0.45})), 0.0);
+    const auto& patch = std::get<cubemap::ImagePatch>(saved.layers[1].effect);
+    EXPECT_EQ(patch.path, "picture.exr") << "relative to the file";
+    EXPECT_EQ(saved.base, "env.exr");
+    const cubemap::Picture::Level lasso = picture("lasso.exr");
+    EXPECT_FALSE(equal(lasso, picture("asks.exr"), viewport_)) << "the dialogue dims what is behind it";
+    const cubemap::Picture::Level layer = picture("layer.exr");
+    EXPECT_GT(brightness(layer, {map.x + map.width / 2, map.y + map.height * 46 / 100}),
+              brightness(lasso, {map.x + map.width / 2, map.y + map.height * 46 / 100}));
+    EXPECT_FALSE(equal(layer, picture("rotated.exr"), map));
+    EXPECT_TRUE(equal(layer, picture("unrotated.exr"), map));
+    EXPECT_TRUE(equal(layer, picture("unrotated.exr"), viewport_));
+    EXPECT_EQ(cubemap::load_layers(folder_ / "on_picture.json").base, "picture.exr");
+    EXPECT_EQ(cubemap::load_layers(folder_ / "undone.json").base, "env.exr");
+    EXPECT_TRUE(cubemap::load_layers(folder_ / "nothing.json").layers.empty());
+}
+
+TEST_F(WindowTest, SavedLayersFindTheirPicturesFromAnotherFolder) {
+    cubemap::save_environment(folder_ / "picture.exr", cubemap::CubeMap(8, glm::vec3(3.0f)),
+                              cubemap::Layout::LatLong);
+    std::filesystem::create_directory(folder_ / "a");
+    std::filesystem::create_directory(folder_ / "b");
+    ASSERT_EQ(play("add_image picture.exr\n"
+                   "save_layers a/layers.json\n"
+                   "open a/layers.json\n"
+                   "save_layers b/layers.json\n"
+                   "open b/layers.json\n"),
+              0)
+        << words("err.txt");
+    const cubemap::LightLayers saved = cubemap::load_layers(folder_ / "b/layers.json");
+    ASSERT_EQ(saved.layers.size(), 1u);
+    EXPECT_EQ(std::get<cubemap::ImagePatch>(saved.layers[0].effect).path, "../picture.exr");
+    EXPECT_EQ(play("add_image missing.exr\n"), 1);
+    EXPECT_EQ(play("add_image env.png\n"), 1);
+    EXPECT_EQ(words("err.txt"),
+              "relumine: script line 1: env.png: expected .exr or .hdr for an image layer, got '.png'\n");
+}
+
 TEST_F(WindowTest, AScriptThatFailsEndsWithOneLine) {
     EXPECT_EQ(play("drag_layer Nobody 1,0,0\n"), 1);
     EXPECT_EQ(words("err.txt"), "relumine: script line 1: expected the name of a layer, got 'Nobody'\n");
