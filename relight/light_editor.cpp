@@ -22,27 +22,39 @@ namespace {
 /// Receivers whose radiance one task copies: about 10 microseconds, ten times the cost of starting it.
 constexpr std::size_t CopyGrain = 8192;
 
-/// The tiles of 16 x 16 texels in which two maps of one resolution differ.
+/// The tiles of 16 x 16 texels in which two maps of one resolution differ; NaN differs from everything.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
                           std::vector<cubemap::TexelRectangle>& tiles) {
     constexpr std::uint32_t TileSize = 16;
     const std::uint32_t r = before.resolution;
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < r; y += TileSize)
-            for (std::uint32_t x = 0; x < r; x += TileSize) {
-                const cubemap::TexelRectangle tile{.face = face,
-                                                   .x0 = x,
-                                                   .y0 = y,
-                                                   .x1 = std::min(x + TileSize, r),
-                                                   .y1 = std::min(y + TileSize, r)};
-                bool equal = true;
-                for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
-                    const glm::vec3* of_before = &before.at(face, x, row);
-                    equal = std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
-                }
-                if (!equal)
-                    tiles.push_back(tile);
+    const std::uint32_t rows = (r + TileSize - 1) / TileSize;
+    std::vector<std::vector<cubemap::TexelRectangle>> of_row(cubemap::NumFaces * std::size_t{rows});
+    tbb::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t i) {
+        const cubemap::Face face = cubemap::AllFaces[i / rows];
+        const auto y = static_cast<std::uint32_t>(i % rows) * TileSize;
+        for (std::uint32_t x = 0; x < r; x += TileSize) {
+            const cubemap::TexelRectangle tile{.face = face,
+                                               .x0 = x,
+                                               .y0 = y,
+                                               .x1 = std::min(x + TileSize, r),
+                                               .y1 = std::min(y + TileSize, r)};
+            bool equal = true;
+            for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
+                const glm::vec3* of_before = &before.at(face, x, row);
+                equal = std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
             }
+            if (!equal)
+                of_row[i].push_back(tile);
+        }
+    });
+    for (const std::vector<cubemap::TexelRectangle>& some : of_row)
+        tiles.insert(tiles.end(), some.begin(), some.end());
+}
+
+void require_radiance_in(const cubemap::CubeMap& map, std::span<const cubemap::TexelRectangle> rectangles) {
+    for (const cubemap::TexelRectangle& rectangle : rectangles)
+        for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
+            require_radiance({&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
 }
 
 /// Adds what of a rectangle is in none of the list yet.
@@ -132,7 +144,7 @@ UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
         return report_of(set_base(std::move(base)), relighter_.transfer());
     dirty_.clear();
     append_changed_tiles(*base_, base, dirty_);
-    require_radiance(base.texels);
+    require_radiance_in(base, dirty_); // the rest equals what was good
     const UpdateReport report = update_dirty(base, turned_layers_);
     base_ = std::make_shared<const cubemap::CubeMap>(std::move(base));
     return report;
@@ -237,10 +249,7 @@ UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,
     const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
         cubemap::composite(base, layers, dirty_, environment);
         try {
-            for (const cubemap::TexelRectangle& rectangle : dirty_)
-                for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
-                    require_radiance(
-                        {&environment.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
+            require_radiance_in(environment, dirty_);
         } catch (const std::invalid_argument&) { // layers too bright together
             cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
             throw;
