@@ -61,14 +61,21 @@ protected:
     /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
     [[nodiscard]] int play(const std::string& script) const {
         std::ofstream(folder_ / "script") << script;
+        // The program's words and exit code are kept inside: xvfb-run may fail to remove its own folder when a program ends soon.
+        std::ofstream(folder_ / "run") << fmt::format("'{}' view scene.prt env.exr --script script --size "
+                                                      "{}x{} --exposure 0 --json >out.txt 2>err.txt\n"
+                                                      "echo $? >code.txt\n",
+                                                      RELUMINE_BINARY, Width, Height);
+        std::filesystem::remove(folder_ / "code.txt");
         const std::string command =
             fmt::format("cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
                         "TSAN_OPTIONS=\"$TSAN_OPTIONS ignore_noninstrumented_modules=1\" xvfb-run -a -s "
-                        "'-screen 0 1280x1024x24' '{}' view scene.prt "
-                        "env.exr --script script --size {}x{} --exposure 0 --json >out.txt 2>err.txt",
-                        folder_.string(), RELUMINE_BINARY, Width, Height);
-        const int status = std::system(command.c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+                        "'-screen 0 1280x1024x24' sh run >xvfb.txt 2>&1",
+                        folder_.string());
+        static_cast<void>(std::system(command.c_str()));
+        int code = -1;
+        std::ifstream(folder_ / "code.txt") >> code;
+        return code;
     }
     [[nodiscard]] std::string words(const std::string& name) const {
         std::ifstream file(folder_ / name);
