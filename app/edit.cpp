@@ -16,6 +16,7 @@
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/file_watch.h"
+#include "app/lit_by.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "cubemap/environment.h"
@@ -36,7 +37,8 @@ struct Options {
     double radius_degrees = 10.0;
     std::string gain = "2";
     std::string saved_environment;
-    std::string who; ///< position
+    std::string who;    ///< position
+    std::string lit_by; ///< a layer or a disc
     bool watch = false;
 };
 
@@ -92,8 +94,16 @@ std::string numbered(const std::string& pattern, int frame) {
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const Options& options, const cubemap::LightLayers& layers) {
     OutputOptions output = options.output;
-    if (options.who.empty() && !layers.frames.empty())
+    if (options.who.empty() && options.lit_by.empty() && !layers.frames.empty())
         output.path = numbered(output.path, 0);
+    const std::string extension = std::filesystem::path(output.path).extension().string();
+    if (!options.who.empty() && extension != ".exr" && extension != ".png")
+        throw std::runtime_error(
+            fmt::format("{}: expected .exr or .png for --who, got '{}'", output.path, extension));
+    if (!options.who.empty())
+        static_cast<void>(parse_vec3("--who", options.who));
+    if (!options.lit_by.empty())
+        static_cast<void>(lit_by_region(options.lit_by, layers.layers));
     output.check({options.scene.path, options.environment.path, options.layers});
     if (!options.saved_environment.empty())
         check_saved_environment(options);
@@ -110,24 +120,33 @@ public:
         const relight::RelightTimes full = editor_.set_base(std::move(environment.map));
         seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
         apply_one_by_one();
-        if (!options_.who.empty())
-            save_who();
-        else if (!layers_.frames.empty())
-            save_frames();
-        else
-            save(options_.output.path);
+        write_output();
         if (!options_.saved_environment.empty())
             cubemap::save_environment(options_.saved_environment, editor_.environment());
         if (options_.watch)
             watch();
-        session_.report({{"clusters", lit_.scene().transfer.num_clusters()},
-                         {"clusters_touched", clusters_touched_},
-                         {"seconds_edit", seconds_edit_},
-                         {"seconds_full", seconds_full_},
-                         {"edits", edits_}});
+        nlohmann::json result = {{"clusters", lit_.scene().transfer.num_clusters()},
+                                 {"clusters_touched", clusters_touched_},
+                                 {"seconds_edit", seconds_edit_},
+                                 {"seconds_full", seconds_full_},
+                                 {"edits", edits_}};
+        if (!options_.lit_by.empty())
+            result["lit_by_share"] = lit_by_share_;
+        session_.report(result);
     }
 
 private:
+    void write_output() {
+        if (!options_.who.empty())
+            save_who();
+        else if (!options_.lit_by.empty())
+            save_lit_by();
+        else if (!layers_.frames.empty())
+            save_frames();
+        else
+            save(options_.output.path, editor_.radiance(), editor_.environment());
+    }
+
     void record(const std::string& name, const relight::UpdateReport& report) {
         clusters_touched_ += report.num_clusters;
         seconds_edit_ += report.seconds;
@@ -150,10 +169,11 @@ private:
         }
     }
 
-    void save(const std::string& path) const {
+    void save(const std::string& path, std::span<const glm::vec3> radiance,
+              const cubemap::CubeMap& environment) const {
         OutputOptions output = options_.output;
         output.path = path;
-        output.save(lit_, editor_.radiance(), editor_.environment());
+        output.save(lit_, radiance, environment);
     }
 
     void save_frames() {
@@ -161,7 +181,7 @@ private:
         const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
         for (int frame = first; frame <= last; ++frame) {
             record(fmt::format("frame {}", frame), editor_.set_layers(cubemap::layers_at(layers_, frame)));
-            save(numbered(options_.output.path, frame));
+            save(numbered(options_.output.path, frame), editor_.radiance(), editor_.environment());
             session_.poll();
         }
     }
@@ -181,18 +201,40 @@ private:
                                  nearest->x, nearest->y, nearest->z));
     }
 
+    /// The scene as a region of the environment lights it, with that region behind it.
+    void save_lit_by() {
+        const LitBy part = lit_by(editor_.relighter(), lit_by_region(options_.lit_by, editor_.layers()));
+        save(options_.output.path, part.radiance, part.environment);
+        lit_by_share_ = part.share;
+        session_.say(fmt::format("{}: what '{}' lights, {:.1f} % of the light that the scene reflects",
+                                 options_.output.path, options_.lit_by, 100.0 * part.share));
+    }
+
     void watch() {
+        using Clock = std::chrono::system_clock;
         FileWatch file(options_.environment.path);
         session_.say(fmt::format("{}: watching; Ctrl-C ends", options_.environment.path));
-        while (file.wait(session_.stop())) {
+        while (const std::optional<Clock::time_point> saved = file.wait(session_.stop())) {
             // A program may save in several steps; what does not load yet will be saved again.
             try {
                 LoadedEnvironment environment = load_environment(options_.environment, session_);
+                const double seconds_load = environment.seconds_load + environment.seconds_resample;
                 const relight::UpdateReport report = editor_.update_base(std::move(environment.map));
-                record(fmt::format("saved (load {:.0f} ms)",
-                                   1e3 * (environment.seconds_load + environment.seconds_resample)),
-                       report);
-                save(options_.output.path);
+                const double since_saved = std::chrono::duration<double>(Clock::now() - *saved).count();
+                Stopwatch output;
+                record("saved", report);
+                const std::size_t index = edits_.size() - 1;
+                write_output();
+                const double seconds_output = output.total();
+                // The file system's clock may be a tick behind.
+                const double seconds_reaction = std::max(0.0, since_saved - seconds_load);
+                edits_[index].update({{"seconds_load", seconds_load},
+                                      {"seconds_reaction", seconds_reaction},
+                                      {"seconds_output", seconds_output}});
+                session_.say(fmt::format("lit {:.1f} ms after it was saved, and {:.1f} ms to load it; "
+                                         "{:.1f} ms to write {}",
+                                         1e3 * seconds_reaction, 1e3 * seconds_load, 1e3 * seconds_output,
+                                         options_.output.path));
             } catch (const std::runtime_error& error) {
                 session_.say(error.what());
             }
@@ -206,6 +248,7 @@ private:
     relight::LightEditor editor_;
     double seconds_full_ = 0.0;
     double seconds_edit_ = 0.0;
+    double lit_by_share_ = 0.0;
     std::size_t clusters_touched_ = 0;
     nlohmann::json edits_ = nlohmann::json::array();
 };
@@ -238,6 +281,11 @@ void add_edit(CLI::App& program, Session& session) {
                        "write the edited environment: cube .exr or .hdr");
     command.add_option("--who", options->who,
                        "write what lights the vertex nearest to X,Y,Z instead: a lat-long .exr or .png");
+    command
+        .add_option("--lit-by", options->lit_by,
+                    "write the scene as lit by a region of the environment alone: a layer's name, or "
+                    "X,Y,Z,RADIUS for a disc")
+        ->excludes("--who");
     command.add_flag("--watch", options->watch,
                      "go on: when another program saves ENV, update and write OUT again");
     session.add_common_options(command);

@@ -8,11 +8,26 @@
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/inotify.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace relumine::app {
 
-FileWatch::FileWatch(const std::filesystem::path& path) : file_name_(path.filename().string()) {
+namespace {
+
+/// When a file was last written or got its name; now for one that is gone again.
+std::chrono::system_clock::time_point change_time(const std::filesystem::path& path) {
+    using Clock = std::chrono::system_clock;
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0)
+        return Clock::now();
+    return Clock::time_point(std::chrono::duration_cast<Clock::duration>(
+        std::chrono::seconds(status.st_ctim.tv_sec) + std::chrono::nanoseconds(status.st_ctim.tv_nsec)));
+}
+
+} // namespace
+
+FileWatch::FileWatch(const std::filesystem::path& path) : path_(path), file_name_(path.filename().string()) {
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     descriptor_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     // The folder, not the file: a renamed-over file is another file.
@@ -29,7 +44,7 @@ FileWatch::~FileWatch() {
     ::close(descriptor_);
 }
 
-bool FileWatch::wait(const std::stop_token& stop) {
+std::optional<std::chrono::system_clock::time_point> FileWatch::wait(const std::stop_token& stop) {
     constexpr int PollMilliseconds = 50;
     while (!stop.stop_requested()) {
         pollfd entry{.fd = descriptor_, .events = POLLIN, .revents = 0};
@@ -47,9 +62,9 @@ bool FileWatch::wait(const std::stop_token& stop) {
                 at += sizeof event + event.len;
             }
         if (saved)
-            return true;
+            return change_time(path_);
     }
-    return false;
+    return std::nullopt;
 }
 
 } // namespace relumine::app

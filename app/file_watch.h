@@ -1,7 +1,9 @@
 // Waits for a file to be saved by another program.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <optional>
 #include <stop_token>
 #include <string>
 
@@ -16,10 +18,12 @@ public:
     FileWatch(const FileWatch&) = delete;
     FileWatch& operator=(const FileWatch&) = delete;
 
-    /// Blocks until the file has been saved since the last call; false when asked to stop (noticed within 50 ms).
-    [[nodiscard]] bool wait(const std::stop_token& stop);
+    /// Blocks until the file has been saved since the last call, and tells when: the file system's time of its last write or renaming
+    /// (in steps of a few milliseconds). Nothing when asked to stop (noticed within 50 ms).
+    [[nodiscard]] std::optional<std::chrono::system_clock::time_point> wait(const std::stop_token& stop);
 
 private:
+    std::filesystem::path path_;
     std::string file_name_;
     int descriptor_ = -1;
 };

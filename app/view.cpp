@@ -104,15 +104,11 @@ void run(const Options& options, Session& session) {
     };
     relight::LightEditor editor(lit.scene().transfer, lit.shadow_rays());
     const std::string& path = options.environment.path;
+    editor.set_rotation(options.environment.rotate_degrees);
     editor.set_base(path.empty() ? plain_grey() : load(path));
-    viewer::LightDesk desk(editor);
-    viewer::ViewState state{.mesh = lit.scene().mesh,
-                            .rays = lit.rays(),
-                            .desk = desk,
-                            .load_environment = load,
-                            .environment_path = path};
-    if (options.environment.rotate_degrees != 0.0)
-        desk.set_rotation(options.environment.rotate_degrees);
+    viewer::LightDesk desk(editor, path);
+    viewer::ViewState state{
+        .mesh = lit.scene().mesh, .rays = lit.rays(), .desk = desk, .load_environment = load};
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = options.exposure_ev ? static_cast<float>(*options.exposure_ev)

@@ -169,4 +169,84 @@ bool ArcTree::encloses(const glm::dvec2& point) const {
     return inside;
 }
 
+namespace {
+
+/// How far from a ball's centre an arc may be to matter in the ball. At any w in it, the nearest arc is no further than distance + chord, so
+/// no further than distance + 2 chord from the centre; one within `chord` of w is within 2 chord of it. A hair more for rounding.
+double reach_of(double distance, double chord) {
+    return (distance + 2.0 * chord) * (1.0 + 1e-9) + 1e-12;
+}
+
+} // namespace
+
+NearArcs::NearArcs(const ArcTree& tree, const glm::dvec3& w, double chord)
+    : tree_(&tree), distance_(std::sqrt(tree.squared_distance(w))) {
+    collect_from_tree(w, reach_of(distance_, chord));
+}
+
+NearArcs::NearArcs(const NearArcs& wider, const glm::dvec3& w, double chord) : tree_(wider.tree_) {
+    if (wider.too_many()) {
+        distance_ = std::sqrt(tree_->squared_distance(w));
+        collect_from_tree(w, reach_of(distance_, chord));
+        return;
+    }
+    std::array<double, MaxArcs> squared;
+    double nearest = std::numeric_limits<double>::max();
+    for (std::size_t i = 0; i < wider.count_; ++i) {
+        squared[i] = tree_->arcs_[wider.arcs_[i]].squared_distance(w);
+        nearest = std::min(nearest, squared[i]);
+    }
+    distance_ = std::sqrt(nearest);
+    const double reach = reach_of(distance_, chord);
+    for (std::size_t i = 0; i < wider.count_; ++i)
+        if (squared[i] <= reach * reach)
+            arcs_[count_++] = wider.arcs_[i];
+}
+
+void NearArcs::collect_from_tree(const glm::dvec3& w, double reach) {
+    std::array<std::uint32_t, StackSize> stack;
+    std::size_t size = 0;
+    stack[size++] = 0;
+    while (size > 0) {
+        const std::uint32_t index = stack[--size];
+        const ArcTree::Node& node = tree_->nodes_[index];
+        const double to_ball = reach + node.radius;
+        if (squared_length(w - node.centre) > to_ball * to_ball)
+            continue;
+        if (node.second != 0) {
+            stack[size++] = node.second;
+            stack[size++] = index + 1;
+            continue;
+        }
+        for (std::uint32_t i = node.begin; i < node.end; ++i) {
+            if (tree_->arcs_[i].squared_distance(w) > reach * reach)
+                continue;
+            if (count_ == MaxArcs) {
+                count_ = MaxArcs + 1;
+                return;
+            }
+            arcs_[count_++] = i;
+        }
+    }
+}
+
+double NearArcs::squared_distance(const glm::dvec3& w, double limit) const {
+    if (too_many())
+        return tree_->squared_distance(w, limit);
+    double nearest = limit;
+    for (std::size_t i = 0; i < count_; ++i)
+        nearest = std::min(nearest, tree_->arcs_[arcs_[i]].squared_distance(w));
+    return nearest;
+}
+
+bool NearArcs::several_within(const glm::dvec3& w, double chord) const {
+    if (too_many())
+        return tree_->several_within(w, chord);
+    int found = 0;
+    for (std::size_t i = 0; i < count_; ++i)
+        if (tree_->arcs_[arcs_[i]].squared_distance(w) <= chord * chord && ++found == 2)
+            return true;
+    return false;
+}
+
 } // namespace relumine::cubemap

@@ -1,6 +1,8 @@
 // Great-circle arcs in the order of a line, in a tree of balls: the distance to the nearest in logarithmic time.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -31,6 +33,7 @@ public:
     [[nodiscard]] bool encloses(const glm::dvec2& point) const;
 
 private:
+    friend class NearArcs;
     struct Arc {
         glm::dvec3 from{0.0}, to{0.0};
         glm::dvec3 normal{0.0}; ///< unit, of the great circle; zero for an arc of no length
@@ -51,6 +54,38 @@ private:
 
     std::vector<Arc> arcs_;
     std::vector<Node> nodes_;
+};
+
+/// The arcs of a tree that matter in a ball around a direction: those that may be the nearest of a direction in it, or within the ball's radius of
+/// one. There the answers are the tree's, bit by bit, from a few arcs instead of a search. The tree must outlive it.
+class NearArcs {
+public:
+    /// Of all directions within a chord of a unit direction.
+    NearArcs(const ArcTree& tree, const glm::dvec3& w, double chord);
+    /// The same from the arcs of a ball that this one lies in.
+    NearArcs(const NearArcs& wider, const glm::dvec3& w, double chord);
+
+    /// From the ball's centre to the nearest arc.
+    [[nodiscard]] double distance() const { return distance_; }
+
+    /// As ArcTree's, for directions in the ball.
+    [[nodiscard]] double squared_distance(const glm::dvec3& w,
+                                          double limit = std::numeric_limits<double>::max()) const;
+    /// As ArcTree's, for directions in the ball and chords up to its radius.
+    [[nodiscard]] bool several_within(const glm::dvec3& w, double chord) const;
+    /// As ArcTree's; this one question goes to the tree.
+    [[nodiscard]] bool encloses(const glm::dvec2& point) const { return tree_->encloses(point); }
+
+private:
+    /// More than these are not fewer work than the tree: a ball this large asks it.
+    static constexpr std::size_t MaxArcs = 64;
+    [[nodiscard]] bool too_many() const { return count_ > MaxArcs; }
+    void collect_from_tree(const glm::dvec3& w, double reach);
+
+    const ArcTree* tree_;
+    double distance_ = 0.0;
+    std::size_t count_ = 0; ///< MaxArcs + 1: too many
+    std::array<std::uint32_t, MaxArcs> arcs_;
 };
 
 } // namespace relumine::cubemap

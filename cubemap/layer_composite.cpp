@@ -76,8 +76,9 @@ void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& ran
         if (mean > 0.0)
             texel(range.x0, range.y0, mean);
     } else {
+        const auto& part_of_shape = narrowed(shape, grid, range);
         for (int i = 0; i < 4; ++i)
-            for_covered(shape, grid, range.quarter(i), rectangle, texel);
+            for_covered(part_of_shape, grid, range.quarter(i), rectangle, texel);
     }
 }
 
@@ -215,6 +216,16 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
         if (rectangle.x0 < rectangle.x1 && rectangle.y0 < rectangle.y1)
             composite_rectangle(base, ready, rectangle, target);
     }
+}
+
+std::vector<float> coverage_map(const Region& region, std::uint32_t resolution) {
+    const LightLayer layer{.name = "region", .region = region, .effect = Emit{}};
+    const CubeMap map = composite(CubeMap(resolution, glm::vec3(0.0f)), {&layer, 1});
+    std::vector<float> coverage;
+    coverage.reserve(map.texels.size());
+    for (const glm::vec3& texel : map.texels)
+        coverage.push_back(texel.r);
+    return coverage;
 }
 
 CubeMap composite(const CubeMap& base, std::span<const LightLayer> layers) {

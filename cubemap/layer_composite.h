@@ -31,6 +31,10 @@ namespace relumine::cubemap {
 void composite(const CubeMap& base, std::span<const LightLayer> layers,
                std::span<const TexelRectangle> rectangles, CubeMap& target);
 
+/// Mean coverage of a region over each texel, [6 R R] as a cube map's texels; on black, what an Emit layer of radiance 1 makes them.
+/// Throws like validate().
+[[nodiscard]] std::vector<float> coverage_map(const Region& region, std::uint32_t resolution);
+
 /// The one-call form: the whole map.
 [[nodiscard]] CubeMap composite(const CubeMap& base, std::span<const LightLayer> layers);
 

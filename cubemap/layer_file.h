@@ -29,8 +29,8 @@ struct KeyFrame {
 struct LightLayers {
     /// The environment below, as the file names it: relative to the file's folder (`file.parent_path() / *base`).
     std::optional<std::filesystem::path> base = {};
-    std::vector<LightLayer> layers; ///< the first lowest; names differ
-    std::vector<KeyFrame> frames;   ///< ascending
+    std::vector<LightLayer> layers = {}; ///< the first lowest; names differ
+    std::vector<KeyFrame> frames = {};   ///< ascending
     bool operator==(const LightLayers&) const = default;
 };
 

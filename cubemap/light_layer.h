@@ -40,8 +40,8 @@ struct Rectangle {
 /// A polygon on the sphere, its edges arcs of great circles, closed from the last point to the first. Where it overlaps itself,
 /// what it encloses twice is outside. Coverage rises smoothly from 0 at the outline to 1 at `softness_degrees` inside it.
 struct Lasso {
-    std::vector<glm::dvec3>
-        points; ///< at least 3 of any length but zero, all within 89.9 degrees of their mean
+    /// At least 3 of any length but zero, all within 89.9 degrees of their mean.
+    std::vector<glm::dvec3> points = {};
     double softness_degrees = 0.0; ///< [0, 90]
     bool operator==(const Lasso&) const = default;
 };
@@ -49,8 +49,8 @@ struct Lasso {
 /// A brush stroke: all directions within `radius` of a line of great-circle arcs from point to point; one point is a dab.
 /// Coverage as a disc's.
 struct Stroke {
-    std::vector<glm::dvec3>
-        points;                  ///< at least 1 of any length but zero; no two neighbours opposite each other
+    std::vector<glm::dvec3> points =
+        {};                      ///< at least 1 of any length but zero; no two neighbours opposite each other
     double radius_degrees = 2.0; ///< above 0, up to 90
     double softness = 0.5;       ///< [0, 1]
     bool operator==(const Stroke&) const = default;

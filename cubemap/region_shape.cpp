@@ -151,70 +151,102 @@ double RectangleShape::solid_angle_of_picture(const glm::dvec3& w) const {
     return 4.0 * half_.x * half_.y * depth * depth * depth;
 }
 
-LassoShape::LassoShape(const Lasso& lasso)
-    : mean_(mean_direction(lasso.points)), outline_(unit_vectors(lasso.points), true) {
-    const glm::dvec3 off = std::abs(mean_.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
-    first_ = glm::normalize(glm::cross(off, mean_));
-    second_ = glm::cross(mean_, first_);
-    std::vector<glm::dvec2> plane;
-    plane.reserve(lasso.points.size());
+template<typename Arcs>
+LassoRamps<Arcs>::LassoRamps(const Lasso& lasso) requires std::same_as<Arcs, ArcTree>
+    : outline_(unit_vectors(lasso.points), true) {
+    const glm::dvec3 mean = mean_direction(lasso.points);
+    const glm::dvec3 off = std::abs(mean.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
+    const glm::dvec3 first = glm::normalize(glm::cross(off, mean));
+    plane_ = {mean, first, glm::cross(mean, first)};
+    std::vector<glm::dvec2> on_plane;
+    on_plane.reserve(lasso.points.size());
     double extent = 0.0;
     for (const glm::dvec3& point : lasso.points) {
-        const double depth = glm::dot(point, mean_);
-        plane.emplace_back(glm::dot(point, first_) / depth, glm::dot(point, second_) / depth);
-        extent = std::max(extent, glm::length(glm::normalize(point) - mean_));
+        const double depth = glm::dot(point, mean);
+        on_plane.emplace_back(glm::dot(point, plane_.first) / depth, glm::dot(point, plane_.second) / depth);
+        extent = std::max(extent, glm::length(glm::normalize(point) - mean));
     }
-    outline_.set_plane(plane);
-    extent_ = std::max(extent, HardEdge);
-    band_ = std::max(chord(lasso.softness_degrees), HardEdge * extent_);
-    smallest_feature_ = extent_ / 256.0;
+    outline_.set_plane(on_plane);
+    size_.extent = std::max(extent, HardEdge);
+    size_.band = std::max(chord(lasso.softness_degrees), HardEdge * size_.extent);
+    size_.smallest_feature = size_.extent / 256.0;
 }
 
-bool LassoShape::inside(const glm::dvec3& w) const {
-    const double depth = glm::dot(w, mean_);
+template<typename Arcs>
+bool LassoRamps<Arcs>::inside(const glm::dvec3& w) const {
+    if (side_)
+        return *side_;
+    const double depth = glm::dot(w, plane_.mean);
     if (depth < 1e-4) // the points lie within 89.9 degrees of the mean, depth 0.0017
         return false;
-    return outline_.encloses({glm::dot(w, first_) / depth, glm::dot(w, second_) / depth});
+    return outline_.encloses({glm::dot(w, plane_.first) / depth, glm::dot(w, plane_.second) / depth});
 }
 
-Overlap LassoShape::bound(const glm::dvec3& w, double chord_radius) const {
-    const double away = glm::length(w - mean_) - extent_;
+template<typename Arcs>
+Overlap LassoRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const {
+    const double away = glm::length(w - plane_.mean) - size_.extent;
     if (away >= chord_radius)
         return Overlap::None;
-    const double reach = band_ + chord_radius;
+    const double reach = size_.band + chord_radius;
     // A little more than needed, so that rounding cannot make a cell deep inside one at the edge.
     const double distance = std::sqrt(outline_.squared_distance(w, 1.001 * reach * reach));
-    return bound_of_depth(inside(w) ? distance : -distance, band_, chord_radius);
+    return bound_of_depth(inside(w) ? distance : -distance, size_.band, chord_radius);
 }
 
-std::array<double, 1> LassoShape::ramps(const glm::dvec3& w) const {
+template<typename Arcs>
+std::array<double, 1> LassoRamps<Arcs>::ramps(const glm::dvec3& w) const {
     const double distance = std::sqrt(outline_.squared_distance(w));
-    return {(inside(w) ? distance : -distance) / band_};
+    return {(inside(w) ? distance : -distance) / size_.band};
 }
 
-bool LassoShape::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
+template<typename Arcs>
+bool LassoRamps<Arcs>::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
     // Corners are where two edges come near; below 1/64 of the size what they hide is below 1/4096. Cells of more than 1/16 may have a
     // sample beyond a corner that lies outside the cell.
-    return chord_radius > extent_ / 64.0 &&
-           (chord_radius > extent_ / 16.0 || outline_.several_within(w, chord_radius));
+    return chord_radius > size_.extent / 64.0 &&
+           (chord_radius > size_.extent / 16.0 || outline_.several_within(w, chord_radius));
 }
 
-StrokeShape::StrokeShape(const Stroke& stroke)
-    : line_(unit_vectors(stroke.points), false), outer_(chord(stroke.radius_degrees)),
-      inner_(chord(stroke.radius_degrees * (1.0 - stroke.softness))), squared_outer_(outer_ * outer_),
-      inverse_band_(inverse_band(outer_, inner_)), smallest_feature_(outer_ / 64.0) {}
+template<typename Arcs>
+LassoRamps<NearArcs> LassoRamps<Arcs>::within(const glm::dvec3& w, double chord_radius) const {
+    const NearArcs outline(outline_, w, chord_radius);
+    LassoRamps<NearArcs> result(plane_, size_, outline);
+    result.side_ = side_;
+    // A ball that the outline does not meet lies on one side of it. A margin for rounding.
+    if (!side_ && outline.distance() > 1.000001 * chord_radius + 1e-9)
+        result.side_ = inside(w);
+    return result;
+}
 
-Overlap StrokeShape::bound(const glm::dvec3& w, double chord_radius) const {
-    const double reach = outer_ + chord_radius;
+template class LassoRamps<ArcTree>;
+template class LassoRamps<NearArcs>;
+
+template<typename Arcs>
+StrokeRamps<Arcs>::StrokeRamps(const Stroke& stroke) requires std::same_as<Arcs, ArcTree>
+    : line_(unit_vectors(stroke.points), false) {
+    size_.outer = chord(stroke.radius_degrees);
+    size_.inner = chord(stroke.radius_degrees * (1.0 - stroke.softness));
+    size_.squared_outer = size_.outer * size_.outer;
+    size_.inverse_band = inverse_band(size_.outer, size_.inner);
+    size_.smallest_feature = size_.outer / 64.0;
+}
+
+template<typename Arcs>
+Overlap StrokeRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const {
+    const double reach = size_.outer + chord_radius;
     const double squared = line_.squared_distance(w, reach * reach);
     if (squared >= reach * reach)
         return Overlap::None;
-    const double room = inner_ - chord_radius;
+    const double room = size_.inner - chord_radius;
     return room >= 0.0 && squared <= room * room ? Overlap::All : Overlap::Part;
 }
 
-std::array<double, 1> StrokeShape::ramps(const glm::dvec3& w) const {
-    return {(squared_outer_ - line_.squared_distance(w)) * inverse_band_};
+template<typename Arcs>
+std::array<double, 1> StrokeRamps<Arcs>::ramps(const glm::dvec3& w) const {
+    return {(size_.squared_outer - line_.squared_distance(w)) * size_.inverse_band};
 }
+
+template class StrokeRamps<ArcTree>;
+template class StrokeRamps<NearArcs>;
 
 } // namespace relumine::cubemap

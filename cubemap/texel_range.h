@@ -50,14 +50,32 @@ struct FaceGrid {
     }
 };
 
+/// The ball of directions that holds a block of texels.
+struct BlockBall {
+    BlockBall(const FaceGrid& grid, const TexelRange& range) {
+        const double u = (range.x0 + range.x1) * grid.half_texel - 1.0;
+        const double v = (range.y0 + range.y1) * grid.half_texel - 1.0;
+        const double width = (range.x1 - range.x0) * grid.half_texel;
+        const double height = (range.y1 - range.y0) * grid.half_texel;
+        centre = grid.plane.direction(u, v);
+        chord = std::sqrt(width * width + height * height);
+    }
+    glm::dvec3 centre;
+    double chord;
+};
+
 /// How a region meets the texels of a block. None and All are certain.
 template<typename Shape>
 [[nodiscard]] Overlap bound(const Shape& shape, const FaceGrid& grid, const TexelRange& range) {
-    const double u = (range.x0 + range.x1) * grid.half_texel - 1.0;
-    const double v = (range.y0 + range.y1) * grid.half_texel - 1.0;
-    const double width = (range.x1 - range.x0) * grid.half_texel;
-    const double height = (range.y1 - range.y0) * grid.half_texel;
-    return shape.bound(grid.plane.direction(u, v), std::sqrt(width * width + height * height));
+    const BlockBall ball(grid, range);
+    return shape.bound(ball.centre, ball.chord);
+}
+
+/// The region as it is within a block.
+template<typename Shape>
+[[nodiscard]] decltype(auto) narrowed(const Shape& shape, const FaceGrid& grid, const TexelRange& range) {
+    const BlockBall ball(grid, range);
+    return shape.within(ball.centre, ball.chord);
 }
 
 } // namespace relumine::cubemap

@@ -47,7 +47,7 @@ public:
     /// The box of the touched texels within a rectangle; empty if there are none.
     [[nodiscard]] TexelRectangle box(const TexelRectangle& within) const {
         TexelRectangle result{.face = within.face};
-        grow(TexelRange(0, 0, std::bit_ceil(resolution_), resolution_), within, result);
+        grow(shape_, TexelRange(0, 0, std::bit_ceil(resolution_), resolution_), within, result);
         return result;
     }
 
@@ -73,19 +73,22 @@ public:
     }
 
 private:
-    void grow(const TexelRange& range, const TexelRectangle& within, TexelRectangle& result) const {
+    template<typename Narrowed>
+    void grow(const Narrowed& shape, const TexelRange& range, const TexelRectangle& within,
+              TexelRectangle& result) const {
         const TexelRange part = range.within(within);
         if (part.empty() || (area(result) > 0 && contains(result, part)))
             return;
-        const Overlap overlap = bound(shape_, grid_, range);
+        const Overlap overlap = bound(shape, grid_, range);
         if (overlap == Overlap::None)
             return;
         if (overlap == Overlap::All || range.is_texel()) {
             extend(result, part);
             return;
         }
+        const auto& part_of_shape = narrowed(shape, grid_, range);
         for (int i = 0; i < 4; ++i)
-            grow(range.quarter(i), within, result);
+            grow(part_of_shape, range.quarter(i), within, result);
     }
 
     const Shape& shape_;

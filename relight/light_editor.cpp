@@ -3,8 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <numbers>
+#include <optional>
+#include <set>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -18,27 +22,98 @@ namespace {
 /// Receivers whose radiance one task copies: about 10 microseconds, ten times the cost of starting it.
 constexpr std::size_t CopyGrain = 8192;
 
-/// The tiles of 16 x 16 texels in which two maps of one resolution differ.
+/// The tiles of 16 x 16 texels in which two maps of one resolution differ; NaN differs from everything.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
                           std::vector<cubemap::TexelRectangle>& tiles) {
     constexpr std::uint32_t TileSize = 16;
     const std::uint32_t r = before.resolution;
-    for (const cubemap::Face face : cubemap::AllFaces)
-        for (std::uint32_t y = 0; y < r; y += TileSize)
-            for (std::uint32_t x = 0; x < r; x += TileSize) {
-                const cubemap::TexelRectangle tile{.face = face,
-                                                   .x0 = x,
-                                                   .y0 = y,
-                                                   .x1 = std::min(x + TileSize, r),
-                                                   .y1 = std::min(y + TileSize, r)};
-                bool equal = true;
-                for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
-                    const glm::vec3* of_before = &before.at(face, x, row);
-                    equal = std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
-                }
-                if (!equal)
-                    tiles.push_back(tile);
+    const std::uint32_t rows = (r + TileSize - 1) / TileSize;
+    std::vector<std::vector<cubemap::TexelRectangle>> of_row(cubemap::NumFaces * std::size_t{rows});
+    tbb::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t i) {
+        const cubemap::Face face = cubemap::AllFaces[i / rows];
+        const auto y = static_cast<std::uint32_t>(i % rows) * TileSize;
+        for (std::uint32_t x = 0; x < r; x += TileSize) {
+            const cubemap::TexelRectangle tile{.face = face,
+                                               .x0 = x,
+                                               .y0 = y,
+                                               .x1 = std::min(x + TileSize, r),
+                                               .y1 = std::min(y + TileSize, r)};
+            bool equal = true;
+            for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
+                const glm::vec3* of_before = &before.at(face, x, row);
+                equal = std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
             }
+            if (!equal)
+                of_row[i].push_back(tile);
+        }
+    });
+    for (const std::vector<cubemap::TexelRectangle>& some : of_row)
+        tiles.insert(tiles.end(), some.begin(), some.end());
+}
+
+void require_radiance_in(const cubemap::CubeMap& map, std::span<const cubemap::TexelRectangle> rectangles) {
+    for (const cubemap::TexelRectangle& rectangle : rectangles)
+        for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
+            require_radiance({&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
+}
+
+/// Adds what of a rectangle is in none of the list yet.
+void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t first,
+                      std::vector<cubemap::TexelRectangle>& list) {
+    for (std::size_t i = first; i < list.size(); ++i) {
+        const cubemap::TexelRectangle there = list[i];
+        if (there.face != rectangle.face || there.x0 >= rectangle.x1 || there.x1 <= rectangle.x0 ||
+            there.y0 >= rectangle.y1 || there.y1 <= rectangle.y0)
+            continue;
+        // Above and below as wide as it is, left and right between.
+        cubemap::TexelRectangle above = rectangle, below = rectangle, left = rectangle, right = rectangle;
+        above.y1 = left.y0 = right.y0 = std::max(rectangle.y0, there.y0);
+        below.y0 = left.y1 = right.y1 = std::min(rectangle.y1, there.y1);
+        left.x1 = std::max(rectangle.x0, there.x0);
+        right.x0 = std::min(rectangle.x1, there.x1);
+        for (const cubemap::TexelRectangle& part : {above, below, left, right})
+            if (part.x0 < part.x1 && part.y0 < part.y1)
+                append_uncovered(part, i + 1, list);
+        return;
+    }
+    list.push_back(rectangle);
+}
+
+/// Where two strokes differ of which one goes on where the other ends, as when one is painted: the new piece, a little wider.
+std::optional<cubemap::LightLayer> added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b,
+                                               std::uint32_t resolution) {
+    const auto* from = std::get_if<cubemap::Stroke>(&a.region);
+    const auto* to = std::get_if<cubemap::Stroke>(&b.region);
+    if (!from || !to || a.on != b.on || a.gain_ev != b.gain_ev || a.effect != b.effect ||
+        from->radius_degrees != to->radius_degrees || from->softness != to->softness)
+        return std::nullopt;
+    if (from->points.size() > to->points.size())
+        std::swap(from, to);
+    if (!std::equal(from->points.begin(), from->points.end(), to->points.begin()))
+        return std::nullopt;
+    // A texel at the rim of both is fitted to the distance at its corners, so a piece counts that comes near them without covering
+    // them: up to three times the chord from a texel's centre to its corner, one of which touched_texels() adds.
+    constexpr double Radian = 180.0 / std::numbers::pi;
+    const double margin = 2.0 * 1.5 / resolution;
+    const double chord = 2.0 * std::sin(0.5 * to->radius_degrees / Radian) + margin;
+    cubemap::LightLayer piece = b;
+    cubemap::Stroke stroke = *to;
+    stroke.points.assign(to->points.begin() + static_cast<std::ptrdiff_t>(from->points.size()) - 1,
+                         to->points.end());
+    stroke.radius_degrees = 2.0 * std::asin(std::min(0.5 * chord, 1.0)) * Radian;
+    stroke.softness = 0.0;
+    if (stroke.radius_degrees > 90.0)
+        return std::nullopt;
+    piece.region = std::move(stroke);
+    return piece;
+}
+
+/// The report of a relighting of everything.
+UpdateReport report_of(const RelightTimes& times, const prt::Transfer& transfer) {
+    return {.num_clusters = transfer.num_clusters(),
+            .num_receivers = transfer.num_receivers(),
+            .num_sharp_lights = times.num_sharp_lights,
+            .seconds = times.seconds_bin + times.seconds_trace + times.seconds_relight};
 }
 
 } // namespace
@@ -47,23 +122,31 @@ LightEditor::LightEditor(const prt::Transfer& transfer, const ShadowRays& rays)
     : relighter_(transfer, rays), history_(1) {}
 
 RelightTimes LightEditor::set_base(cubemap::CubeMap base) {
-    base_ = std::move(base);
-    return relight_all();
+    auto next = std::make_shared<const cubemap::CubeMap>(std::move(base));
+    if (next->resolution == 0)
+        throw std::invalid_argument("expected a base with texels");
+    const std::shared_ptr<const cubemap::CubeMap> before = std::exchange(base_, std::move(next));
+    try {
+        const RelightTimes times = relight_all();
+        if (!before)
+            for (State& state : history_)
+                state.base = base_;
+        return times;
+    } catch (const std::invalid_argument&) { // too bright, alone or under its layers
+        base_ = before;
+        turn_base();
+        throw;
+    }
 }
 
 UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
-    if (base.resolution != base_.resolution || rotation_degrees_ != 0.0) {
-        const RelightTimes times = set_base(std::move(base));
-        return {.num_clusters = relighter_.transfer().num_clusters(),
-                .num_receivers = relighter_.transfer().num_receivers(),
-                .num_sharp_lights = times.num_sharp_lights,
-                .seconds = times.seconds_bin + times.seconds_trace + times.seconds_relight};
-    }
+    if (!base_ || base.resolution != base_->resolution || rotation_degrees_ != 0.0)
+        return report_of(set_base(std::move(base)), relighter_.transfer());
     dirty_.clear();
-    append_changed_tiles(base_, base, dirty_);
-    require_radiance(base.texels);
+    append_changed_tiles(*base_, base, dirty_);
+    require_radiance_in(base, dirty_); // the rest equals what was good
     const UpdateReport report = update_dirty(base, turned_layers_);
-    base_ = std::move(base);
+    base_ = std::make_shared<const cubemap::CubeMap>(std::move(base));
     return report;
 }
 
@@ -75,16 +158,22 @@ RelightTimes LightEditor::set_rotation(double degrees_about_y) {
 }
 
 RelightTimes LightEditor::relight_all() {
-    if (base_.resolution == 0)
+    if (!base_)
         return {};
-    turned_base_ = rotation_degrees_ == 0.0 ? cubemap::CubeMap() : cubemap::rotated(base_, rotation_degrees_);
+    turn_base();
     turn(layers_, turned_layers_);
     cubemap::CubeMap environment = turned_base();
     cubemap::composite(turned_base(), turned_layers_, cubemap::all_texels(environment.resolution),
                        environment);
     const RelightTimes times = relighter_.set_environment(std::move(environment));
+    dirty_ = cubemap::all_texels(relighter_.environment().resolution);
     publish();
     return times;
+}
+
+void LightEditor::turn_base() {
+    turned_base_ =
+        rotation_degrees_ == 0.0 || !base_ ? cubemap::CubeMap() : cubemap::rotated(*base_, rotation_degrees_);
 }
 
 void LightEditor::turn(std::span<const cubemap::LightLayer> layers,
@@ -118,27 +207,36 @@ UpdateReport LightEditor::set_layer(std::size_t index, const cubemap::LightLayer
 
 UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     turn(layers, next_layers_);
-    if (base_.resolution == 0) {
+    dirty_.clear();
+    touched_.clear();
+    if (!base_) {
         std::swap(turned_layers_, next_layers_);
         return {};
     }
     // Layers at the same place in both lists that are equal change nothing; all others dirty what they cover, before and after. A layer that
     // moved within the list is compared with its new neighbour, and so dirtied.
-    dirty_.clear();
     const auto add = [&](const cubemap::LightLayer& layer) {
-        for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_.resolution))
-            add_merged(touched, dirty_);
+        for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_->resolution))
+            add_merged(touched, touched_);
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
     for (std::size_t i = 0; i < num_places; ++i) {
         const bool both = i < turned_layers_.size() && i < next_layers_.size();
         if (both && turned_layers_[i] == next_layers_[i])
             continue;
+        if (const auto piece =
+                both ? added_piece(turned_layers_[i], next_layers_[i], base_->resolution) : std::nullopt) {
+            add(*piece);
+            continue;
+        }
         if (i < turned_layers_.size())
             add(turned_layers_[i]);
         if (i < next_layers_.size())
             add(next_layers_[i]);
     }
+    // Rectangles that do not grow by it were made one; what of others overlaps is done once all the same.
+    for (const cubemap::TexelRectangle& touched : touched_)
+        append_uncovered(touched, 0, dirty_);
     const UpdateReport report = update_dirty(turned_base(), next_layers_);
     std::swap(turned_layers_, next_layers_);
     return report;
@@ -151,10 +249,7 @@ UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,
     const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
         cubemap::composite(base, layers, dirty_, environment);
         try {
-            for (const cubemap::TexelRectangle& rectangle : dirty_)
-                for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
-                    require_radiance(
-                        {&environment.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
+            require_radiance_in(environment, dirty_);
         } catch (const std::invalid_argument&) { // layers too bright together
             cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
             throw;
@@ -165,13 +260,44 @@ UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,
 }
 
 void LightEditor::mark() {
+    State present{.layers = layers_, .rotation_degrees = rotation_degrees_, .base = base_};
     history_.resize(at_ + 1);
-    if (!std::equal(layers_.begin(), layers_.end(), history_[at_].begin(), history_[at_].end())) {
-        history_.push_back(layers_);
+    if (present != history_[at_]) {
+        history_.push_back(std::move(present));
         ++at_;
+        forget_oldest();
     }
     // A mark is a state to come back to bit by bit, however one came there.
-    if (base_.resolution != 0) {
+    if (base_) {
+        relighter_.resum();
+        publish();
+    }
+}
+
+void LightEditor::forget_oldest() {
+    const auto bytes_of = [](const cubemap::CubeMap& map) {
+        return map.texels.size() * sizeof(map.texels.front());
+    };
+    // From the newest mark back: how many fit?
+    std::set<const cubemap::CubeMap*> bases = {base_.get()};
+    std::size_t bytes = 0;
+    std::size_t first = history_.size();
+    while (first > 0) {
+        const cubemap::CubeMap* base = history_[first - 1].base.get();
+        if (base && bases.insert(base).second)
+            bytes += bytes_of(*base);
+        if (bytes > max_history_bytes_ && first + 2 <= history_.size())
+            break;
+        --first;
+    }
+    history_.erase(history_.begin(), history_.begin() + static_cast<std::ptrdiff_t>(first));
+    at_ -= first;
+}
+
+void LightEditor::forget_history() {
+    history_.assign(1, {.layers = layers_, .rotation_degrees = rotation_degrees_, .base = base_});
+    at_ = 0;
+    if (base_) {
         relighter_.resum();
         publish();
     }
@@ -187,9 +313,15 @@ UpdateReport LightEditor::redo() {
 
 UpdateReport LightEditor::go_to(std::size_t mark) {
     at_ = mark;
-    layers_ = history_[at_];
+    const State& state = history_[at_];
+    layers_ = state.layers;
+    if (state.base != base_ || state.rotation_degrees != rotation_degrees_) {
+        base_ = state.base;
+        rotation_degrees_ = state.rotation_degrees;
+        return report_of(relight_all(), relighter_.transfer());
+    }
     const UpdateReport report = apply(layers_);
-    if (base_.resolution != 0) {
+    if (base_) {
         relighter_.resum();
         publish();
     }

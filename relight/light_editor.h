@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <shared_mutex>
 #include <span>
 #include <vector>
@@ -28,8 +29,11 @@ public:
     /// Arguments as for Relighter; the transfer must outlive the editor.
     explicit LightEditor(const prt::Transfer& transfer, const ShadowRays& rays = {});
 
-    /// Replaces the base environment and relights everything. Layers and history stay.
+    /// Replaces the base environment and relights everything. Layers stay. The first base becomes that of all marks before it. Throws
+    /// std::invalid_argument for a map without texels or a radiance that require_radiance() refuses; nothing has changed then.
     RelightTimes set_base(cubemap::CubeMap base);
+    /// The base as given, unturned; null before the first. Another object after every change of it, so that pointers tell bases apart.
+    [[nodiscard]] const std::shared_ptr<const cubemap::CubeMap>& base() const { return base_; }
 
     /// Replaces the base by another of the same resolution and updates only what differs, as found by comparing tiles of 16 x 16 texels (where
     /// a rotation or another resolution stands in the way: everything). For files that another program saves again and again.
@@ -50,8 +54,16 @@ public:
     /// Replaces one layer, as while it is dragged. Throws std::invalid_argument as above, std::out_of_range for an index.
     UpdateReport set_layer(std::size_t index, const cubemap::LightLayer& layer);
 
-    /// Marks the present layers as a state that undo() comes back to. An edit without a mark is not in the history.
+    /// Marks the present layers, rotation and base as a state that undo() comes back to. An edit without a mark is not in the history.
+    ///
+    /// Memory: marks share the bases and pictures they have in common, so a mark after a change of layers takes a kilobyte or so for each layer
+    /// and one after a change of base a whole map (6 R^2 x 12 bytes). When the history's bases, without the present one, come to more than
+    /// limit_history() allows, the oldest marks are forgotten; the last before the present stays.
     void mark();
+    /// Bytes; 1 GiB unless told. Counts from the next mark on.
+    void limit_history(std::size_t bytes) { max_history_bytes_ = bytes; }
+    /// Forgets all marks but the present state, which becomes the only one.
+    void forget_history();
     /// Back to the mark before, or forward again; the radiance is bitwise what it was at the mark. An empty report when there is none.
     UpdateReport undo();
     UpdateReport redo();
@@ -66,29 +78,42 @@ public:
     /// Base and layers together, as they light the scene (turned).
     [[nodiscard]] const cubemap::CubeMap& environment() const { return relighter_.environment(); }
     [[nodiscard]] const Relighter& relighter() const { return relighter_; }
+    /// Rectangles that hold every texel of environment() that the last call which edits has changed; mark() changes none.
+    [[nodiscard]] std::span<const cubemap::TexelRectangle> changed_texels() const { return dirty_; }
 
 private:
+    /// What a mark holds.
+    struct State {
+        std::vector<cubemap::LightLayer> layers = {};
+        double rotation_degrees = 0.0;
+        std::shared_ptr<const cubemap::CubeMap> base = nullptr;
+        bool operator==(const State&) const = default; ///< bases by their address
+    };
+    void forget_oldest();
     UpdateReport apply(std::span<const cubemap::LightLayer> layers);
     RelightTimes relight_all();
     UpdateReport update_dirty(const cubemap::CubeMap& base, std::span<const cubemap::LightLayer> layers);
     UpdateReport go_to(std::size_t mark);
     [[nodiscard]] const cubemap::CubeMap& turned_base() const {
-        return rotation_degrees_ == 0.0 ? base_ : turned_base_;
+        return rotation_degrees_ == 0.0 ? *base_ : turned_base_;
     }
+    void turn_base();
     void turn(std::span<const cubemap::LightLayer> layers, std::vector<cubemap::LightLayer>& turned) const;
     void publish();
 
     Relighter relighter_;
-    cubemap::CubeMap base_;        ///< as given
-    cubemap::CubeMap turned_base_; ///< empty while there is no rotation
+    std::shared_ptr<const cubemap::CubeMap> base_; ///< as given
+    cubemap::CubeMap turned_base_;                 ///< empty while there is no rotation
     double rotation_degrees_ = 0.0;
     std::vector<cubemap::LightLayer> layers_;        ///< as given
     std::vector<cubemap::LightLayer> turned_layers_; ///< as they are composited
     cubemap::LightLayer next_layer_;                 ///< scratch of set_layer()
     std::vector<cubemap::LightLayer> next_layers_;   ///< scratch: the same after an edit
-    std::vector<cubemap::TexelRectangle> dirty_;     ///< scratch
-    std::vector<std::vector<cubemap::LightLayer>> history_;
+    std::vector<cubemap::TexelRectangle> dirty_;     ///< without overlaps
+    std::vector<cubemap::TexelRectangle> touched_;   ///< scratch of apply(): what the changed layers cover
+    std::vector<State> history_;
     std::size_t at_ = 0; ///< the history's present
+    std::size_t max_history_bytes_ = std::size_t{1} << 30;
 
     mutable std::shared_mutex published_mutex_;
     std::vector<glm::vec3> published_; ///< what snapshot() copies

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <variant>
 #include <vector>
 
@@ -34,8 +35,10 @@ void picture_tools(ViewState& state) {
     auto degrees = static_cast<float>(state.desk.editor().rotation());
     if (ImGui::SliderFloat("##rotate", &degrees, -180.0f, 180.0f, "%.0f\xc2\xb0"))
         state.desk.set_rotation(degrees);
-    if (ImGui::IsItemDeactivatedAfterEdit())
+    if (ImGui::IsItemDeactivatedAfterEdit()) {
+        state.desk.finish();
         state.heat_is_stale = true;
+    }
     ImGui::SameLine();
     ImGui::Checkbox("Clusters", &state.environment_look.quadtree);
     ImGui::SameLine();
@@ -44,17 +47,7 @@ void picture_tools(ViewState& state) {
         ImGui::SetTooltip("Click the mesh: what lights that point is laid over the environment");
 }
 
-void edit_tools(ViewState& state) {
-    if (ImGui::RadioButton("Move", state.tool == Tool::Move))
-        state.tool = Tool::Move;
-    ImGui::SameLine();
-    if (ImGui::RadioButton("Paint", state.tool == Tool::Paint))
-        state.tool = Tool::Paint;
-    ImGui::SameLine();
-    if (state.tool != Tool::Paint) {
-        ImGui::TextDisabled("drag a layer, or its rim; drag elsewhere: pan; wheel: zoom");
-        return;
-    }
+void brush_tools(ViewState& state) {
     auto& stroke = std::get<cubemap::Stroke>(state.brush.region);
     auto& emit = std::get<cubemap::Emit>(state.brush.effect);
     auto radius = static_cast<float>(stroke.radius_degrees);
@@ -74,6 +67,39 @@ void edit_tools(ViewState& state) {
         emit.radiance = glm::max(emit.radiance, glm::vec3(0.0f));
 }
 
+void lasso_tools(ViewState& state) {
+    auto& lasso = std::get<cubemap::Lasso>(state.lasso.region);
+    auto& gain = std::get<cubemap::Gain>(state.lasso.effect);
+    auto softness = static_cast<float>(lasso.softness_degrees);
+    ImGui::SetNextItemWidth(110.0f);
+    if (ImGui::SliderFloat("##lasso softness", &softness, 0.0f, 30.0f, "soft %.1f\xc2\xb0"))
+        lasso.softness_degrees = std::clamp(softness, 0.0f, 90.0f);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(110.0f);
+    if (ImGui::SliderFloat("##lasso factor", &gain.factor, 0.0f, 16.0f, "times %.2f",
+                           ImGuiSliderFlags_Logarithmic))
+        gain.factor = std::max(gain.factor, 0.0f);
+    ImGui::SameLine();
+    ImGui::TextDisabled("drag around it");
+}
+
+void edit_tools(ViewState& state) {
+    if (ImGui::RadioButton("Move", state.tool == Tool::Move))
+        state.tool = Tool::Move;
+    ImGui::SameLine();
+    if (ImGui::RadioButton("Paint", state.tool == Tool::Paint))
+        state.tool = Tool::Paint;
+    ImGui::SameLine();
+    if (ImGui::RadioButton("Lasso", state.tool == Tool::Lasso))
+        state.tool = Tool::Lasso;
+    ImGui::SameLine(0.0f, 20.0f);
+    if (state.tool == Tool::Move)
+        ImGui::TextDisabled("drag a layer or its rim; drag elsewhere: pan; wheel: zoom");
+    else if (state.tool == Tool::Paint)
+        brush_tools(state);
+    else
+        lasso_tools(state);
+}
 /// A line over the picture, once for each copy of the picture that is seen.
 void draw_line(const ViewState& state, const PixelRectangle& place, const std::vector<glm::dvec3>& line,
                ImU32 color, float thickness) {
@@ -117,6 +143,30 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
     }
 }
 
+/// The outline that is being drawn, closed.
+void draw_lasso(const ViewState& state, const PixelRectangle& place) {
+    std::vector<glm::dvec3> line(state.desk.lasso().begin(), state.desk.lasso().end());
+    if (line.size() < 2)
+        return;
+    line.push_back(line.front());
+    draw_line(state, place, line, IM_COL32(0, 0, 0, 150), 4.0f);
+    draw_line(state, place, line, IM_COL32(255, 190, 60, 255), 2.0f);
+}
+
+void end_lasso(ViewState& state) {
+    try {
+        const bool added = state.desk.end_lasso(state.lasso);
+        state.message = added ? "" : "a lasso needs an outline: drag around what is to change";
+        state.message_is_error = !added;
+        if (added)
+            state.tool = Tool::Move; // to move, resize or change it next
+    } catch (const std::invalid_argument& error) {
+        state.message = error.what();
+        state.message_is_error = true;
+    }
+    state.heat_is_stale = true;
+}
+
 void point_and_drag(ViewState& state, const PixelRectangle& place) {
     const ImGuiIO& io = ImGui::GetIO();
     const glm::dvec2 pixel(io.MousePos.x, io.MousePos.y);
@@ -134,6 +184,8 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
     if (hovered && direction && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (state.tool == Tool::Paint)
             state.desk.begin_stroke(state.brush, *direction);
+        else if (state.tool == Tool::Lasso)
+            state.desk.begin_lasso(*direction);
         else if (held.grip != Grip::None)
             state.desk.begin_drag(held, *direction);
         else
@@ -148,7 +200,9 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
         state.desk.drag_to(*direction);
     else if (state.desk.is_painting() && direction)
         state.desk.stroke_to(*direction);
-    else if (!state.desk.is_dragging() && !state.desk.is_painting())
+    else if (!state.desk.lasso().empty() && direction)
+        state.desk.lasso_to(*direction, 0.4 * tolerance);
+    else if (!state.desk.is_dragging() && !state.desk.is_painting() && state.desk.lasso().empty())
         state.lat_long.pan(place, {io.MouseDelta.x, io.MouseDelta.y});
 }
 
@@ -171,7 +225,10 @@ void environment_panel(ViewState& state, const PanelLayout& layout) {
         state.desk.end_stroke();
         state.heat_is_stale = true;
     }
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !state.desk.lasso().empty())
+        end_lasso(state);
     draw_layers(state, layout.environment);
+    draw_lasso(state, layout.environment);
     ImGui::End();
 }
 

@@ -31,40 +31,77 @@ cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap:
     return {.name = std::move(name), .region = std::move(region), .effect = std::move(effect)};
 }
 
+void hint(const char* text) {
+    if (ImGui::IsItemHovered())
+        ImGui::SetTooltip("%s", text);
+}
+
+/// On the same line if a button with this label fits there.
+void next(const char* label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float width = ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
+    const float end = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    if (ImGui::GetItemRectMax().x + style.ItemSpacing.x + width <= end)
+        ImGui::SameLine();
+}
+
 void add_buttons(ViewState& state) {
+    std::function<void()> later;
     if (ImGui::Button("+ Disc"))
         state.desk.add(new_layer(state, "Disc", cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
                                  cubemap::Emit{}));
-    ImGui::SameLine();
+    hint("a round light");
+    next("+ Soft box");
     if (ImGui::Button("+ Soft box"))
         state.desk.add(
             new_layer(state, "Soft box",
                       cubemap::Rectangle{.width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
                       cubemap::Emit{}));
-    ImGui::SameLine();
+    hint("a rectangle that gives light");
+    next("+ Gain");
     if (ImGui::Button("+ Gain"))
         state.desk.add(new_layer(state, "Gain", cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
                                  cubemap::Gain{.factor = 0.25f}));
-    ImGui::SameLine();
+    hint("a disc that dims or brightens what is there");
+    next("+ Lasso");
+    if (ImGui::Button("+ Lasso"))
+        state.tool = Tool::Lasso;
+    hint("dims or brightens what you draw an outline around: drag in the environment");
+    next("+ Stroke");
     if (ImGui::Button("+ Stroke"))
         state.tool = Tool::Paint;
-    if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("paint one into the environment");
-    ImGui::SameLine(0.0f, 24.0f);
+    hint("paint light: drag in the environment");
+    next("+ Image");
+    if (ImGui::Button("+ Image"))
+        add_image(state, state.path);
+    hint("the picture named below, .exr or .hdr, as a layer; or drop one on the window");
+    next("Undo Redo ");
+    ImGui::BeginDisabled(!state.desk.editor().can_undo());
     if (ImGui::Button("Undo"))
-        state.desk.undo();
+        later = [&state] {
+            state.desk.undo();
+        };
+    ImGui::EndDisabled();
     ImGui::SameLine();
+    ImGui::BeginDisabled(!state.desk.editor().can_redo());
     if (ImGui::Button("Redo"))
-        state.desk.redo();
+        later = [&state] {
+            state.desk.redo();
+        };
+    ImGui::EndDisabled();
+    if (later) {
+        later();
+        state.heat_is_stale = true;
+    }
 }
 
 const char* kind(const cubemap::LightLayer& layer) {
-    if (std::holds_alternative<cubemap::Gain>(layer.effect))
-        return "gain";
     if (std::holds_alternative<cubemap::ImagePatch>(layer.effect))
         return "image";
-    constexpr const char* Kinds[] = {"disc", "soft box", "lasso", "stroke"};
-    return Kinds[layer.region.index()];
+    constexpr const char* Lights[] = {"disc", "soft box", "lasso", "stroke"};
+    constexpr const char* Gains[] = {"gain disc", "gain box", "gain lasso", "gain stroke"};
+    return std::holds_alternative<cubemap::Gain>(layer.effect) ? Gains[layer.region.index()]
+                                                               : Lights[layer.region.index()];
 }
 
 /// Changes while an item is held, and a step of undo when it is let go.
@@ -129,12 +166,16 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
         };
     }
     ImGui::SameLine();
-    const float width = ImGui::GetContentRegionAvail().x - 190.0f;
+    const float right = ImGui::GetContentRegionMax().x;
+    const float width = ImGui::GetContentRegionAvail().x - 220.0f;
     if (ImGui::Selectable(layer.name.c_str(), state.desk.selected() == index, 0, {width, 0.0f}))
         state.desk.select(index);
-    ImGui::SameLine();
-    ImGui::TextDisabled("%-8s %+.1f", kind(layer), layer.gain_ev);
-    ImGui::SameLine(ImGui::GetContentRegionMax().x - 80.0f);
+    ImGui::SameLine(right - 212.0f);
+    ImGui::TextDisabled("%s", kind(layer));
+    ImGui::SameLine(right - 130.0f);
+    ImGui::TextDisabled("%+.1f", layer.gain_ev);
+    hint("gain in stops");
+    ImGui::SameLine(right - 80.0f);
     const std::size_t top = state.desk.layers().size() - 1;
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && index < top)
         later = [&state, index] {
@@ -172,6 +213,28 @@ void region_fields(Form& form) {
     }
 }
 
+/// Any region may give light or change what is there; a picture is laid over that or added to it.
+void effect_choice(Form& form) {
+    cubemap::Effect& effect = form.layer().effect;
+    int chosen = 0;
+    bool changed = false;
+    if (auto* patch = std::get_if<cubemap::ImagePatch>(&effect)) {
+        chosen = patch->blend == cubemap::ImagePatch::Blend::Replace ? 0 : 1;
+        changed = ImGui::Combo("Picture", &chosen, "replaces what is there\0is added\0");
+        if (changed)
+            patch->blend =
+                chosen == 0 ? cubemap::ImagePatch::Blend::Replace : cubemap::ImagePatch::Blend::Add;
+    } else {
+        chosen = std::holds_alternative<cubemap::Emit>(effect) ? 0 : 1;
+        changed = ImGui::Combo("Effect", &chosen, "gives light\0dims or brightens\0");
+        if (changed && chosen == 0)
+            effect = cubemap::Emit{};
+        else if (changed)
+            effect = cubemap::Gain{};
+    }
+    form.note(changed);
+}
+
 void layer_fields(ViewState& state, std::size_t index) {
     Form form(state, index);
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.62f);
@@ -182,6 +245,7 @@ void layer_fields(ViewState& state, std::size_t index) {
         form.layer().name = name;
     form.note(renamed);
     form.number("Gain", form.layer().gain_ev, -12.0, 12.0, "%+.2f EV");
+    effect_choice(form);
     if (auto* emit = std::get_if<cubemap::Emit>(&form.layer().effect)) {
         form.color("Radiance", emit->radiance);
     } else if (auto* gain = std::get_if<cubemap::Gain>(&form.layer().effect)) {
@@ -204,11 +268,13 @@ int num_field_rows(const ViewState& state) {
                             : std::holds_alternative<cubemap::Gain>(layer.effect) ? 2
                                                                                   : 0;
     constexpr int RegionRows[] = {2, 4, 1, 2}; // disc, rectangle, lasso, stroke
-    return 2 + effect_rows + RegionRows[layer.region.index()];
+    return 3 + effect_rows + RegionRows[layer.region.index()];
 }
 
 void files(ViewState& state) {
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - 245.0f);
+    if (std::exchange(state.wants_path, false))
+        ImGui::SetKeyboardFocusHere();
     const bool entered =
         ImGui::InputTextWithHint("##path", "file: .exr .hdr .json, or drop one on the window", &state.path,
                                  ImGuiInputTextFlags_EnterReturnsTrue);

@@ -11,7 +11,9 @@
 
 namespace relumine::viewer {
 
-LightDesk::LightDesk(relight::LightEditor& editor) : editor_(editor) {
+LightDesk::LightDesk(relight::LightEditor& editor, std::filesystem::path base_path) : editor_(editor) {
+    editor_.forget_history();
+    note_base_path(base_path);
     note_all_texels();
 }
 
@@ -20,30 +22,11 @@ void LightDesk::timed(Edit edit) {
     const auto start = std::chrono::steady_clock::now();
     last_cost_.report = edit();
     last_cost_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::span<const cubemap::TexelRectangle> changed = editor_.changed_texels();
+    changed_texels_.insert(changed_texels_.end(), changed.begin(), changed.end());
     ++version_;
     if (selected_ && *selected_ >= layers().size())
         selected_.reset();
-}
-
-void LightDesk::note_texels(const cubemap::LightLayer& layer) {
-    cubemap::LightLayer seen = layer;
-    seen.region = turned(layer.region, editor_.rotation());
-    const std::vector<cubemap::TexelRectangle> touched =
-        cubemap::touched_texels(seen, editor_.environment().resolution);
-    changed_texels_.insert(changed_texels_.end(), touched.begin(), touched.end());
-}
-
-void LightDesk::note_difference(std::span<const cubemap::LightLayer> before) {
-    for (std::size_t i = 0; i < std::max(before.size(), layers().size()); ++i) {
-        const cubemap::LightLayer* was = i < before.size() ? &before[i] : nullptr;
-        const cubemap::LightLayer* is = i < layers().size() ? &layers()[i] : nullptr;
-        if (was && is && *was == *is)
-            continue;
-        if (was)
-            note_texels(*was);
-        if (is)
-            note_texels(*is);
-    }
 }
 
 void LightDesk::note_all_texels() {
@@ -101,29 +84,20 @@ void LightDesk::reorder(std::size_t from, std::size_t to) {
 }
 
 void LightDesk::replace(std::vector<cubemap::LightLayer> changed) {
-    const std::vector<cubemap::LightLayer> before = copy();
     timed([&] { return editor_.set_layers(std::move(changed)); });
-    note_difference(before);
     editor_.mark();
 }
 
 void LightDesk::undo() {
-    const std::vector<cubemap::LightLayer> before = copy();
     timed([&] { return editor_.undo(); });
-    note_difference(before);
 }
 
 void LightDesk::redo() {
-    const std::vector<cubemap::LightLayer> before = copy();
     timed([&] { return editor_.redo(); });
-    note_difference(before);
 }
 
 void LightDesk::change(std::size_t index, const cubemap::LightLayer& layer) {
-    const cubemap::LightLayer before = layers()[index];
     timed([&] { return editor_.set_layer(index, layer); });
-    note_texels(before);
-    note_texels(layer);
 }
 
 void LightDesk::finish() {
@@ -181,7 +155,6 @@ void LightDesk::begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3&
     std::vector<cubemap::LightLayer> changed = copy();
     changed.push_back(layer);
     timed([&] { return editor_.set_layers(std::move(changed)); });
-    note_texels(layer);
     drag_seconds_.push_back(last_cost_.seconds);
     selected_ = layers().size() - 1;
     painting_ = true;
@@ -206,24 +179,52 @@ void LightDesk::end_stroke() {
     finish();
 }
 
-void LightDesk::set_rotation(double degrees) {
-    timed([&] {
-        const relight::RelightTimes times = editor_.set_rotation(degrees);
-        return relight::UpdateReport{.num_clusters = editor_.relighter().transfer().num_clusters(),
-                                     .num_receivers = editor_.radiance().size(),
-                                     .num_sharp_lights = times.num_sharp_lights};
-    });
-    note_all_texels();
+void LightDesk::begin_lasso(const glm::dvec3& direction) {
+    lasso_ = {direction};
 }
 
-void LightDesk::set_base(cubemap::CubeMap base) {
-    timed([&] {
-        const relight::RelightTimes times = editor_.set_base(std::move(base));
-        return relight::UpdateReport{.num_clusters = editor_.relighter().transfer().num_clusters(),
-                                     .num_receivers = editor_.radiance().size(),
-                                     .num_sharp_lights = times.num_sharp_lights};
-    });
-    note_all_texels();
+void LightDesk::lasso_to(const glm::dvec3& direction, double spacing_degrees) {
+    if (!lasso_.empty() && angle_between(lasso_.back(), direction) >= spacing_degrees)
+        lasso_.push_back(direction);
+}
+
+bool LightDesk::end_lasso(cubemap::LightLayer layer) {
+    std::vector<glm::dvec3> points = std::exchange(lasso_, {});
+    if (points.size() < 3)
+        return false;
+    for (glm::dvec3& point : points)
+        point = turned(point, -editor_.rotation());
+    std::get<cubemap::Lasso>(layer.region).points = std::move(points);
+    add(std::move(layer));
+    return true;
+}
+
+void LightDesk::set_rotation(double degrees) {
+    timed([&] { return whole(editor_.set_rotation(degrees)); });
+}
+
+void LightDesk::set_base(cubemap::CubeMap base, const std::filesystem::path& path) {
+    timed([&] { return whole(editor_.set_base(std::move(base))); });
+    note_base_path(path);
+}
+
+relight::UpdateReport LightDesk::whole(const relight::RelightTimes& times) const {
+    return {.num_clusters = editor_.relighter().transfer().num_clusters(),
+            .num_receivers = editor_.radiance().size(),
+            .num_sharp_lights = times.num_sharp_lights};
+}
+
+void LightDesk::note_base_path(const std::filesystem::path& path) {
+    std::erase_if(base_paths_, [](const auto& entry) { return entry.first.expired(); });
+    if (editor_.base())
+        base_paths_.emplace_back(editor_.base(), path);
+}
+
+std::filesystem::path LightDesk::base_path() const {
+    for (const auto& [base, path] : base_paths_)
+        if (base.lock() == editor_.base())
+            return path;
+    return {};
 }
 
 } // namespace relumine::viewer

@@ -3,9 +3,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -26,8 +29,9 @@ struct EditCost {
 /// Directions are as seen: after the rotation.
 class LightDesk {
 public:
-    /// The editor must outlive the desk, and be edited through it alone.
-    explicit LightDesk(relight::LightEditor& editor);
+    /// The editor must outlive the desk, and be edited through it alone. Its present state becomes the one before all steps of undo.
+    /// `base_path`: the file of its base.
+    explicit LightDesk(relight::LightEditor& editor, std::filesystem::path base_path = {});
 
     [[nodiscard]] const relight::LightEditor& editor() const { return editor_; }
     [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return editor_.layers(); }
@@ -48,9 +52,16 @@ public:
     void undo();
     void redo();
 
-    /// An edit in progress, as while a slider moves: not a step of undo before finish().
+    // Edits in progress, as while a slider moves: not a step of undo before finish().
+
     void change(std::size_t index, const cubemap::LightLayer& layer);
+    void set_rotation(double degrees);
+    /// `path`: of its file, empty where there is none.
+    void set_base(cubemap::CubeMap base, const std::filesystem::path& path = {});
     void finish();
+
+    /// The file of the present base, after an undo too; empty where there is none.
+    [[nodiscard]] std::filesystem::path base_path() const;
 
     /// The layer under a direction: the selected one first, then from the top; those that are off only if selected. Nothing: None.
     struct Held {
@@ -71,9 +82,14 @@ public:
     void end_stroke();
     [[nodiscard]] bool is_painting() const { return painting_; }
 
-    /// Not part of the history.
-    void set_rotation(double degrees);
-    void set_base(cubemap::CubeMap base);
+    /// Draws an outline, at first without any effect; the end adds `layer` on top, its lasso with these points, as one step of undo, and
+    /// selects it. False, with nothing added, when there are too few points. Throws std::invalid_argument for an outline that no lasso can have.
+    void begin_lasso(const glm::dvec3& direction);
+    /// Points closer to the last than this are left out.
+    void lasso_to(const glm::dvec3& direction, double spacing_degrees);
+    bool end_lasso(cubemap::LightLayer layer);
+    /// The outline so far, as seen; empty when none is drawn.
+    [[nodiscard]] std::span<const glm::dvec3> lasso() const { return lasso_; }
 
     [[nodiscard]] const EditCost& last_cost() const { return last_cost_; }
     /// Seconds of every drag event so far.
@@ -93,9 +109,9 @@ private:
     };
     template<typename Edit>
     void timed(Edit edit);
-    void note_texels(const cubemap::LightLayer& layer);
-    void note_difference(std::span<const cubemap::LightLayer> before);
+    [[nodiscard]] relight::UpdateReport whole(const relight::RelightTimes& times) const;
     void note_all_texels();
+    void note_base_path(const std::filesystem::path& path);
     [[nodiscard]] std::string unused_name(const std::string& name) const;
     [[nodiscard]] std::vector<cubemap::LightLayer> copy() const { return {layers().begin(), layers().end()}; }
 
@@ -103,6 +119,9 @@ private:
     std::optional<std::size_t> selected_;
     std::optional<Drag> drag_;
     bool painting_ = false;
+    std::vector<glm::dvec3> lasso_;
+    /// The files of bases that the history may come back to.
+    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, std::filesystem::path>> base_paths_;
     EditCost last_cost_;
     std::vector<double> drag_seconds_;
     std::vector<cubemap::TexelRectangle> changed_texels_;

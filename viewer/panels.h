@@ -11,6 +11,8 @@ void scene_panel(ViewState& state, const PanelLayout& layout);
 void environment_panel(ViewState& state, const PanelLayout& layout);
 void layer_panel(ViewState& state, const PanelLayout& layout);
 void status_panel(const ViewState& state, const PanelLayout& layout);
+/// Asks what a dropped picture is to be, as long as there is one.
+void drop_dialogue(ViewState& state);
 
 /// A panel without a frame of its own at a place; end with ImGui::End(). `over_picture`: nothing behind it.
 void begin_panel(const char* name, const PixelRectangle& place, bool over_picture = false);

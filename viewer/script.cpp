@@ -36,8 +36,10 @@ constexpr std::array Forms = {
     Form{"set_gain", Action::SetGain, "tn", "set_gain NAME EV"},
     Form{"drag_env", Action::DragEnvironment, "nnnn", "drag_env X0 Y0 X1 Y1"},
     Form{"paint_env", Action::PaintEnvironment, "nnnn", "paint_env X0 Y0 X1 Y1"},
+    Form{"lasso_env", Action::LassoEnvironment, "nnnn", "lasso_env X0 Y0 X1 Y1"},
     Form{"drag_mesh", Action::DragMesh, "nnnn", "drag_mesh X0 Y0 X1 Y1"},
-    Form{"click_mesh", Action::ClickMesh, "nn", "click_mesh X Y"},
+    Form{"click", Action::Click, "nn", "click X Y"},
+    Form{"click_mesh", Action::Click, "nn", "click_mesh X Y"},
     Form{"rotate", Action::Rotate, "n", "rotate DEGREES"},
     Form{"undo", Action::Undo, "", "undo"},
     Form{"redo", Action::Redo, "", "redo"},
@@ -46,6 +48,8 @@ constexpr std::array Forms = {
     Form{"wireframe", Action::Wireframe, "n", "wireframe 0|1"},
     Form{"quadtree", Action::Quadtree, "n", "quadtree 0|1"},
     Form{"open", Action::Open, "t", "open FILE"},
+    Form{"add_image", Action::AddImage, "t", "add_image FILE"},
+    Form{"drop", Action::Drop, "t", "drop FILE"},
     Form{"save_layers", Action::SaveLayers, "t", "save_layers FILE"},
     Form{"save_env", Action::SaveEnvironment, "t", "save_env FILE"},
     Form{"screenshot", Action::Screenshot, "t", "screenshot FILE"},
@@ -142,9 +146,10 @@ std::size_t num_frames(const ScriptCommand& command) {
         return frames(1, DragEvents);
     case Action::DragEnvironment:
     case Action::PaintEnvironment:
+    case Action::LassoEnvironment:
     case Action::DragMesh:
         return DragEvents + 2; // the pointer arrives, and lets go
-    case Action::ClickMesh:
+    case Action::Click:
         return 3;
     default:
         return 1;

@@ -1,5 +1,8 @@
 #include "viewer/script_player.h"
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -33,6 +36,17 @@ Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size
     const glm::dvec2 to(numbers[2], numbers[3]);
     return {.pixel = glm::vec2(from + (to - from) * std::min(t, 1.0)),
             .down = frame > 0 && frame + 1 < num_frames};
+}
+
+/// The same around the ellipse that fills a rectangle.
+Pointer lassoed(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
+    Pointer pointer = dragged({0.0, 0.0, 1.0, 0.0}, frame, num_frames);
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(pointer.pixel.x);
+    const glm::dvec2 from(numbers[0], numbers[1]);
+    const glm::dvec2 to(numbers[2], numbers[3]);
+    pointer.pixel =
+        glm::vec2(0.5 * (from + to) + 0.5 * (to - from) * glm::dvec2(std::cos(angle), std::sin(angle)));
+    return pointer;
 }
 
 void resize_region(cubemap::Region& region, double degrees) {
@@ -138,11 +152,18 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
         state.tool = command.action == Action::PaintEnvironment && !is_last ? Tool::Paint : Tool::Move;
         frame.pointer = dragged(n, frame_, count);
         break;
-    case Action::ClickMesh:
+    case Action::LassoEnvironment:
+        // The panel goes back to moving when the outline is closed.
+        if (frame_ == 0)
+            state.tool = Tool::Lasso;
+        frame.pointer = lassoed(n, frame_, count);
+        break;
+    case Action::Click:
         frame.pointer = Pointer{.pixel = glm::vec2(n[0], n[1]), .down = frame_ == 1};
         break;
     case Action::Rotate:
         state.desk.set_rotation(n[0]);
+        state.desk.finish();
         break;
     case Action::Undo:
         state.desk.undo();
@@ -164,6 +185,12 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
         break;
     case Action::Open:
         must(open(state, command.text));
+        break;
+    case Action::AddImage:
+        must(add_image(state, command.text));
+        break;
+    case Action::Drop:
+        must(drop(state, command.text));
         break;
     case Action::SaveLayers:
         must(save_layers(state, command.text));

@@ -123,7 +123,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         window.begin_frame(options.script ? 0.0 : idleness.wait_seconds(), scripted.pointer);
         const auto start = Clock::now();
         for (const std::filesystem::path& path : window.take_dropped_files())
-            open(state, path);
+            drop(state, path);
         for (const Shortcut shortcut : window.take_shortcuts())
             handle(shortcut, state, window.layout());
 
@@ -133,6 +133,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         environment_panel(state, layout);
         layer_panel(state, layout);
         status_panel(state, layout);
+        drop_dialogue(state);
         idleness.count();
         pictures.update(state);
         pictures.draw(state, window, layout);

@@ -1,13 +1,17 @@
 #include "viewer/view_state.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
+#include <numbers>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
 #include "cubemap/environment.h"
+#include "cubemap/picture.h"
 
 namespace relumine::viewer {
 
@@ -25,9 +29,13 @@ bool reported(ViewState& state, Work work) {
     return !state.message_is_error;
 }
 
+bool is_picture(const std::filesystem::path& path) {
+    return path.extension() == ".exr" || path.extension() == ".hdr";
+}
+
+/// Not a step of undo yet.
 void set_environment(ViewState& state, const std::filesystem::path& path) {
-    state.desk.set_base(state.load_environment(path));
-    state.environment_path = path;
+    state.desk.set_base(state.load_environment(path), path);
     state.heat_is_stale = true;
 }
 
@@ -35,8 +43,12 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
     cubemap::LightLayers file = cubemap::load_layers(path);
     if (file.base)
         if (const std::filesystem::path base = path.parent_path() / *file.base;
-            base.lexically_normal() != state.environment_path.lexically_normal())
+            base.lexically_normal() != state.desk.base_path().lexically_normal())
             set_environment(state, base);
+    // Layers may be saved to another folder than they came from.
+    for (cubemap::LightLayer& layer : file.layers)
+        if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
+            patch->path = std::filesystem::absolute(path.parent_path() / patch->path).lexically_normal();
     state.desk.replace(std::move(file.layers));
     state.desk.select(std::nullopt);
     state.frames = std::move(file.frames);
@@ -69,15 +81,54 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
 
 bool open(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&]() -> std::string {
-        const std::string extension = path.extension().string();
-        if (extension == ".json")
+        if (path.extension() == ".json")
             return open_layers(state, path);
-        if (extension != ".exr" && extension != ".hdr")
-            throw std::runtime_error(
-                fmt::format("{}: expected .exr, .hdr or .json, got '{}'", path.string(), extension));
+        if (!is_picture(path))
+            throw std::runtime_error(fmt::format("{}: expected .exr, .hdr or .json, got '{}'", path.string(),
+                                                 path.extension().string()));
         set_environment(state, path);
+        state.desk.finish();
         return fmt::format("{}: {} texels a face", path.string(),
                            state.desk.editor().environment().resolution);
+    });
+}
+
+bool drop(ViewState& state, const std::filesystem::path& path) {
+    if (!is_picture(path))
+        return open(state, path);
+    state.dropped = path;
+    return true;
+}
+
+bool add_image(ViewState& state, const std::filesystem::path& path) {
+    return reported(state, [&] {
+        if (!is_picture(path)) {
+            state.wants_path = true;
+            throw std::runtime_error(
+                path.empty()
+                    ? std::string(
+                          "Which picture? Type its path (.exr, .hdr) below, or drop it on the window.")
+                    : fmt::format("{}: expected .exr or .hdr for an image layer, got '{}'", path.string(),
+                                  path.extension().string()));
+        }
+        cubemap::ImagePatch patch{.path = std::filesystem::absolute(path).lexically_normal(),
+                                  .picture = cubemap::load_picture(path)};
+        const cubemap::Picture::Level& full = patch.picture->levels().front();
+        // As the picture's pixels are, 40 degrees along its longer side.
+        constexpr double DegreesPerRadian = 180.0 / std::numbers::pi;
+        const double half = std::tan(20.0 / DegreesPerRadian);
+        const double longer = std::max(full.width, full.height);
+        const auto degrees = [&](double pixels) {
+            return std::max(0.1, 2.0 * std::atan(half * pixels / longer) * DegreesPerRadian);
+        };
+        state.desk.add({.name = path.stem().string(),
+                        .region = cubemap::Rectangle{.direction = turned(direction_at(state.lat_long.center),
+                                                                         -state.desk.editor().rotation()),
+                                                     .width_degrees = degrees(full.width),
+                                                     .height_degrees = degrees(full.height)},
+                        .effect = std::move(patch)});
+        state.heat_is_stale = true;
+        return fmt::format("{}: {} x {} pixels as a layer", path.string(), full.width, full.height);
     });
 }
 
@@ -85,9 +136,15 @@ bool save_layers(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
         cubemap::LightLayers file{.layers = {state.desk.layers().begin(), state.desk.layers().end()},
                                   .frames = state.frames};
-        if (!state.environment_path.empty())
-            file.base = std::filesystem::absolute(state.environment_path)
-                            .lexically_proximate(std::filesystem::absolute(path).parent_path());
+        const std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal().parent_path();
+        const auto from_folder = [&](const std::filesystem::path& named) {
+            return std::filesystem::absolute(named).lexically_normal().lexically_proximate(folder);
+        };
+        if (!state.desk.base_path().empty())
+            file.base = from_folder(state.desk.base_path());
+        for (cubemap::LightLayer& layer : file.layers)
+            if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
+                patch->path = from_folder(patch->path);
         // Key frames of layers that are gone go with them.
         for (cubemap::KeyFrame& frame : file.frames)
             std::erase_if(frame.changes, [&](const auto& key) { return !state.desk.find(key.layer); });

@@ -18,7 +18,7 @@
 
 namespace relumine::viewer {
 
-enum class Tool { Move, Paint };
+enum class Tool { Move, Paint, Lasso };
 
 struct ViewState {
     const mesh::TriangleMesh& mesh;
@@ -35,13 +35,18 @@ struct ViewState {
     Tool tool = Tool::Move;
     cubemap::LightLayer brush{.name = "Stroke",
                               .region = cubemap::Stroke{.points = {}, .radius_degrees = 4.0}};
+    cubemap::LightLayer lasso{.name = "Lasso",
+                              .region = cubemap::Lasso{.points = {}, .softness_degrees = 3.0},
+                              .effect = cubemap::Gain{.factor = 0.25f}};
 
     std::optional<std::uint32_t> receiver = {}; ///< the vertex that was clicked
     bool heat_is_stale = false;                 ///< the contribution map has to be made anew
 
-    std::filesystem::path environment_path = {}; ///< empty: the plain grey one
-    std::vector<cubemap::KeyFrame> frames = {};  ///< of the layer file, kept for saving
-    std::string path = {};                       ///< the text field
+    std::vector<cubemap::KeyFrame> frames = {}; ///< of the layer file, kept for saving
+    std::string path = {};                      ///< the text field
+    bool wants_path = false;                    ///< the text field is to be typed into
+    std::filesystem::path dropped =
+        {}; ///< a picture of which the dialogue asks what it is to be; empty: none
     std::string message = {};
     bool message_is_error = false;
     double frame_seconds = 0.0;
@@ -55,6 +60,10 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
 
 // Files. These report in `message` whether they worked and do not throw for what files may do; false for a failure.
 
+/// A file that was dropped on the window: .json opens, a picture becomes `dropped`.
+bool drop(ViewState& state, const std::filesystem::path& path);
+/// A picture, .exr or .hdr, as a layer where the environment's view looks.
+bool add_image(ViewState& state, const std::filesystem::path& path);
 /// Layers from .json (with the environment they name), an environment from .exr or .hdr.
 bool open(ViewState& state, const std::filesystem::path& path);
 bool save_layers(ViewState& state, const std::filesystem::path& path);

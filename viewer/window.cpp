@@ -40,7 +40,7 @@ void set_style() {
     const auto faint = [&](float alpha) {
         return ImVec4(accent.x, accent.y, accent.z, alpha);
     };
-    const std::array<std::pair<int, ImVec4>, 15> colors = {
+    const std::array<std::pair<int, ImVec4>, 18> colors = {
         {{ImGuiCol_WindowBg, {0.12f, 0.12f, 0.13f, 1.0f}},
          {ImGuiCol_ChildBg, {0.09f, 0.09f, 0.10f, 1.0f}},
          {ImGuiCol_FrameBg, {0.21f, 0.21f, 0.23f, 1.0f}},
@@ -54,6 +54,9 @@ void set_style() {
          {ImGuiCol_HeaderActive, faint(0.65f)},
          {ImGuiCol_SliderGrab, faint(0.5f)},
          {ImGuiCol_SliderGrabActive, faint(0.75f)},
+         {ImGuiCol_PopupBg, {0.14f, 0.14f, 0.15f, 1.0f}},
+         {ImGuiCol_TitleBgActive, {0.36f, 0.25f, 0.09f, 1.0f}},
+         {ImGuiCol_ModalWindowDimBg, {0.0f, 0.0f, 0.0f, 0.55f}},
          {ImGuiCol_CheckMark, accent},
          {ImGuiCol_TextDisabled, {0.58f, 0.58f, 0.60f, 1.0f}}}};
     for (const auto& [index, color] : colors)

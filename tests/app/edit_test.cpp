@@ -126,6 +126,51 @@ TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
     EXPECT_EQ(read("who.png").substr(1, 3), "PNG");
 }
 
+TEST_F(Edit, LitByShowsWhatARegionLights) {
+    // A disc of 30 degrees: sin(30 degrees)^2 of the white light on the corner that faces it, nothing on the other side.
+    const nlohmann::json disc = succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--gain", "1",
+                                         "--lit-by", "1,0,0,30", "-o", "new.npy", "--json"})
+                                    .json();
+    EXPECT_NEAR(npy_values(read("new.npy"))[0][0], 0.25, 0.01);
+    EXPECT_EQ(npy_values(read("new.npy"))[1][0], 0.0f);
+    EXPECT_GT(disc["lit_by_share"], 0.01);
+    EXPECT_LT(disc["lit_by_share"], 0.25);
+
+    // A layer's region, with the light of the layers in it.
+    write("layers.json", Lamp);
+    const auto lit_by = [&](const std::string& region, const std::string& output) {
+        succeed({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", region, "-o", output, "-q"});
+    };
+    lit_by("1,0,0,40", "new.npy"); // the lamp's 30 degrees and a ring of white around it
+    const auto values = npy_values(read("new.npy"));
+    EXPECT_NEAR(values[0][0], 0.413 + 4.0 * 0.25, 0.02);
+    EXPECT_NEAR(values[0][1], 0.413 + 2.0 * 0.25, 0.02);
+    EXPECT_NEAR(values[0][2], 0.413, 0.01);
+    EXPECT_EQ(values[1][0], 0.0f);
+    lit_by("1,0,0,30", "new.npy");
+    lit_by("lamp", "named.npy");
+    EXPECT_EQ(read("named.npy"), read("new.npy"));
+    lit_by("lamp", "new.png");
+    EXPECT_EQ(read("new.png").substr(1, 3), "PNG");
+    lit_by("lamp", "new.ply");
+
+    for (const char* bad :
+         {"nobody", "1,0,0", "0,0,0,10", "1,0,0,0", "1,0,0,181", "1,0,0,x", "1,0,0,nan", ","})
+        misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", bad, "-o", "bad.npy"},
+               "--lit-by");
+    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", "lamp", "--who", "1,0,0", "-o",
+            "bad.exr"},
+           "--who");
+    EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
+}
+
+TEST_F(Edit, WhoIsAPictureAndAsksForAPoint) {
+    write("layers.json", Lamp);
+    fail({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.npy"},
+         {"who.npy", ".exr or .png"});
+    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "here", "-o", "who.exr"}, "--who");
+}
+
 TEST_F(Edit, BrokenLayersAreRefusedWithTheirLine) {
     write("broken.json", "{\n\"version\": 1,\n\"layers\": [\n{\"name\": \"a\", \"type\": \"disk\"}]}");
     fail({"edit", "scene.prt", "white.hdr", "broken.json", "-o", "new.npy"}, {"broken.json:4: expected"});
@@ -136,7 +181,8 @@ TEST_F(Edit, BrokenLayersAreRefusedWithTheirLine) {
 
 TEST_F(Edit, WatchFollowsWhatAnotherProgramSaves) {
     write("layers.json", "{\"version\": 1, \"layers\": []}");
-    Process process(folder(), {"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy", "--watch"});
+    Process process(folder(),
+                    {"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy", "--watch", "--json"});
     const auto first_value = [&] {
         try {
             return npy_values(read("new.npy"))[0][0];
@@ -166,6 +212,14 @@ TEST_F(Edit, WatchFollowsWhatAnotherProgramSaves) {
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 0) << result.described();
     EXPECT_EQ(result.err, "");
+    const nlohmann::json edits = result.json()["edits"];
+    ASSERT_GE(edits.size(), 2u);
+    for (const nlohmann::json& edit : edits) {
+        EXPECT_GT(edit["clusters"], 0);
+        EXPECT_GT(edit["seconds_load"], 0.0);
+        EXPECT_GE(edit["seconds_reaction"], 0.0);
+        EXPECT_LT(edit["seconds_reaction"], 60.0) << "the file's clock and ours agree";
+    }
 }
 
 } // namespace

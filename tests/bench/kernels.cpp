@@ -1,15 +1,19 @@
 // Times of the steps that run when an environment changes, on a generated scene. See `./dev bench kernels --help`.
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
 #include "cubemap/convert.h"
+#include "cubemap/layer_composite.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
+#include "relight/light_editor.h"
 #include "relight/relighter.h"
 
 namespace {
@@ -86,5 +90,84 @@ BENCHMARK(BM_PlaceLights)
     ->ArgsProduct({{0, 1, 2}, {512, 2048}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/// A soft stroke of 81 points over 80 degrees, as a brush leaves it.
+cubemap::Region stroke(double turn = 0.0) {
+    cubemap::Stroke stroke{.radius_degrees = 4.0, .softness = 0.5};
+    for (int i = 0; i <= 80; ++i) {
+        const double angle = (i - 40) * std::numbers::pi / 180.0;
+        stroke.points.emplace_back(std::sin(angle + turn), 0.2 * std::sin(5.0 * angle),
+                                   std::cos(angle + turn));
+    }
+    return stroke;
+}
+
+/// A soft lasso of 120 points, 30 degrees wide, with a wavy outline.
+cubemap::Region lasso(double turn = 0.0) {
+    cubemap::Lasso lasso{.softness_degrees = 6.0};
+    for (int i = 0; i < 120; ++i) {
+        const double angle = i * std::numbers::pi / 60.0;
+        const double radius = 0.5 + 0.06 * std::sin(7.0 * angle);
+        const double x = radius * std::cos(angle) + 0.3;
+        lasso.points.emplace_back(x * std::cos(turn) + std::sin(turn), radius * std::sin(angle),
+                                  std::cos(turn) - x * std::sin(turn));
+    }
+    return lasso;
+}
+
+cubemap::LightLayer painted(const cubemap::Region& region) {
+    return {.name = "painted", .region = region, .effect = cubemap::Emit{}};
+}
+
+/// Compositing alone, where the region lies.
+template<cubemap::Region (*Shape)(double)>
+void BM_Composite(benchmark::State& state) {
+    const cubemap::CubeMap base(static_cast<std::uint32_t>(state.range(0)), glm::vec3(1.0f));
+    const cubemap::LightLayer layer = painted(Shape(0.0));
+    const std::vector<cubemap::TexelRectangle> touched = cubemap::touched_texels(layer, base.resolution);
+    cubemap::CubeMap target = base;
+    for (auto _ : state)
+        cubemap::composite(base, {&layer, 1}, touched, target);
+}
+BENCHMARK(BM_Composite<stroke>)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_Composite<lasso>)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void BM_Touched(benchmark::State& state) {
+    const cubemap::LightLayer layer = painted(stroke());
+    for (auto _ : state)
+        benchmark::DoNotOptimize(cubemap::touched_texels(layer, 1024));
+}
+BENCHMARK(BM_Touched)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// A whole drag event: two degrees there and back.
+template<cubemap::Region (*Shape)(double)>
+void BM_Drag(benchmark::State& state) {
+    relight::LightEditor editor(Fixture::instance().transfer);
+    editor.set_base(cubemap::CubeMap(1024, glm::vec3(1.0f)));
+    editor.set_layers({painted(Shape(0.0))});
+    bool there = false;
+    for (auto _ : state) {
+        there = !there;
+        editor.set_layer(0, painted(Shape(there ? 0.035 : 0.0)));
+    }
+}
+BENCHMARK(BM_Drag<stroke>)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BM_Drag<lasso>)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// A brush that paints on: one more point of the stroke.
+void BM_Paint(benchmark::State& state) {
+    relight::LightEditor editor(Fixture::instance().transfer);
+    editor.set_base(cubemap::CubeMap(1024, glm::vec3(1.0f)));
+    const cubemap::LightLayer whole = painted(stroke());
+    cubemap::LightLayer shorter = whole;
+    std::get<cubemap::Stroke>(shorter.region).points.pop_back();
+    editor.set_layers({whole});
+    bool longer = true;
+    for (auto _ : state) {
+        longer = !longer;
+        editor.set_layer(0, longer ? whole : shorter);
+    }
+}
+BENCHMARK(BM_Paint)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 } // namespace

@@ -1,14 +1,18 @@
 #include "cubemap/layer_composite.h"
 
+#include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <span>
 #include <stdexcept>
+#include <variant>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "cubemap/texel_range.h"
 #include "tests/cubemap/layer_places.h"
 #include "tests/cubemap/test_images.h"
 
@@ -261,6 +265,64 @@ TEST(LayerComposite, RefusesWhatDoesNotFit) {
     EXPECT_TRUE(same_bits(base, target)) << "nothing has changed";
     EXPECT_THROW((void)touched_texels(bad, 8), std::invalid_argument);
     EXPECT_THROW((void)touched_texels(good, 0), std::invalid_argument);
+}
+
+/// Points on a wavy line or, closed, around a wavy circle.
+std::vector<glm::dvec3> wavy_points(int count, bool closed, double waves) {
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < count; ++i) {
+        const double t = static_cast<double>(i) / count;
+        const double angle = closed ? 2.0 * std::numbers::pi * t : 2.5 * (t - 0.5);
+        const double wave = 0.15 * std::sin(waves * angle);
+        if (closed)
+            points.emplace_back((0.6 + wave) * std::cos(angle) + 0.3, (0.6 + wave) * std::sin(angle), 1.0);
+        else
+            points.emplace_back(std::sin(angle), wave, std::cos(angle));
+    }
+    return points;
+}
+
+/// Texel by texel, with all arcs of the region, without any blocks: the composite's shapes narrowed to blocks must be them bit by bit.
+template<typename Region>
+void expect_as_texel_by_texel(const Region& region, std::uint32_t resolution) {
+    const std::vector<float> coverage = coverage_map(region, resolution);
+    const RegionShape whole = shape(region);
+    std::size_t i = 0;
+    std::size_t num_partial = 0;
+    for (const Face face : AllFaces) {
+        const FaceGrid grid(face, resolution);
+        for (std::uint32_t y = 0; y < resolution; ++y)
+            for (std::uint32_t x = 0; x < resolution; ++x, ++i) {
+                const TexelRange texel(x, y, 1, resolution);
+                const auto expected = std::visit(
+                    [&](const auto& of_kind) {
+                        switch (bound(of_kind, grid, texel)) {
+                        case Overlap::None:
+                            return 0.0f;
+                        case Overlap::All:
+                            return 1.0f;
+                        default:
+                            return static_cast<float>(mean_coverage(of_kind, grid.plane, grid.cell(x, y)));
+                        }
+                    },
+                    whole);
+                ASSERT_EQ(coverage[i], expected) << static_cast<int>(face) << ": " << x << ", " << y;
+                num_partial += static_cast<std::size_t>(expected > 0.0f && expected < 1.0f);
+            }
+    }
+    EXPECT_GT(num_partial, 10u);
+}
+
+TEST(LayerComposite, StrokesAndLassosAreTheSameWithAllTheirArcs) {
+    for (const std::uint32_t resolution : {50u, 128u}) {
+        for (const int count : {1, 2, 7, 40, 300})
+            for (const double softness : {0.0, 0.4, 1.0})
+                expect_as_texel_by_texel(
+                    Stroke{wavy_points(count, false, 5.0), count > 100 ? 12.0 : 6.0, softness}, resolution);
+        for (const int count : {3, 12, 150})
+            for (const double softness : {0.0, 5.0, 40.0})
+                expect_as_texel_by_texel(Lasso{wavy_points(count, true, 7.0), softness}, resolution);
+    }
 }
 
 } // namespace

@@ -1,7 +1,9 @@
 #include "relight/light_editor.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <random>
 #include <stdexcept>
 #include <thread>
@@ -147,6 +149,177 @@ TEST(LightEditor, UndoAndRedoReturnBitwise) {
     editor.set_layers({});
     editor.mark();
     EXPECT_FALSE(editor.can_redo());
+}
+
+TEST(LightEditor, UndoBringsBackRotationAndBaseBitwise) {
+    // With shadow rays, so that the sharp lights of one base do not linger in another.
+    LightEditor editor(relit_scene().transfer, relit_scene().shadow_rays());
+    cubemap::CubeMap sunny = scenes::random_environment(32, 1);
+    sunny.at(cubemap::Face::PositiveY, 20, 17) = glm::vec3(1e5f, 9e4f, 8e4f);
+    editor.set_base(sunny);
+    editor.forget_history();
+    std::vector<std::vector<glm::vec3>> states = {copy(editor.radiance())};
+    std::vector<std::vector<glm::vec3>> environments = {editor.environment().texels};
+    const auto mark = [&] {
+        editor.mark();
+        states.push_back(copy(editor.radiance()));
+        environments.push_back(editor.environment().texels);
+    };
+    editor.set_layers({disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f))});
+    mark();
+    for (const double degrees : {5.0, 20.0, 33.0}) // as a slider moves
+        editor.set_rotation(degrees);
+    mark();
+    editor.set_layers({disc("lamp", {1.0, 0.5, 0.0}, 9.0, glm::vec3(2.0f))});
+    mark();
+    editor.set_base(scenes::random_environment(16, 3)); // another resolution, under the rotation
+    mark();
+    editor.set_rotation(0.0);
+    mark();
+    cubemap::CubeMap painted = *editor.base();
+    painted.at(cubemap::Face::NegativeX, 3, 4) = glm::vec3(20.0f);
+    editor.update_base(painted);
+    mark();
+    ASSERT_EQ(states.size(), 7u);
+    for (int round = 0; round < 2; ++round) {
+        for (std::size_t i = states.size() - 1; i-- > 0;) {
+            ASSERT_TRUE(editor.can_undo());
+            editor.undo();
+            EXPECT_EQ(copy(editor.radiance()), states[i]) << "undo to " << i;
+            EXPECT_EQ(editor.environment().texels, environments[i]);
+            std::vector<glm::vec3> seen;
+            editor.snapshot(seen);
+            EXPECT_EQ(seen, states[i]);
+        }
+        EXPECT_FALSE(editor.can_undo());
+        EXPECT_EQ(editor.rotation(), 0.0);
+        for (std::size_t i = 1; i < states.size(); ++i) {
+            ASSERT_TRUE(editor.can_redo());
+            editor.redo();
+            EXPECT_EQ(copy(editor.radiance()), states[i]) << "redo to " << i;
+            EXPECT_EQ(editor.environment().texels, environments[i]);
+        }
+    }
+}
+
+TEST(LightEditor, TheHistoryKeepsNoMoreBasesThanItMay) {
+    LightEditor editor(relit_scene().transfer);
+    constexpr std::uint32_t Resolution = 8;
+    constexpr std::size_t BytesOfBase = 6 * Resolution * Resolution * sizeof(glm::vec3);
+    editor.limit_history(2 * BytesOfBase);
+    std::vector<std::weak_ptr<const cubemap::CubeMap>> bases;
+    for (unsigned i = 0; i < 6; ++i) {
+        editor.set_base(scenes::random_environment(Resolution, i));
+        editor.mark();
+        bases.emplace_back(editor.base());
+        editor.set_layers({disc("lamp", {0.2, 0.5, 1.0 + i}, 12.0, glm::vec3(3.0f))});
+        editor.mark();
+    }
+    for (std::size_t i = 0; i < bases.size(); ++i)
+        EXPECT_EQ(bases[i].expired(), i + 3 < bases.size()) << "two and the present one: " << i;
+    int num_steps = 0;
+    for (; editor.can_undo(); ++num_steps)
+        editor.undo();
+    EXPECT_EQ(num_steps, 5) << "three bases with two marks each";
+    EXPECT_EQ(editor.base(), bases[3].lock());
+
+    // However small the limit, the last step can be undone.
+    editor.limit_history(0);
+    editor.set_base(scenes::random_environment(Resolution, 7));
+    editor.mark();
+    EXPECT_TRUE(editor.can_undo());
+    editor.undo();
+    EXPECT_EQ(editor.base(), bases[3].lock());
+}
+
+TEST(LightEditor, RefusesABadBaseAndStaysAsItWas) {
+    LightEditor editor(relit_scene().transfer);
+    EXPECT_THROW(editor.set_base(cubemap::CubeMap()), std::invalid_argument);
+    EXPECT_THROW(editor.set_base(cubemap::CubeMap(8, glm::vec3(-1.0f))), std::invalid_argument);
+    EXPECT_FALSE(editor.base());
+    editor.set_base(scenes::random_environment(16, 2));
+    editor.set_rotation(30.0);
+    editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    editor.mark();
+    const std::vector<glm::vec3> before = copy(editor.radiance());
+    const std::vector<glm::vec3> texels = editor.environment().texels;
+    EXPECT_THROW(editor.set_base(cubemap::CubeMap(32, glm::vec3(-1.0f))), std::invalid_argument);
+    EXPECT_EQ(copy(editor.radiance()), before);
+    EXPECT_EQ(editor.environment().texels, texels);
+    editor.set_layers({});
+    editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    EXPECT_EQ(editor.environment().texels, texels) << "the turned base is the old one";
+}
+
+TEST(LightEditor, PaintingOnTouchesOnlyTheNewPieceAndLeavesNoTrace) {
+    const cubemap::CubeMap base = scenes::random_environment(64, 4);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int trial = 0; trial < 6; ++trial) {
+        LightEditor editor(relit_scene().transfer);
+        editor.set_base(base);
+        if (trial % 2 == 1)
+            editor.set_rotation(37.0);
+        cubemap::LightLayer layer = disc("stroke", {1, 0, 0}, 1.0, glm::vec3(2.0f));
+        cubemap::Stroke stroke{.points = {scenes::random_direction(random)},
+                               .radius_degrees = 0.5 + 12.0 * unit(random),
+                               .softness = trial % 3 == 0 ? 0.0 : unit(random)};
+        layer.region = stroke;
+        editor.set_layers({layer});
+        std::size_t most_touched = 0;
+        const auto set_points = [&](std::size_t count) {
+            cubemap::Stroke part = stroke;
+            part.points.resize(count);
+            layer.region = part;
+            most_touched = std::max(most_touched, editor.set_layer(0, layer).num_clusters);
+            // Texels that were not told to have changed are as they were, and all are as made from scratch.
+            LightEditor afresh(relit_scene().transfer);
+            afresh.set_base(base);
+            afresh.set_rotation(editor.rotation());
+            afresh.set_layers({layer});
+            ASSERT_EQ(editor.environment().texels, afresh.environment().texels) << trial << ", " << count;
+            EXPECT_LT(relative_difference(editor.radiance(), afresh.radiance()), 1e-6);
+        };
+        for (int i = 0; i < 10; ++i) { // also back over itself
+            stroke.points.push_back(glm::normalize(stroke.points.back()) +
+                                    0.15 * glm::dvec3(scenes::random_direction(random)));
+            set_points(stroke.points.size());
+        }
+        set_points(6); // and back, several points at once
+        set_points(stroke.points.size());
+        if (stroke.radius_degrees < 3.0) {
+            EXPECT_LT(most_touched, relit_scene().transfer.num_clusters() / 3);
+        }
+    }
+}
+
+TEST(LightEditor, ToldTexelsHoldEveryChangeOnceOnly) {
+    LightEditor editor(relit_scene().transfer);
+    editor.set_base(scenes::random_environment(64, 4));
+    std::mt19937 random(9);
+    cubemap::CubeMap kept = editor.environment();
+    std::vector<cubemap::LightLayer> layers = {random_layer(random), random_layer(random)};
+    for (int edit = 0; edit < 60; ++edit) {
+        if (edit % 7 == 3)
+            editor.undo();
+        else if (edit % 20 == 19)
+            editor.set_rotation(edit);
+        else {
+            layers[static_cast<std::size_t>(edit) % 2] = random_layer(random);
+            editor.set_layers(layers);
+            if (edit % 3 == 0)
+                editor.mark();
+        }
+        std::vector<int> told(kept.texels.size(), 0);
+        for (const TexelRectangle& part : editor.changed_texels())
+            for (std::uint32_t y = part.y0; y < part.y1; ++y)
+                for (std::uint32_t x = part.x0; x < part.x1; ++x) {
+                    kept.at(part.face, x, y) = editor.environment().at(part.face, x, y);
+                    ++told[kept.index(part.face, x, y)];
+                }
+        EXPECT_EQ(kept.texels, editor.environment().texels) << edit;
+        EXPECT_LE(*std::max_element(told.begin(), told.end()), 1) << edit;
+    }
 }
 
 TEST(LightEditor, SmallEditsTouchFewClusters) {

@@ -1,5 +1,6 @@
 #include "viewer/light_desk.h"
 
+#include <stdexcept>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -75,6 +76,68 @@ TEST_F(LightDeskTest, DirectionsAreAsSeenAfterTheRotation) {
     desk_.drag_to({1, 1, 0});
     desk_.end_drag();
     EXPECT_LT(angle_between(direction_of(0), {0, 1, 1}), 1e-6);
+}
+
+TEST_F(LightDeskTest, RotationAndBaseAreStepsOfUndoAndTheFilesNameFollows) {
+    desk_.set_base(cubemap::CubeMap(64, glm::vec3(0.1f)), "first.exr");
+    desk_.add(disc({1, 1, 0}));
+    const std::vector<glm::vec3> before = radiance();
+    for (const double degrees : {10.0, 20.0, 30.0}) // a slider moves: one step
+        desk_.set_rotation(degrees);
+    desk_.finish();
+    const std::vector<glm::vec3> turned = radiance();
+    EXPECT_NE(turned, before);
+    desk_.set_base(cubemap::CubeMap(32, glm::vec3(0.7f)), "second.hdr");
+    desk_.finish();
+    EXPECT_EQ(desk_.base_path(), "second.hdr");
+    static_cast<void>(desk_.take_changed_texels());
+    desk_.undo();
+    EXPECT_EQ(desk_.base_path(), "first.exr");
+    EXPECT_EQ(radiance(), turned);
+    EXPECT_EQ(desk_.take_changed_texels(), cubemap::all_texels(64));
+    desk_.undo();
+    EXPECT_EQ(editor_.rotation(), 0.0);
+    EXPECT_EQ(radiance(), before);
+    desk_.redo();
+    desk_.redo();
+    EXPECT_EQ(desk_.base_path(), "second.hdr");
+    EXPECT_EQ(editor_.environment().resolution, 32u);
+}
+
+TEST_F(LightDeskTest, ALassoIsDrawnAsSeenAndIsOneStepOfUndo) {
+    const cubemap::LightLayer dim{.name = "Lasso",
+                                  .region = cubemap::Lasso{.points = {}, .softness_degrees = 2.0},
+                                  .effect = cubemap::Gain{.factor = 0.0f}};
+    desk_.set_rotation(90.0);
+    desk_.finish();
+    const std::vector<glm::vec3> before = radiance();
+    desk_.begin_lasso({1, 0.5, 0.5});
+    desk_.lasso_to({1, 0.501, 0.5}, 1.0); // too near to count
+    EXPECT_EQ(desk_.lasso().size(), 1u);
+    desk_.lasso_to({1, 0.5, -0.5}, 1.0);
+    EXPECT_FALSE(desk_.end_lasso(dim)) << "two points are no outline";
+    EXPECT_TRUE(desk_.layers().empty());
+
+    desk_.begin_lasso({1, 0.5, 0.5});
+    for (const glm::dvec3 to : {glm::dvec3(1, 0.5, -0.5), {1, -0.5, -0.5}, {1, -0.5, 0.5}})
+        desk_.lasso_to(to, 1.0);
+    EXPECT_EQ(radiance(), before) << "nothing changes before the end";
+    EXPECT_TRUE(desk_.end_lasso(dim));
+    EXPECT_TRUE(desk_.lasso().empty());
+    ASSERT_EQ(desk_.layers().size(), 1u);
+    EXPECT_EQ(desk_.selected(), 0u);
+    EXPECT_EQ(desk_.held_at({1, 0, 0}, 1.0).grip, Grip::Body) << "where it was drawn, turned";
+    EXPECT_EQ(cubemap::coverage(desk_.layers()[0].region, {0, 0, 1}), 1.0) << "before the turn";
+    EXPECT_NE(radiance(), before);
+    desk_.undo();
+    EXPECT_TRUE(desk_.layers().empty());
+    EXPECT_EQ(radiance(), before);
+
+    desk_.begin_lasso({0, 1, 0.1});
+    for (const glm::dvec3 to : {glm::dvec3(1, -0.2, 0), {-0.5, -0.2, 0.8}, {-0.5, -0.2, -0.8}})
+        desk_.lasso_to(to, 1.0);
+    EXPECT_THROW(desk_.end_lasso(dim), std::invalid_argument);
+    EXPECT_TRUE(desk_.layers().empty());
 }
 
 TEST_F(LightDeskTest, PaintsAStrokePointByPoint) {

@@ -61,14 +61,21 @@ protected:
     /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
     [[nodiscard]] int play(const std::string& script) const {
         std::ofstream(folder_ / "script") << script;
+        // The program's words and exit code are kept inside: xvfb-run may fail to remove its own folder when a program ends soon.
+        std::ofstream(folder_ / "run") << fmt::format("'{}' view scene.prt env.exr --script script --size "
+                                                      "{}x{} --exposure 0 --json >out.txt 2>err.txt\n"
+                                                      "echo $? >code.txt\n",
+                                                      RELUMINE_BINARY, Width, Height);
+        std::filesystem::remove(folder_ / "code.txt");
         const std::string command =
             fmt::format("cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
                         "TSAN_OPTIONS=\"$TSAN_OPTIONS ignore_noninstrumented_modules=1\" xvfb-run -a -s "
-                        "'-screen 0 1280x1024x24' '{}' view scene.prt "
-                        "env.exr --script script --size {}x{} --exposure 0 --json >out.txt 2>err.txt",
-                        folder_.string(), RELUMINE_BINARY, Width, Height);
-        const int status = std::system(command.c_str());
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+                        "'-screen 0 1280x1024x24' sh run >xvfb.txt 2>&1",
+                        folder_.string());
+        static_cast<void>(std::system(command.c_str()));
+        int code = -1;
+        std::ifstream(folder_ / "code.txt") >> code;
+        return code;
     }
     [[nodiscard]] std::string words(const std::string& name) const {
         std::ifstream file(folder_ / name);
@@ -192,6 +199,87 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
         .x = viewport_.x, .y = viewport_.y, .width = viewport_.width, .height = viewport_.height / 8};
     EXPECT_TRUE(equal(moved, heat, upper));
     EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
+}
+
+TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
+    const PixelRectangle map = panel_layout(Width, Height).environment;
+    cubemap::save_environment(folder_ / "picture.exr", cubemap::CubeMap(8, glm::vec3(3.0f, 2.0f, 1.0f)),
+                              cubemap::Layout::LatLong);
+    const auto box = [&](double x0, double y0, double x1, double y1) {
+        return fmt::format("{} {} {} {}", std::lround(map.x + x0 * map.width),
+                           std::lround(map.y + y0 * map.height), std::lround(map.x + x1 * map.width),
+                           std::lround(map.y + y1 * map.height));
+    };
+    // The dialogue is in the window's middle; its second button makes a layer.
+    const std::string on_image_layer = fmt::format("{} {}", Width / 2 + 20, Height / 2 + 22);
+    ASSERT_EQ(play(fmt::format("lasso_env {}\n"
+                               "wait 1\n"
+                               "screenshot lasso.exr\n"
+                               "drop picture.exr\n"
+                               "wait 3\n"
+                               "screenshot asks.exr\n"
+                               "click {}\n"
+                               "wait 1\n"
+                               "screenshot layer.exr\n"
+                               "rotate 40\n"
+                               "wait 1\n"
+                               "screenshot rotated.exr\n"
+                               "undo\n"
+                               "wait 1\n"
+                               "screenshot unrotated.exr\n"
+                               "save_layers saved.json\n"
+                               "open picture.exr\n"
+                               "save_layers on_picture.json\n"
+                               "undo\n"
+                               "save_layers undone.json\n"
+                               "undo\n"
+                               "undo\n"
+                               "save_layers nothing.json\n",
+                               box(0.15, 0.3, 0.35, 0.6), on_image_layer)),
+              0)
+        << words("err.txt");
+    const cubemap::LightLayers saved = cubemap::load_layers(folder_ / "saved.json");
+    ASSERT_EQ(saved.layers.size(), 2u) << "the drop became a layer";
+    EXPECT_TRUE(std::holds_alternative<cubemap::Lasso>(saved.layers[0].region));
+    EXPECT_TRUE(std::holds_alternative<cubemap::Gain>(saved.layers[0].effect));
+    // The outline's middle is a quarter from the left: +X.
+    EXPECT_EQ(cubemap::coverage(saved.layers[0].region, direction_at({0.25, 0.45})), 1.0);
+    EXPECT_EQ(cubemap::coverage(saved.layers[0].region, direction_at({0.37, 0.45})), 0.0);
+    const auto& patch = std::get<cubemap::ImagePatch>(saved.layers[1].effect);
+    EXPECT_EQ(patch.path, "picture.exr") << "relative to the file";
+    EXPECT_EQ(saved.base, "env.exr");
+    const cubemap::Picture::Level lasso = picture("lasso.exr");
+    EXPECT_FALSE(equal(lasso, picture("asks.exr"), viewport_)) << "the dialogue dims what is behind it";
+    const cubemap::Picture::Level layer = picture("layer.exr");
+    EXPECT_GT(brightness(layer, {map.x + map.width / 2, map.y + map.height * 46 / 100}),
+              brightness(lasso, {map.x + map.width / 2, map.y + map.height * 46 / 100}));
+    EXPECT_FALSE(equal(layer, picture("rotated.exr"), map));
+    EXPECT_TRUE(equal(layer, picture("unrotated.exr"), map));
+    EXPECT_TRUE(equal(layer, picture("unrotated.exr"), viewport_));
+    EXPECT_EQ(cubemap::load_layers(folder_ / "on_picture.json").base, "picture.exr");
+    EXPECT_EQ(cubemap::load_layers(folder_ / "undone.json").base, "env.exr");
+    EXPECT_TRUE(cubemap::load_layers(folder_ / "nothing.json").layers.empty());
+}
+
+TEST_F(WindowTest, SavedLayersFindTheirPicturesFromAnotherFolder) {
+    cubemap::save_environment(folder_ / "picture.exr", cubemap::CubeMap(8, glm::vec3(3.0f)),
+                              cubemap::Layout::LatLong);
+    std::filesystem::create_directory(folder_ / "a");
+    std::filesystem::create_directory(folder_ / "b");
+    ASSERT_EQ(play("add_image picture.exr\n"
+                   "save_layers a/layers.json\n"
+                   "open a/layers.json\n"
+                   "save_layers b/layers.json\n"
+                   "open b/layers.json\n"),
+              0)
+        << words("err.txt");
+    const cubemap::LightLayers saved = cubemap::load_layers(folder_ / "b/layers.json");
+    ASSERT_EQ(saved.layers.size(), 1u);
+    EXPECT_EQ(std::get<cubemap::ImagePatch>(saved.layers[0].effect).path, "../picture.exr");
+    EXPECT_EQ(play("add_image missing.exr\n"), 1);
+    EXPECT_EQ(play("add_image env.png\n"), 1);
+    EXPECT_EQ(words("err.txt"),
+              "relumine: script line 1: env.png: expected .exr or .hdr for an image layer, got '.png'\n");
 }
 
 TEST_F(WindowTest, AScriptThatFailsEndsWithOneLine) {

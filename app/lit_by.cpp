@@ -1,0 +1,66 @@
+#include "app/lit_by.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "app/session.h"
+#include "cubemap/layer_composite.h"
+#include "relight/contribution.h"
+
+namespace relumine::app {
+
+namespace {
+
+double sum_of(std::span<const glm::vec3> radiance) {
+    double sum = 0.0;
+    for (const glm::vec3& value : radiance)
+        sum += static_cast<double>(value.r) + static_cast<double>(value.g) + static_cast<double>(value.b);
+    return sum;
+}
+
+} // namespace
+
+cubemap::Region lit_by_region(const std::string& text, std::span<const cubemap::LightLayer> layers) {
+    const auto layer =
+        std::find_if(layers.begin(), layers.end(), [&](const auto& l) { return l.name == text; });
+    if (layer != layers.end())
+        return layer->region;
+    const auto refuse = [&](const std::string& why) {
+        throw CLI::ValidationError("--lit-by", fmt::format("expected the name of a layer or X,Y,Z,RADIUS "
+                                                           "with a RADIUS in degrees, got '{}'{}",
+                                                           text, why));
+    };
+    const std::size_t last_comma = text.rfind(',');
+    if (last_comma == std::string::npos)
+        refuse("");
+    cubemap::Disc disc;
+    try {
+        disc.direction = parse_vec3("--lit-by", text.substr(0, last_comma));
+    } catch (const CLI::ValidationError&) {
+        refuse("");
+    }
+    if (!CLI::detail::lexical_cast(text.substr(last_comma + 1), disc.radius_degrees))
+        refuse("");
+    try {
+        cubemap::validate(cubemap::Region(disc));
+    } catch (const std::invalid_argument& error) {
+        refuse(fmt::format(": {}", error.what()));
+    }
+    return disc;
+}
+
+LitBy lit_by(const relight::Relighter& relighter, const cubemap::Region& region) {
+    LitBy result{.environment = relighter.environment()};
+    const std::vector<float> weights = cubemap::coverage_map(region, result.environment.resolution);
+    for (std::size_t texel = 0; texel < weights.size(); ++texel)
+        result.environment.texels[texel] *= weights[texel];
+    result.radiance = relight::radiance_from(relighter, weights);
+    const double all = sum_of(relighter.radiance());
+    result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
+    return result;
+}
+
+} // namespace relumine::app
