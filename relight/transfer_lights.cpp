@@ -39,7 +39,7 @@ constexpr std::array RefiningSteps = {1.2, 0.6, 0.3};
 
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
-constexpr int ExchangePasses = 5;
+constexpr int ExchangePasses = 8;
 
 using Rgb = glm::dvec3;
 
