@@ -87,9 +87,11 @@ public:
         }
         // 1, 2, 5 of each decade, or decades alone where that were too many.
         const bool decades_only = high_ / low_ > 2e3;
-        for (double decade = std::pow(10.0, std::floor(std::log10(low_))); decade <= high_; decade *= 10.0)
+        const auto first = static_cast<int>(std::floor(std::log10(low_)));
+        const auto last = static_cast<int>(std::floor(std::log10(high_)));
+        for (int decade = first; decade <= last; ++decade)
             for (const double factor : {1.0, 2.0, 5.0})
-                if (const double value = factor * decade;
+                if (const double value = factor * std::pow(10.0, decade);
                     value >= low_ && value <= high_ && (factor == 1.0 || !decades_only))
                     result.push_back(value);
         return result;
