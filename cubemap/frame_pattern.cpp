@@ -59,7 +59,8 @@ FramePattern::FramePattern(std::string prefix, std::size_t digits, std::string s
 
 std::optional<FramePattern> FramePattern::parse(const std::string& text) {
     std::optional<Place> found;
-    for (std::size_t i = 0; i < text.size();) {
+    const std::size_t slash = text.rfind('/');
+    for (std::size_t i = slash == std::string::npos ? 0 : slash + 1; i < text.size();) {
         const std::optional<Place> place = place_at(text, i);
         if (place && found)
             throw std::runtime_error(
@@ -70,11 +71,12 @@ std::optional<FramePattern> FramePattern::parse(const std::string& text) {
     }
     if (!found)
         return std::nullopt;
-    const std::string suffix = text.substr(found->end);
-    if (suffix.find('/') != std::string::npos)
-        throw std::runtime_error(fmt::format(
-            "{}: expected the frame's number in the name of the file, got it in a folder's", text));
-    return FramePattern(text.substr(0, found->begin), std::max<std::size_t>(found->digits, 1), suffix);
+    return FramePattern(text.substr(0, found->begin), std::max<std::size_t>(found->digits, 1),
+                        text.substr(found->end));
+}
+
+std::string FramePattern::name_of_all(std::string_view text) const {
+    return fmt::format("{}{}{}", prefix_, text, suffix_);
 }
 
 std::string FramePattern::name(std::int64_t number) const {

@@ -12,11 +12,13 @@ namespace relumine::cubemap {
 /// A file name with a place for the frame's number: `%d`, `%04d` as in printf, or `####`, one # per digit; longer numbers take more.
 class FramePattern {
 public:
-    /// Nothing when the text has no such place. Throws std::runtime_error when it has two, or one in a folder's name.
+    /// Nothing when the name of the file (folders are taken as they are) has no such place. Throws std::runtime_error when it has two.
     [[nodiscard]] static std::optional<FramePattern> parse(const std::string& text);
 
     /// The path of a frame, number >= 0.
     [[nodiscard]] std::string name(std::int64_t number) const;
+    /// The path with a text in the number's place.
+    [[nodiscard]] std::string name_of_all(std::string_view text) const;
     /// The number of the frame that has this path, or nothing. Leading zeros count: frame.07.exr is no frame of frame.%d.exr.
     [[nodiscard]] std::optional<std::int64_t> number(std::string_view path) const;
 

@@ -46,14 +46,16 @@ std::string list_of(const std::vector<std::int64_t>& numbers) {
 std::vector<FrameFile> frames_of(const std::string& name, const FramePattern& pattern,
                                  const std::optional<FrameRange>& range) {
     const fs::path folder = fs::path(name).parent_path();
+    // Of six files per frame the first stands for all; loading finds out about the others.
+    const FramePattern first_file = *FramePattern::parse(environment_files(name).front().string());
     std::map<std::int64_t, fs::path> found;
     std::error_code error;
     for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), end;
          !error && entry != end; entry.increment(error)) {
         // Spelled as the pattern is: `frames` and `./frames` are the same folder.
         const std::string path = (folder / entry->path().filename()).string();
-        if (const auto number = pattern.number(path))
-            found.emplace(*number, path);
+        if (const auto number = first_file.number(path))
+            found.emplace(*number, pattern.name(*number));
     }
     if (error)
         throw std::runtime_error(fmt::format("{}: cannot read the folder: {}", name, error.message()));

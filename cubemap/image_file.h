@@ -12,7 +12,6 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/environment.h"
-#include "cubemap/image_size.h"
 
 namespace relumine::cubemap {
 
