@@ -65,7 +65,9 @@ public:
             PreparedFrame frame = ahead.get(i);
             totals_.seconds_wait += watch.lap();
             const cubemap::CubeMap background = light(std::move(frame));
-            totals_.seconds_relight += watch.lap();
+            const double seconds_relight = watch.lap();
+            totals_.seconds_relight += seconds_relight;
+            seconds_relight_frames_.push_back(seconds_relight);
             write(todo_[i], background);
             if (vertices)
                 vertices->append(writer_.values(relighter_.radiance()));
@@ -192,6 +194,7 @@ private:
                          {"seconds_bin", totals_.seconds_bin},
                          {"seconds_wait", totals_.seconds_wait},
                          {"seconds_relight", totals_.seconds_relight},
+                         {"seconds_relight_frames", seconds_relight_frames_},
                          {"seconds_trace", totals_.seconds_trace},
                          {"seconds_write", totals_.seconds_write},
                          {"seconds_frames", seconds_frames_}});
@@ -211,6 +214,7 @@ private:
     std::vector<std::size_t> todo_;
     std::size_t num_kept_ = 0, num_written_ = 0;
     Totals totals_;
+    std::vector<double> seconds_relight_frames_;
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };
 
