@@ -9,6 +9,7 @@ namespace relumine::app {
 
 void add_precompute(CLI::App& program, Session& session);
 void add_relight(CLI::App& program, Session& session);
+void add_animate(CLI::App& program, Session& session);
 void add_edit(CLI::App& program, Session& session);
 void add_verify(CLI::App& program, Session& session);
 void add_lights(CLI::App& program, Session& session);

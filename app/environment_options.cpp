@@ -35,6 +35,11 @@ CLI::Option* EnvironmentOptions::add_to(CLI::App& command) {
             .add_option("ENV", path,
                         "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz")
             ->required();
+    add_conversion_to(command);
+    return environment;
+}
+
+void EnvironmentOptions::add_conversion_to(CLI::App& command) {
     command.add_option("--layout", layout, "layout of the environment, where the file does not tell")
         ->check(CLI::IsMember(layout_names()));
     command
@@ -47,7 +52,6 @@ CLI::Option* EnvironmentOptions::add_to(CLI::App& command) {
         .add_option("--rotate", rotate_degrees, "turn the environment about +Y, degrees: +Z goes to +X at 90")
         ->check(number_between(-36000.0, 36000.0))
         ->capture_default_str();
-    return environment;
 }
 
 cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Session& session) {

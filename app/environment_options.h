@@ -24,6 +24,8 @@ struct EnvironmentOptions {
 
     /// Adds ENV and its options; returns ENV, which is required until its caller says otherwise.
     CLI::Option* add_to(CLI::App& command);
+    /// All but ENV.
+    void add_conversion_to(CLI::App& command);
 };
 
 /// An environment ready to light, and where the time went.

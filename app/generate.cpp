@@ -1,16 +1,17 @@
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
+#include <optional>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/generate_sequence.h"
 #include "cubemap/environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
+#include "data_gen/sequences.h"
 #include "mesh/save.h"
 
 namespace relumine::app {
@@ -22,14 +23,8 @@ struct Options {
     std::string folder;
     std::size_t num_vertices = 50000;
     std::uint32_t face_resolution = 256;
+    GenerateSequenceOptions sequence;
 };
-
-void make_folder(const std::string& path) {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
-    if (error)
-        throw std::runtime_error(fmt::format("{}: cannot make the folder: {}", path, error.message()));
-}
 
 void write_scene(const data_gen::Scene& scene, const Options& options, Session& session,
                  nlohmann::json& files) {
@@ -60,7 +55,15 @@ void write_environment(const data_gen::Environment& environment, const Options& 
     }
 }
 
-void run(const Options& options, Session& session) {
+void run(const Options& options, bool resolution_given, Session& session) {
+    if (options.name == "sequence") {
+        generate_sequence(options.sequence, options.folder,
+                          resolution_given ? std::optional(options.face_resolution) : std::nullopt, session);
+        return;
+    }
+    if (!options.sequence.kind.empty())
+        throw CLI::ValidationError(
+            "KIND", fmt::format("expected none but after `sequence`, got '{}'", options.sequence.kind));
     nlohmann::json files = nlohmann::json::array();
     for (const data_gen::Scene& scene : data_gen::scenes())
         if (options.name == scene.name || options.name == "all")
@@ -74,11 +77,11 @@ void run(const Options& options, Session& session) {
 } // namespace
 
 void add_generate(CLI::App& program, Session& session) {
-    CLI::App& command =
-        *program.add_subcommand("generate", "make scenes (.ply) and environments (.exr) from nothing");
+    CLI::App& command = *program.add_subcommand(
+        "generate", "make scenes (.ply), environments and sequences of them (.exr) from nothing");
     auto options = std::make_shared<Options>();
-    std::vector<std::string> names = {"all"};
-    std::string list = "\n\nNAME is `all` or one of:\n";
+    std::vector<std::string> names = {"all", "sequence"};
+    std::string list = "\n\nNAME is `all`, `sequence` or one of:\n";
     for (const data_gen::Scene& scene : data_gen::scenes()) {
         names.emplace_back(scene.name);
         list += fmt::format("  {:12} {}\n", scene.name, scene.description);
@@ -87,22 +90,28 @@ void add_generate(CLI::App& program, Session& session) {
         names.emplace_back(environment.name);
         list += fmt::format("  {:12} {}\n", environment.name, environment.description);
     }
+    list +=
+        "\n`generate sequence KIND` makes one environment per frame, KIND.0000.exr and on. KIND is one of:\n";
+    for (const data_gen::Sequence& sequence : data_gen::sequences())
+        list += fmt::format("  {:12} {}\n", sequence.name, sequence.description);
     command.footer(list);
     command.add_option("NAME", options->name, "what to make, see below")
         ->required()
         ->check(CLI::IsMember(names))
         ->type_name("NAME");
+    options->sequence.add_to(command);
     command.add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
         ->required();
     command.add_option("--vertices", options->num_vertices, "vertices of a scene, met within a few per cent")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    command
-        .add_option("--face-resolution", options->face_resolution,
-                    "R of an environment: cube 6 x R x R, lat-long 4R x 2R")
-        ->capture_default_str();
+    const CLI::Option* resolution =
+        command
+            .add_option("--face-resolution", options->face_resolution,
+                        "R of an environment: cube 6 x R x R, lat-long 4R x 2R; `turn`: of its --env")
+            ->capture_default_str();
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.callback([options, resolution, &session] { run(*options, resolution->count() > 0, session); });
 }
 
 } // namespace relumine::app

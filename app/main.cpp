@@ -34,6 +34,7 @@ int main(int argc, char** argv) {
     program.require_subcommand(1);
     app::add_precompute(program, session);
     app::add_relight(program, session);
+    app::add_animate(program, session);
     app::add_edit(program, session);
     app::add_verify(program, session);
     app::add_lights(program, session);

@@ -140,6 +140,31 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
         mesh::save(path, scene.mesh, colors);
 }
 
+void FrameWriter::save(const std::string& path, std::span<const glm::vec3> radiance,
+                       const cubemap::CubeMap& environment) {
+    const std::string extension = extension_of(path);
+    if (extension != ".png" && extension != ".exr") {
+        OutputOptions options = options_;
+        options.path = path;
+        options.save(lit_, radiance, environment);
+        return;
+    }
+    const mesh::TriangleMesh& mesh = lit_.scene().mesh;
+    if (!view_)
+        view_ = std::make_unique<relight::PictureView>(mesh, lit_.rays(), camera_of(options_, mesh),
+                                                       parse_size(options_.size));
+    relight::save_picture(path, view_->draw(coloured(options_.albedo, mesh, radiance), environment),
+                          options_.exposure_ev);
+}
+
+std::vector<glm::vec3> FrameWriter::values(std::span<const glm::vec3> radiance) const {
+    std::vector<glm::vec3> values = coloured(options_.albedo, lit_.scene().mesh, radiance);
+    const auto scale = static_cast<float>(std::exp2(options_.exposure_ev));
+    for (glm::vec3& value : values)
+        value *= scale;
+    return values;
+}
+
 void check_output(const std::string& path, const std::vector<std::string>& inputs) {
     for (const std::string& input : inputs) {
         std::error_code missing;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 
 #include "app/lit_scene.h"
 #include "cubemap/cube_map.h"
+#include "relight/picture.h"
 
 namespace relumine::app {
 
@@ -32,6 +34,23 @@ struct OutputOptions {
     /// Writes by extension: .png .exr pictures, .ply .glb meshes with vertex colours, .npy numbers.
     void save(const LitScene& lit, std::span<const glm::vec3> radiance,
               const cubemap::CubeMap& environment) const;
+};
+
+/// Writes many frames of a scene that stands still: what the camera sees is found once.
+class FrameWriter {
+public:
+    /// `lit` must outlive it.
+    FrameWriter(const OutputOptions& options, const LitScene& lit) : options_(options), lit_(lit) {}
+    /// As OutputOptions::save() to another path of the same extension; bit by bit the same file.
+    void save(const std::string& path, std::span<const glm::vec3> radiance,
+              const cubemap::CubeMap& environment);
+    /// Radiance times albedo and exposure: what a .npy holds.
+    [[nodiscard]] std::vector<glm::vec3> values(std::span<const glm::vec3> radiance) const;
+
+private:
+    OutputOptions options_;
+    const LitScene& lit_;
+    std::unique_ptr<relight::PictureView> view_; ///< once there is a picture
 };
 
 /// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever name.

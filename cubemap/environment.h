@@ -91,7 +91,9 @@ inline constexpr std::array<std::string_view, 6> FaceFileNames = {"px", "nx", "p
 
 /// Width and height of an image in a layout whose natural resolution is R.
 struct ImageSize {
-    std::uint32_t width, height;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    bool operator==(const ImageSize&) const = default;
 };
 [[nodiscard]] ImageSize natural_size(Layout layout, std::uint32_t face_resolution);
 

@@ -135,6 +135,17 @@ public:
         return image;
     }
 
+    /// The size that decode() would give; the header only.
+    ImageSize size(const std::filesystem::path& path) {
+        Imf::MultiPartInputFile file(path.c_str(), 0);
+        choose_part(file);
+        const Imf::Header& header = file.header(part_);
+        const Window inner = window(header.dataWindow());
+        const Window outer = window(header.displayWindow());
+        return fills_display_window(header) ? ImageSize{outer.width, outer.height}
+                                            : ImageSize{inner.width, inner.height};
+    }
+
 private:
     [[noreturn]] void fail(const std::string& expected, const std::string& got) const {
         throw std::runtime_error(fmt::format("{}: expected {}, got {}", name_, expected, got));
@@ -258,12 +269,14 @@ private:
             image.remarks.emplace_back("luminance and chroma");
         if (Imf::hasChromaticities(header))
             image.remarks.emplace_back("chromaticities not converted");
-        if (!image.envmap)
-            fill_display_window(header, image);
+        fill_display_window(header, image);
     }
 
     /// A data window smaller than an environment's display window is the part of it that is not black.
-    void fill_display_window(const Imf::Header& header, ImageFile& image) const {
+    [[nodiscard]] static bool fills_display_window(const Imf::Header& header) {
+        if (Imf::hasEnvmap(header) &&
+            (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
+            return false;
         const Window display = window(header.displayWindow());
         const bool is_environment =
             display.width == 2 * std::uint64_t{display.height} ||
@@ -273,9 +286,15 @@ private:
         const Imath::Box2i& inner = header.dataWindow();
         const Imath::Box2i& outer = header.displayWindow();
         const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
-        if (!is_environment || num_pixels == 0 || num_pixels > MaxPixels || inner == outer ||
-            !outer.intersects(inner.min) || !outer.intersects(inner.max))
+        return is_environment && num_pixels != 0 && num_pixels <= MaxPixels && inner != outer &&
+               outer.intersects(inner.min) && outer.intersects(inner.max);
+    }
+
+    void fill_display_window(const Imf::Header& header, ImageFile& image) const {
+        if (!fills_display_window(header))
             return;
+        const Window display = window(header.displayWindow());
+        const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
         // A tiny picture in a huge frame is taken at its word only as far as memory is cheap.
         if (num_pixels > std::max<std::uint64_t>(image.pixels.size() * 64, std::uint64_t{1} << 22))
             fail(fmt::format("data for {}x{} pixels", display.width, display.height),
@@ -307,9 +326,13 @@ bool is_exr(std::span<const std::byte> bytes) {
     return bytes.size() >= Magic.size() && std::equal(Magic.begin(), Magic.end(), bytes.begin());
 }
 
-ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) {
+namespace {
+
+/// Runs `read` and gives OpenEXR's complaints the form of ours.
+template<typename Read>
+auto with_own_messages(const std::string& name, const Read& read) {
     try {
-        return Decoder(bytes, name).decode();
+        return read();
     } catch (const std::exception& error) {
         std::string message = error.what();
         if (message.starts_with(name + ": ")) // our own, complete already
@@ -320,6 +343,17 @@ ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) 
             message.replace(at, 6, "it");
         throw std::runtime_error(fmt::format("{}: expected an intact OpenEXR image, got: {}", name, message));
     }
+}
+
+} // namespace
+
+ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) {
+    return with_own_messages(name, [&] { return Decoder(bytes, name).decode(); });
+}
+
+ImageSize exr_size(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    return with_own_messages(name, [&] { return Decoder({}, name).size(path); });
 }
 
 std::vector<std::byte> encode_exr(const EnvironmentImage& image) {

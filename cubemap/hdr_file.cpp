@@ -26,8 +26,16 @@ bool can_be_run_length_encoded(std::uint32_t width) {
 
 class Decoder {
 public:
-    Decoder(std::span<const std::byte> bytes, const std::string& name)
-        : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), name_(name) {}
+    /// `num_bytes`: of the whole file, of which `bytes` may be the beginning.
+    Decoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
+        : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), num_bytes_(num_bytes),
+          name_(name) {}
+
+    ImageSize size() {
+        read_header();
+        read_size();
+        return {width_, height_};
+    }
 
     ImageFile decode() {
         read_header();
@@ -119,7 +127,7 @@ private:
         const auto [height, width] = sizes;
         // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1; the old runs could, but hardly do.
         constexpr std::size_t AlwaysAllowed = std::size_t{1} << 22;
-        const std::size_t num_bytes = bytes_.size() - position_;
+        const std::size_t num_bytes = num_bytes_ - position_;
         if (width == 0 || height == 0 || width > MaxPixels || height > MaxPixels ||
             width * height > MaxPixels)
             fail("a size that an environment can have", fmt::format("{}x{}", width, height));
@@ -198,6 +206,7 @@ private:
     }
 
     std::span<const std::uint8_t> bytes_;
+    std::size_t num_bytes_;
     const std::string& name_;
     std::size_t position_ = 0;
     glm::dvec3 exposure_{1.0};
@@ -264,7 +273,11 @@ bool is_hdr(std::span<const std::byte> bytes) {
 }
 
 ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name) {
-    return Decoder(bytes, name).decode();
+    return Decoder(bytes, bytes.size(), name).decode();
+}
+
+ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes, const std::string& name) {
+    return Decoder(head, num_bytes, name).size();
 }
 
 std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,6 +33,12 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 /// Decode a file's content. `name` stands for it in messages: std::runtime_error "name: expected X, got Y".
 [[nodiscard]] ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name);
+
+/// The size of the image that they would decode, from the header alone.
+[[nodiscard]] ImageSize exr_size(const std::filesystem::path& path);
+/// `head`: the file's first bytes, of `num_bytes` that it has.
+[[nodiscard]] ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
+                                 const std::string& name);
 
 /// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders.
 [[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image);

@@ -116,6 +116,45 @@ Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& op
 Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
              std::span<const glm::vec3> vertex_radiance, const cubemap::CubeMap& background,
              const Camera& camera, const PictureOptions& options) {
+    return PictureView(mesh, rays, camera, options, 0).draw(vertex_radiance, background);
+}
+
+namespace {
+
+/// The samples of a picture: n x n rays per pixel.
+class SampleGrid {
+public:
+    SampleGrid(const Camera& camera, const PictureOptions& options)
+        : frame_(frame_of(camera, options)), options_(options) {}
+
+    [[nodiscard]] std::uint32_t per_pixel() const {
+        return options_.samples_per_axis * options_.samples_per_axis;
+    }
+    /// Unit direction of sample i of a pixel.
+    [[nodiscard]] glm::vec3 direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const {
+        const std::uint32_t n = options_.samples_per_axis;
+        const std::uint32_t column = i % n;
+        const std::uint32_t row = i / n;
+        // Picture coordinates in pixels from the top left corner.
+        const float px = static_cast<float>(x) + (static_cast<float>(column) + 0.5f) / static_cast<float>(n);
+        const float py = static_cast<float>(y) + (static_cast<float>(row) + 0.5f) / static_cast<float>(n);
+        const float across = 2.0f * px / static_cast<float>(options_.width) - 1.0f;
+        const float upwards = 1.0f - 2.0f * py / static_cast<float>(options_.height);
+        return glm::normalize(frame_.forward + across * frame_.right + upwards * frame_.up);
+    }
+
+private:
+    Frame frame_;
+    PictureOptions options_;
+};
+
+constexpr std::uint32_t NoTriangle = ~std::uint32_t{0};
+
+} // namespace
+
+PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const Camera& camera,
+                         const PictureOptions& options, std::size_t max_bytes)
+    : mesh_(mesh), rays_(rays), camera_(camera), options_(options) {
     constexpr std::uint32_t MaxSize = 16384;
     const auto good_size = [](std::uint32_t size) {
         return size >= 1 && size <= MaxSize;
@@ -123,39 +162,53 @@ Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
     if (!good_size(options.width) || !good_size(options.height) || options.samples_per_axis < 1 ||
         options.samples_per_axis > 64)
         throw std::invalid_argument(fmt::format("expected a picture of 1 to {} pixels a side", MaxSize));
-    if (vertex_radiance.size() != mesh.num_vertices())
+    const SampleGrid grid(camera, options);
+    const std::size_t num_samples = std::size_t{options.width} * options.height * grid.per_pixel();
+    if (num_samples > max_bytes / sizeof(Sample))
+        return;
+    samples_.resize(num_samples);
+    tbb::parallel_for(std::uint32_t{0}, options.height, [&](std::uint32_t y) {
+        std::size_t index = std::size_t{y} * options.width * grid.per_pixel();
+        for (std::uint32_t x = 0; x < options.width; ++x)
+            for (std::uint32_t i = 0; i < grid.per_pixel(); ++i) {
+                const std::optional<prt::Hit> hit = rays.closest_hit(camera.eye, grid.direction(x, y, i));
+                samples_[index++] = hit ? Sample{hit->triangle, hit->barycentric.x, hit->barycentric.y}
+                                        : Sample{NoTriangle, 0.0f, 0.0f};
+            }
+    });
+}
+
+Picture PictureView::draw(std::span<const glm::vec3> vertex_radiance,
+                          const cubemap::CubeMap& background) const {
+    if (vertex_radiance.size() != mesh_.num_vertices())
         throw std::invalid_argument("expected one radiance per vertex");
     if (background.resolution == 0)
         throw std::invalid_argument("expected a background with texels");
-    const Frame frame = frame_of(camera, options);
-
-    const auto seen = [&](float x, float y) { // picture coordinates in pixels from the top left corner
-        const float across = 2.0f * x / static_cast<float>(options.width) - 1.0f;
-        const float upwards = 1.0f - 2.0f * y / static_cast<float>(options.height);
-        const glm::vec3 direction = glm::normalize(frame.forward + across * frame.right + upwards * frame.up);
-        const std::optional<prt::Hit> hit = rays.closest_hit(camera.eye, direction);
-        if (!hit)
-            return cubemap::sample(background, direction);
-        const mesh::Triangle& triangle = mesh.triangles[hit->triangle];
-        const float first = 1.0f - hit->barycentric.x - hit->barycentric.y;
-        return first * vertex_radiance[triangle[0]] + hit->barycentric.x * vertex_radiance[triangle[1]] +
-               hit->barycentric.y * vertex_radiance[triangle[2]];
+    const SampleGrid grid(camera_, options_);
+    const auto seen = [&](std::uint32_t x, std::uint32_t y, std::uint32_t i, std::size_t index) {
+        Sample sample{NoTriangle, 0.0f, 0.0f};
+        if (!samples_.empty()) {
+            sample = samples_[index];
+        } else if (const auto hit = rays_.closest_hit(camera_.eye, grid.direction(x, y, i))) {
+            sample = {hit->triangle, hit->barycentric.x, hit->barycentric.y};
+        }
+        if (sample.triangle == NoTriangle)
+            return cubemap::sample(background, grid.direction(x, y, i));
+        const mesh::Triangle& triangle = mesh_.triangles[sample.triangle];
+        const float first = 1.0f - sample.second - sample.third;
+        return first * vertex_radiance[triangle[0]] + sample.second * vertex_radiance[triangle[1]] +
+               sample.third * vertex_radiance[triangle[2]];
     };
 
-    Picture picture{.width = options.width, .height = options.height};
-    picture.pixels.resize(std::size_t{options.width} * options.height);
-    const std::uint32_t n = options.samples_per_axis;
-    tbb::parallel_for(std::uint32_t{0}, options.height, [&](std::uint32_t y) {
-        for (std::uint32_t x = 0; x < options.width; ++x) {
+    Picture picture{.width = options_.width, .height = options_.height};
+    picture.pixels.resize(std::size_t{options_.width} * options_.height);
+    tbb::parallel_for(std::uint32_t{0}, options_.height, [&](std::uint32_t y) {
+        std::size_t index = std::size_t{y} * options_.width * grid.per_pixel();
+        for (std::uint32_t x = 0; x < options_.width; ++x) {
             glm::vec3 sum(0.0f);
-            for (std::uint32_t i = 0; i < n * n; ++i) {
-                const std::uint32_t column = i % n;
-                const std::uint32_t row = i / n;
-                const float dx = (static_cast<float>(column) + 0.5f) / static_cast<float>(n);
-                const float dy = (static_cast<float>(row) + 0.5f) / static_cast<float>(n);
-                sum += seen(static_cast<float>(x) + dx, static_cast<float>(y) + dy);
-            }
-            picture.pixels[std::size_t{y} * options.width + x] = sum / static_cast<float>(n * n);
+            for (std::uint32_t i = 0; i < grid.per_pixel(); ++i)
+                sum += seen(x, y, i, index++);
+            picture.pixels[std::size_t{y} * options_.width + x] = sum / static_cast<float>(grid.per_pixel());
         }
     });
     return picture;

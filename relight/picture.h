@@ -46,6 +46,31 @@ struct PictureOptions {
                            std::span<const glm::vec3> vertex_radiance, const cubemap::CubeMap& background,
                            const Camera& camera, const PictureOptions& options = {});
 
+/// What a camera sees of a scene that stands still, found once and drawn in any light: pictures are bit by bit those of draw().
+class PictureView {
+public:
+    /// Traces the rays: 12 bytes per sample are kept as long as they are at most `max_bytes`; beyond that draw() traces anew each time. The mesh
+    /// and rays must outlive it. Throws as draw() does.
+    PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const Camera& camera,
+                const PictureOptions& options = {}, std::size_t max_bytes = std::size_t{1} << 30);
+
+    [[nodiscard]] Picture draw(std::span<const glm::vec3> vertex_radiance,
+                               const cubemap::CubeMap& background) const;
+
+private:
+    /// Where a sample's ray meets the mesh.
+    struct Sample {
+        std::uint32_t triangle;
+        float second, third; ///< weights of the triangle's vertices
+    };
+
+    const mesh::TriangleMesh& mesh_;
+    const prt::RayScene& rays_;
+    Camera camera_;
+    PictureOptions options_;
+    std::vector<Sample> samples_; ///< [height * width * samples of a pixel], or none
+};
+
 /// Writes .png (times 2^exposure_ev, sRGB curve, clipped, 8 bit) or .exr (linear float, exposure applied too).
 /// Whole or not at all. Throws std::runtime_error naming the path, std::invalid_argument for another extension or a picture short of pixels.
 void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev = 0.0);

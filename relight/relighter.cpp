@@ -27,12 +27,41 @@ constexpr std::size_t ReceiversPerTask = 64;
 /// How far from 1 the length of a light's direction may be, as in files of lights.
 constexpr double UnitTolerance = 1e-3;
 
+/// Whether summing all clusters is less work than updating these, ascending: an update sums each word of 64 clusters that holds any of them twice.
+/// The weights, over the time of the full sum, are measured: `./dev bench frames`.
+bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t num_clusters) {
+    constexpr double CostOfWords = 0.84, CostOfClusters = 2.3;
+    constexpr std::size_t ClustersPerWord = 64;
+    std::size_t num_words = 0;
+    for (std::size_t i = 0; i < changed.size(); ++i)
+        if (i == 0 || changed[i] / ClustersPerWord != changed[i - 1] / ClustersPerWord)
+            ++num_words;
+    const double all_words = std::ceil(static_cast<double>(num_clusters) / ClustersPerWord);
+    return CostOfWords * static_cast<double>(num_words) / all_words +
+               CostOfClusters * static_cast<double>(changed.size()) / static_cast<double>(num_clusters) >
+           1.0;
+}
+
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 double power(const VectorIrradiance& sum) {
     return glm::length(sum.luminance());
+}
+
+/// The sum of all squares, over channels and axes.
+double squared_norm(const VectorIrradiance& sum) {
+    return glm::dot(sum.red, sum.red) + glm::dot(sum.green, sum.green) + glm::dot(sum.blue, sum.blue);
+}
+
+/// Whether a cluster's light changed by more than `bound` of what it becomes.
+bool differs(const VectorIrradiance& before, const VectorIrradiance& after, double bound) {
+    if (bound == 0.0)
+        return before != after;
+    VectorIrradiance difference = after;
+    difference -= before;
+    return squared_norm(difference) > bound * bound * squared_norm(after);
 }
 
 void sort_unique(std::vector<std::uint32_t>& values) {
@@ -56,7 +85,9 @@ void require_radiance(std::span<const glm::vec3> texels) {
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()), powers_(transfer.num_clusters()),
       normals_(transfer.counts.num_blocks()), light_(transfer.counts.num_blocks()),
-      lights_(transfer.num_clusters()), lit_by_(lights_.vectors), radiance_(transfer.num_receivers()) {
+      lights_(transfer.num_clusters()), lit_by_(lights_.vectors),
+      binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
+      radiance_(transfer.num_receivers()) {
     if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
         throw std::invalid_argument("expected one position per receiver");
     traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0, glm::dvec3(0.0));
@@ -67,33 +98,69 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
 }
 
 RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
-    const std::size_t r = environment.resolution;
-    if (r == 0 || environment.texels.size() != cubemap::NumFaces * r * r)
-        throw std::invalid_argument(
-            fmt::format("expected 6 x {0} x {0} texels, got {1}", r, environment.texels.size()));
-    require_radiance(environment.texels);
-    RelightTimes times;
+    BinnedEnvironment binned = binner_.bin(std::move(environment));
+    RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
-    environment_ = std::move(environment);
-    if (!binning_ || binning_->resolution() != environment_.resolution)
-        binning_.emplace(environment_.resolution);
-    sums_ = binning_->sums(environment_, transfer_.quadtree.leaves());
-    std::transform(sums_.begin(), sums_.end(), powers_.begin(), power);
-    times.seconds_bin = seconds_since(start);
-
-    start = std::chrono::steady_clock::now();
-    if (rays_.blockers != nullptr) {
-        sharp_lights_ =
-            find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_, rays_.tolerance);
-        trace_sharp_lights();
-    }
+    take(std::move(binned));
+    trace_sharp_lights();
     times.num_sharp_lights = sharp_lights_.size();
-    times.seconds_trace = seconds_since(start);
+    times.seconds_trace += seconds_since(start);
 
     start = std::chrono::steady_clock::now();
     resum();
     times.seconds_relight = seconds_since(start);
     return times;
+}
+
+/// All of an environment, and nothing of the one before.
+void Relighter::take(BinnedEnvironment binned) {
+    environment_ = std::move(binned.map);
+    binning_ = std::move(binned.binning);
+    sums_ = std::move(binned.sums);
+    powers_ = std::move(binned.powers);
+    sharp_lights_ = std::move(binned.sharp_lights);
+}
+
+UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
+    const auto start = std::chrono::steady_clock::now();
+    if (frame.sums.size() != sums_.size() || frame.powers.size() != sums_.size() || !frame.binning)
+        throw std::invalid_argument("expected an environment binned for this scene");
+    if (!(bound >= 0.0))
+        throw std::invalid_argument("expected a bound >= 0");
+    UpdateReport report;
+    const bool is_first = environment_.resolution == 0;
+    changed_.clear();
+    for (std::uint32_t cluster = 0; cluster < sums_.size(); ++cluster)
+        if (is_first || differs(sums_[cluster], frame.sums[cluster], bound))
+            changed_.push_back(cluster);
+
+    const auto trace_start = std::chrono::steady_clock::now();
+    bool sharp_changed = is_first;
+    if (is_first) {
+        sharp_lights_ = std::move(frame.sharp_lights);
+        trace_sharp_lights();
+    } else {
+        sharp_changed = replace_sharp_lights(std::move(frame.sharp_lights));
+    }
+    report.seconds_trace = seconds_since(trace_start);
+    report.num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0;
+    report.num_clusters = changed_.size();
+
+    for (const std::uint32_t cluster : changed_) {
+        sums_[cluster] = frame.sums[cluster];
+        powers_[cluster] = frame.powers[cluster];
+    }
+    environment_ = std::move(frame.map);
+    binning_ = std::move(frame.binning);
+    if (is_first || is_cheaper_to_sum_all(changed_, sums_.size())) {
+        resum();
+        report.resummed = true;
+        report.num_receivers = radiance_.size();
+    } else {
+        report.num_receivers = update_changed(sharp_changed);
+    }
+    report.seconds = seconds_since(start);
+    return report;
 }
 
 RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights) {
@@ -219,7 +286,15 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
         powers_[cluster] = power(sums_[cluster]);
     });
     const bool sharp_changed = rays_.blockers != nullptr && update_sharp_lights();
+    const std::size_t num_receivers = update_changed(sharp_changed);
+    return {.num_clusters = num_changed,
+            .num_receivers = num_receivers,
+            .num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0,
+            .seconds = seconds_since(start)};
+}
 
+/// Updates what the clusters in `changed_`, ascending, contribute, their sums_ being new. Returns how many receivers see any of them.
+std::size_t Relighter::update_changed(bool sharp_changed) {
     set_cluster_lights(changed_);
     changed_words_.clear();
     for (const std::uint32_t cluster : changed_) {
@@ -247,17 +322,17 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
         const auto first = static_cast<std::ptrdiff_t>(cluster * ClusterLights::Stride);
         std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride, lit_by_.begin() + first);
     }
-    return {.num_clusters = num_changed,
-            .num_receivers = std::min(num_blocks * prt::BlockSize, radiance_.size()),
-            .num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0,
-            .seconds = seconds_since(start)};
+    return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
-/// Which lights are sharp depends on the whole map. Adds the clusters of those that came or went to `changed_` and traces anew
-/// when there are any; returns whether there are.
+/// Which lights are sharp depends on the whole map.
 bool Relighter::update_sharp_lights() {
-    std::vector<SharpLight> lights =
-        find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_, rays_.tolerance);
+    return replace_sharp_lights(
+        find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_, rays_.tolerance));
+}
+
+/// Adds the clusters of sharp lights that came or went to `changed_` and traces anew when there are any; returns whether there are.
+bool Relighter::replace_sharp_lights(std::vector<SharpLight> lights) {
     if (lights == sharp_lights_)
         return false;
     for (const std::vector<SharpLight>* set : {&lights, &sharp_lights_})

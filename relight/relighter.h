@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <optional>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -13,6 +13,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/texel_rectangle.h"
 #include "prt/transfer.h"
+#include "relight/binned_environment.h"
 #include "relight/block_kernels.h"
 #include "relight/cluster_lights.h"
 #include "relight/light_packets.h"
@@ -43,6 +44,8 @@ struct UpdateReport {
     std::size_t num_receivers = 0;    ///< that see any of them (counted in whole blocks of 16)
     std::size_t num_sharp_lights = 0; ///< traced anew; 0 where the edit changed none
     double seconds = 0.0;
+    double seconds_trace = 0.0; ///< of them, tracing sharp lights
+    bool resummed = false;      ///< all clusters were summed, as that was less work
 };
 
 /// Keeps the light of a scene's receivers under an environment that may change. Parallel inside (TBB); every result is the same bit by
@@ -56,6 +59,14 @@ public:
     /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous sphere. O(6 R^2 + size of the
     /// transfer). Throws std::invalid_argument for a map without texels or a radiance that require_radiance() refuses.
     RelightTimes set_environment(cubemap::CubeMap environment);
+
+    /// The next frame of a sequence, binned by an EnvironmentBinner of the same transfer and ShadowRays::tolerance (0 without shadow
+    /// rays). Only clusters whose vector irradiance E differs from what they light the scene with by more than `bound` |E| are updated
+    /// (|E|: Frobenius norm over the channels), sharp lights only where any changed. Unupdated clusters keep the light they had, and are compared with that,
+    /// so errors do not add up over frames: each cluster's light is never off by more than the bound. With bound 0 the radiance equals that of
+    /// set_environment() to 1e-5 relative, as after update_region(). Where many clusters changed, or there was no environment, all are
+    /// summed: bit by bit set_environment(). Throws std::invalid_argument for one binned for another scene, or a bound that is negative or NaN.
+    UpdateReport set_frame(BinnedEnvironment frame, double bound = 0.0);
 
     /// Lights all receivers with distant lights in place of an environment: one shadow ray each, or, without shadow rays, each with
     /// its cluster's visible counts. There is no environment to update then. Throws std::invalid_argument for irradiance that
@@ -91,8 +102,11 @@ public:
 private:
     void check(const TexelRectangle& rectangle) const;
     void set_cluster_lights(std::span<const std::uint32_t> clusters);
+    void take(BinnedEnvironment binned);
     void trace_sharp_lights();
     bool update_sharp_lights();
+    bool replace_sharp_lights(std::vector<SharpLight> lights);
+    std::size_t update_changed(bool sharp_changed);
     void write_radiance(std::size_t block);
 
     const prt::Transfer& transfer_;
@@ -105,7 +119,8 @@ private:
     std::vector<BlockLight> light_;     ///< [num_blocks]
     ClusterLights lights_;
     std::vector<float> lit_by_; ///< ClusterLights::vectors that light_ is made of
-    std::optional<LightBinning> binning_;
+    EnvironmentBinner binner_;
+    std::shared_ptr<const LightBinning> binning_; ///< of environment_
     cubemap::CubeMap environment_;
     std::vector<glm::vec3> radiance_;
     std::vector<std::uint32_t> changed_;     ///< scratch: clusters whose light changes

@@ -1,0 +1,254 @@
+// A scene under an environment that changes over time, frame by frame: the next frame is loaded and binned while this one is relit and
+// written.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/animate_options.h"
+#include "app/commands.h"
+#include "app/frame_record.h"
+#include "app/movie.h"
+#include "cubemap/frame_sequence.h"
+#include "cubemap/read_ahead.h"
+#include "lights/place_lights.h"
+#include "prt/precompute.h"
+#include "relight/array_file.h"
+#include "relight/relighter.h"
+
+namespace relumine::app {
+
+namespace {
+
+/// A frame as it lights the scene.
+struct PreparedFrame {
+    relight::BinnedEnvironment binned = {}; ///< --method prt
+    cubemap::CubeMap background = {};       ///< the others, where pictures are drawn
+    std::vector<lights::DistantLight> lights = {};
+    double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0;
+};
+
+/// Sums over the frames.
+struct Totals {
+    double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0, seconds_wait = 0.0,
+           seconds_relight = 0.0, seconds_trace = 0.0, seconds_write = 0.0;
+    std::size_t num_clusters = 0, num_resummed = 0, num_lit = 0;
+};
+
+class Animation {
+public:
+    Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence, Session& session)
+        : options_(options), sequence_(sequence), session_(session), pattern_(options.output_pattern()),
+          lit_(options.scene), relighter_(lit_.scene().transfer, lit_.shadow_rays()),
+          binner_(lit_.scene().transfer,
+                  relighter_.shadow_rays().blockers != nullptr ? relighter_.shadow_rays().tolerance : 0.0f),
+          writer_(options.output, lit_) {}
+
+    void run() {
+        seconds_load_scene_ = watch_.lap();
+        session_.poll();
+        choose_frames();
+        std::optional<relight::NpyFrames> vertices;
+        if (!options_.vertices.empty())
+            vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().mesh.num_vertices());
+        const auto progress = session_.progress("frames");
+        cubemap::ReadAhead<PreparedFrame> ahead(todo_.size(),
+                                                [this](std::size_t i) { return prepare(todo_[i]); });
+        for (std::size_t i = 0; i < todo_.size(); ++i) {
+            session_.poll();
+            Stopwatch watch;
+            PreparedFrame frame = ahead.get(i);
+            totals_.seconds_wait += watch.lap();
+            const cubemap::CubeMap background = light(std::move(frame));
+            const double seconds_relight = watch.lap();
+            totals_.seconds_relight += seconds_relight;
+            seconds_relight_frames_.push_back(seconds_relight);
+            write(todo_[i], background);
+            if (vertices)
+                vertices->append(writer_.values(relighter_.radiance()));
+            totals_.seconds_write += watch.lap();
+            ++totals_.num_lit;
+            if (progress)
+                progress(static_cast<double>(i + 1) / static_cast<double>(todo_.size()));
+        }
+        session_.end_progress();
+        if (vertices)
+            vertices->commit();
+        seconds_frames_ = watch_.lap();
+        if (!options_.movie.empty())
+            make_movie(find_ffmpeg(options_.movie), options_.movie, output_paths(),
+                       options_.frames_per_second, session_.stop());
+        report();
+    }
+
+    [[nodiscard]] std::size_t num_written() const { return num_kept_ + num_written_; }
+
+private:
+    [[nodiscard]] std::string output_path(std::size_t frame) const {
+        return pattern_->name(sequence_.number(frame));
+    }
+    [[nodiscard]] std::vector<std::string> output_paths() const {
+        std::vector<std::string> paths;
+        for (std::size_t frame = 0; frame < sequence_.size(); ++frame)
+            paths.push_back(output_path(frame));
+        return paths;
+    }
+
+    /// Those that are not there yet; all of them where one file holds all.
+    void choose_frames() {
+        if (pattern_)
+            record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")), options_.settings(),
+                            options_.resume);
+        for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+            const bool is_there = record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
+                                                              output_path(frame));
+            is_there_.push_back(is_there);
+            num_kept_ += static_cast<std::size_t>(is_there);
+            if (!is_there || !options_.vertices.empty())
+                todo_.push_back(frame);
+        }
+        if (options_.resume)
+            session_.say(fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
+    }
+
+    /// Runs on another thread; touches no state but the binner.
+    PreparedFrame prepare(std::size_t frame) {
+        PreparedFrame result;
+        Stopwatch watch;
+        const cubemap::EnvironmentImage image = sequence_.read(frame);
+        result.seconds_load = watch.lap();
+        cubemap::CubeMap map = cube_map_of(image, options_.environment);
+        result.seconds_resample = watch.lap();
+        try {
+            if (options_.method == "prt") {
+                result.binned = binner_.bin(std::move(map));
+            } else {
+                result.lights =
+                    lights::place_lights(lights::Method::Importance, map, options_.num_lights,
+                                         options_.seed + static_cast<std::uint64_t>(sequence_.number(frame)));
+                result.background = std::move(map);
+            }
+        } catch (const std::invalid_argument& error) { // a radiance beyond all bounds
+            throw std::runtime_error(fmt::format("{}: {}", sequence_.path(frame).string(), error.what()));
+        }
+        result.seconds_bin = watch.lap();
+        return result;
+    }
+
+    /// Lights the scene; returns the background, where it is not the relighter's environment.
+    cubemap::CubeMap light(PreparedFrame frame) {
+        totals_.seconds_load += frame.seconds_load;
+        totals_.seconds_resample += frame.seconds_resample;
+        totals_.seconds_bin += frame.seconds_bin;
+        if (options_.method != "prt") {
+            totals_.seconds_trace += relighter_.set_lights(frame.lights).seconds_trace;
+            return std::move(frame.background);
+        }
+        const relight::UpdateReport update = relighter_.set_frame(std::move(frame.binned), options_.bound);
+        totals_.seconds_trace += update.seconds_trace;
+        totals_.num_clusters += update.num_clusters;
+        totals_.num_resummed += static_cast<std::size_t>(update.resummed);
+        return {};
+    }
+
+    void write(std::size_t frame, const cubemap::CubeMap& background) {
+        if (!pattern_ || is_there_[frame])
+            return;
+        const std::string path = output_path(frame);
+        writer_.save(path, relighter_.radiance(),
+                     background.resolution != 0 ? background : relighter_.environment());
+        record_->add(sequence_.number(frame), sequence_.path(frame), path);
+        ++num_written_;
+    }
+
+    void report() {
+        const double per_frame = totals_.num_lit == 0 ? 0.0 : 1e3 / static_cast<double>(totals_.num_lit);
+        const double relight_ms = per_frame * totals_.seconds_relight;
+        session_.say(fmt::format(
+            "{}: {} frames by {}, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that load {:.0f}, "
+            "resample {:.0f}, bin {:.1f} ms; {:.1f} frames/s in all",
+            options_.output.path.empty() ? options_.vertices : options_.output.path, totals_.num_lit,
+            options_.method, relight_ms,
+            totals_.seconds_trace > 0.0
+                ? fmt::format(" (shadow rays {:.1f} ms)", per_frame * totals_.seconds_trace)
+                : "",
+            per_frame * totals_.seconds_write, per_frame * totals_.seconds_load,
+            per_frame * totals_.seconds_resample, per_frame * totals_.seconds_bin,
+            seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0));
+        session_.report({{"frames", sequence_.size()},
+                         {"frames_lit", totals_.num_lit},
+                         {"frames_kept", num_kept_},
+                         {"frames_resummed", totals_.num_resummed},
+                         {"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters_changed", totals_.num_clusters},
+                         {"receivers", lit_.scene().transfer.num_receivers()},
+                         {"method", options_.method},
+                         {"seconds_load_scene", seconds_load_scene_},
+                         {"seconds_load", totals_.seconds_load},
+                         {"seconds_resample", totals_.seconds_resample},
+                         {"seconds_bin", totals_.seconds_bin},
+                         {"seconds_wait", totals_.seconds_wait},
+                         {"seconds_relight", totals_.seconds_relight},
+                         {"seconds_relight_frames", seconds_relight_frames_},
+                         {"seconds_trace", totals_.seconds_trace},
+                         {"seconds_write", totals_.seconds_write},
+                         {"seconds_frames", seconds_frames_}});
+    }
+
+    const AnimateOptions& options_;
+    const cubemap::FrameSequence& sequence_;
+    Session& session_;
+    Stopwatch watch_;
+    std::optional<cubemap::FramePattern> pattern_;
+    LitScene lit_;
+    relight::Relighter relighter_;
+    relight::EnvironmentBinner binner_;
+    FrameWriter writer_;
+    std::optional<FrameRecord> record_;
+    std::vector<bool> is_there_;
+    std::vector<std::size_t> todo_;
+    std::size_t num_kept_ = 0, num_written_ = 0;
+    Totals totals_;
+    std::vector<double> seconds_relight_frames_;
+    double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
+};
+
+void run(const AnimateOptions& options, Session& session) {
+    std::optional<cubemap::FrameRange> range;
+    if (!options.range.empty())
+        range = cubemap::FrameRange::parse(options.range);
+    const cubemap::FrameSequence sequence(cubemap::find_frames(options.frames, range),
+                                          [&](const std::filesystem::path& path) {
+                                              EnvironmentOptions environment = options.environment;
+                                              environment.path = path.string();
+                                              return load_image(environment, session);
+                                          });
+    options.check(sequence);
+    Animation animation(options, sequence, session);
+    try {
+        animation.run();
+    } catch (const prt::Cancelled&) {
+        if (options.output.path.empty())
+            throw;
+        throw std::runtime_error(fmt::format("cancelled; {} of {} frames are written, --resume goes on",
+                                             animation.num_written(), sequence.size()));
+    }
+}
+
+} // namespace
+
+void add_animate(CLI::App& program, Session& session) {
+    CLI::App& command = *program.add_subcommand(
+        "animate", "light a scene with a sequence of environments: pictures, a movie or numbers");
+    auto options = std::make_shared<AnimateOptions>();
+    options->add_to(command);
+    session.add_common_options(command);
+    command.callback([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

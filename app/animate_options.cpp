@@ -1,0 +1,111 @@
+#include "app/animate_options.h"
+
+#include <filesystem>
+#include <set>
+#include <stdexcept>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/frame_record.h"
+#include "app/movie.h"
+
+namespace relumine::app {
+
+namespace fs = std::filesystem;
+
+void AnimateOptions::add_to(CLI::App& command) {
+    scene.add_to(command);
+    command
+        .add_option("FRAMES", frames,
+                    "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
+        ->required();
+    command.add_option("--frames", range,
+                       "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)");
+    environment.add_conversion_to(command);
+    command
+        .add_option("--method", method,
+                    "prt: clusters' transfer, exact; importance: a few lights chosen anew for every frame")
+        ->check(CLI::IsMember({"prt", "importance"}))
+        ->capture_default_str();
+    command
+        .add_option("--bound", bound,
+                    "prt: update only clusters whose light changed by more than this part of it; 0: all "
+                    "that changed")
+        ->check(number_between(0.0, 1.0))
+        ->capture_default_str();
+    command.add_option("--lights", num_lights, "importance: lights in a frame")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    command.add_option("--seed", seed, "of the random numbers")->capture_default_str();
+    output.add_to(command);
+    command.get_option("--output")
+        ->required(false)
+        ->description("what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
+                      "(numbers), .ply, .glb");
+    command.add_option("--vertices", vertices,
+                       "all frames in one .npy [frames x vertices x 3]: radiance times albedo");
+    command.add_option("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
+    command.add_option("--fps", frames_per_second, "frames per second of the movie")
+        ->check(number_between(0.01, 1000.0))
+        ->capture_default_str();
+    command.add_flag("--resume", resume, "keep frames that are there already, from the same inputs");
+}
+
+bool AnimateOptions::writes_pictures() const {
+    const std::string extension = fs::path(output.path).extension().string();
+    return extension == ".png" || extension == ".exr" || extension == ".PNG" || extension == ".EXR";
+}
+
+std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
+    if (output.path.empty())
+        return std::nullopt;
+    const auto pattern = cubemap::FramePattern::parse(output.path);
+    if (!pattern)
+        throw std::runtime_error(fmt::format(
+            "{}: expected a place for the frame's number as in lit.%04d.png, got none", output.path));
+    return pattern;
+}
+
+void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
+    if (output.path.empty() && vertices.empty())
+        throw CLI::ValidationError("-o", "expected -o or --vertices, got neither");
+    const auto pattern = output_pattern();
+    if (pattern) {
+        output.check({scene.path});
+        std::set<fs::path> inputs;
+        for (const cubemap::FrameFile& frame : sequence.files())
+            for (const fs::path& file : cubemap::environment_files(frame.path))
+                inputs.insert(fs::weakly_canonical(file));
+        for (const cubemap::FrameFile& frame : sequence.files())
+            if (const std::string path = pattern->name(frame.number);
+                inputs.contains(fs::weakly_canonical(path)))
+                throw std::runtime_error(
+                    fmt::format("{}: expected an output other than the input frames", path));
+    }
+    if (!vertices.empty()) {
+        if (fs::path(vertices).extension() != ".npy")
+            throw std::runtime_error(fmt::format("{}: expected a name that ends in .npy", vertices));
+        check_output(vertices, {scene.path});
+    }
+    if (!movie.empty()) {
+        if (fs::path(movie).extension() != ".mp4")
+            throw std::runtime_error(fmt::format("{}: expected a name that ends in .mp4", movie));
+        if (fs::path(output.path).extension() != ".png")
+            throw std::runtime_error(
+                fmt::format("{}: expected -o with .png frames to make it of, got '{}'", movie, output.path));
+        static_cast<void>(find_ffmpeg(movie));
+        check_output(movie, {scene.path});
+    }
+}
+
+std::string AnimateOptions::settings() const {
+    return fmt::format("{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {}", RELUMINE_VERSION,
+                       FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
+                       environment.face_resolution, environment.fix, environment.rotate_degrees, method,
+                       bound, num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye,
+                       output.target, output.fov_degrees, output.size);
+}
+
+} // namespace relumine::app

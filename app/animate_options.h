@@ -1,0 +1,45 @@
+// What `relumine animate` is asked to do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "app/environment_options.h"
+#include "app/lit_scene.h"
+#include "app/output_options.h"
+#include "cubemap/frame_pattern.h"
+#include "cubemap/frame_sequence.h"
+
+namespace relumine::app {
+
+struct AnimateOptions {
+    SceneOptions scene;
+    std::string frames; ///< FRAMES
+    std::string range;  ///< --frames; empty: all
+    EnvironmentOptions environment;
+    std::string method = "prt";
+    double bound = 0.0;          ///< --method prt
+    std::size_t num_lights = 64; ///< --method importance: lights per frame
+    std::uint64_t seed = 1;
+    OutputOptions output; ///< path: a pattern, or empty
+    std::string vertices; ///< .npy, or empty
+    std::string movie;    ///< .mp4, or empty
+    double frames_per_second = 24.0;
+    bool resume = false;
+
+    void add_to(CLI::App& command);
+
+    /// Refuses what cannot be done before any work is.
+    void check(const cubemap::FrameSequence& sequence) const;
+    /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no place.
+    [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
+    [[nodiscard]] bool writes_pictures() const;
+    /// All that shapes every frame, for FrameRecord.
+    [[nodiscard]] std::string settings() const;
+};
+
+} // namespace relumine::app

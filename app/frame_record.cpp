@@ -1,0 +1,98 @@
+#include "app/frame_record.h"
+
+#include <cstdio>
+#include <fstream>
+#include <span>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cubemap/environment.h"
+#include "files/output_file.h"
+
+namespace relumine::app {
+
+namespace {
+
+constexpr std::string_view Title = "relumine animate 1";
+
+/// FNV-1a, 64 bits.
+template<typename Bytes>
+std::uint64_t hash_of(const Bytes& bytes) {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+    for (const auto byte : bytes) {
+        hash ^= static_cast<std::uint8_t>(byte);
+        hash *= 0x100000001b3u;
+    }
+    return hash;
+}
+
+/// One word for a frame's input and output.
+std::string line_of(const std::filesystem::path& input, const std::filesystem::path& output) {
+    const std::vector<std::byte> bytes = files::read(output);
+    return fmt::format("{:016x} {} {:016x}", hash_of(FrameRecord::stamp(input)), bytes.size(),
+                       hash_of(bytes));
+}
+
+} // namespace
+
+FrameRecord::FrameRecord(std::filesystem::path path, const std::string& settings, bool resume)
+    : path_(std::move(path)) {
+    const std::string head = fmt::format("{}\nsettings {:016x}\n", Title, hash_of(settings));
+    std::ostringstream kept;
+    kept << head;
+    if (std::error_code error; resume && std::filesystem::is_regular_file(path_, error)) {
+        const std::vector<std::byte> bytes = files::read(path_);
+        const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        std::istringstream lines(text.starts_with(head) ? text.substr(head.size()) : std::string());
+        for (std::string line;
+             std::getline(lines, line) && !lines.eof();) { // a line cut short does not count
+            std::int64_t number = 0;
+            std::istringstream words(line);
+            if (std::string rest; words >> number && std::getline(words >> std::ws, rest))
+                done_[number] = rest;
+        }
+        for (const auto& [number, rest] : done_)
+            kept << number << ' ' << rest << '\n';
+    }
+    files::OutputFile file(path_);
+    const std::string text = kept.str();
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+}
+
+bool FrameRecord::is_done(std::int64_t number, const std::filesystem::path& input,
+                          const std::filesystem::path& output) const {
+    const auto found = done_.find(number);
+    std::error_code error;
+    return found != done_.end() && std::filesystem::is_regular_file(output, error) &&
+           line_of(input, output) == found->second;
+}
+
+void FrameRecord::add(std::int64_t number, const std::filesystem::path& input,
+                      const std::filesystem::path& output) {
+    const std::string line = line_of(input, output);
+    std::ofstream file(path_, std::ios::app);
+    file << number << ' ' << line << '\n';
+    file.flush();
+    if (!file)
+        throw std::runtime_error(fmt::format("{}: cannot write", path_.string()));
+    done_[number] = line;
+}
+
+std::string FrameRecord::stamp(const std::filesystem::path& path) {
+    std::string stamp;
+    for (const std::filesystem::path& file : cubemap::environment_files(path)) {
+        std::error_code error;
+        const auto size = std::filesystem::file_size(file, error);
+        const auto time = std::filesystem::last_write_time(file, error);
+        stamp += fmt::format("{} {} {}\n", file.string(), size, time.time_since_epoch().count());
+    }
+    return stamp;
+}
+
+} // namespace relumine::app

@@ -1,0 +1,32 @@
+// `relumine generate sequence`: environments over time, one file per frame.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "app/session.h"
+
+namespace relumine::app {
+
+struct GenerateSequenceOptions {
+    std::string kind; ///< empty where there is none on the command line
+    std::size_t num_frames = 100;
+    std::string environment;      ///< --env
+    std::string layout = "cross"; ///< which holds the texels of the cube map as they are
+
+    void add_to(CLI::App& command);
+};
+
+/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of --env. After Ctrl-C the frames that were written
+/// stay.
+void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
+                       std::optional<std::uint32_t> face_resolution, Session& session);
+
+/// Throws std::runtime_error "path: cannot make the folder: ...".
+void make_folder(const std::string& path);
+
+} // namespace relumine::app

@@ -1,0 +1,21 @@
+// Lights of a sequence of environments, frame by frame.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "lights/light_list.h"
+
+namespace relumine::lights {
+
+/// Distant lights for every frame of a sequence. A light that lives over several frames stands in each of them.
+struct FrameLights {
+    std::vector<std::vector<DistantLight>> frames; ///< [num_frames]
+
+    [[nodiscard]] std::size_t num_frames() const { return frames.size(); }
+    /// The lights of a frame, 0 <= frame < num_frames().
+    [[nodiscard]] std::span<const DistantLight> at(std::size_t frame) const { return frames[frame]; }
+};
+
+} // namespace relumine::lights

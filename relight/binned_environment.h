@@ -1,0 +1,43 @@
+// An environment summed into the clusters of a scene, ready to relight it.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "cubemap/cube_map.h"
+#include "prt/transfer.h"
+#include "relight/cluster_lights.h"
+#include "relight/sharp_lights.h"
+
+namespace relumine::relight {
+
+/// All that relighting needs of an environment.
+struct BinnedEnvironment {
+    cubemap::CubeMap map;
+    std::shared_ptr<const LightBinning> binning; ///< of the map's resolution
+    std::vector<VectorIrradiance> sums;          ///< [num_clusters] all light of each cluster
+    std::vector<double> powers;                  ///< [num_clusters] length of its luminance
+    std::vector<SharpLight> sharp_lights;        ///< none where they are not traced
+    double seconds_bin = 0.0;
+    double seconds_sharp = 0.0; ///< finding the sharp lights
+};
+
+/// Bins environments for one scene, apart from the Relighter: the next frame of a sequence may be binned on another thread while this one
+/// is relit.
+class EnvironmentBinner {
+public:
+    /// The transfer must outlive it. `sharp_tolerance`: ShadowRays::tolerance where sharp lights are traced, 0 where not.
+    EnvironmentBinner(const prt::Transfer& transfer, float sharp_tolerance)
+        : transfer_(transfer), sharp_tolerance_(sharp_tolerance) {}
+
+    /// O(6 R^2); parallel inside, the same bits for any number of threads. One thread at a time. Throws std::invalid_argument for a map
+    /// without texels or a radiance that require_radiance() refuses.
+    [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap map);
+
+private:
+    const prt::Transfer& transfer_;
+    float sharp_tolerance_;
+    std::shared_ptr<const LightBinning> binning_;
+};
+
+} // namespace relumine::relight

@@ -1,0 +1,257 @@
+// `relumine generate sequence` and `relumine animate`: from nothing to frames.
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <thread>
+
+#include "tests/app/command.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Animate : public AppTest {
+protected:
+    Animate() {
+        write("mesh.obj", octahedron_obj());
+        succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    }
+    /// The last numbers of a .npy, as many as there are.
+    [[nodiscard]] std::vector<float> numbers(const std::string& name, std::size_t count) const {
+        const std::string bytes = read(name);
+        std::vector<float> values(count);
+        EXPECT_GE(bytes.size(), 4 * count);
+        if (bytes.size() >= 4 * count)
+            std::memcpy(values.data(), bytes.data() + bytes.size() - 4 * count, 4 * count);
+        return values;
+    }
+    void lamps(int num_frames) const {
+        for (int i = 0; i < num_frames; ++i)
+            write("lamp." + std::to_string(i) + ".hdr", lamp_hdr(10 + 20 * static_cast<std::uint32_t>(i)));
+    }
+};
+
+TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
+    lamps(4);
+    const nlohmann::json report = succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.###.npy",
+                                           "--vertices", "all.npy", "--json"})
+                                      .json();
+    EXPECT_EQ(report["frames"], 4);
+    EXPECT_EQ(report["frames_lit"], 4);
+    const std::vector<float> all = numbers("all.npy", std::size_t{4} * 18);
+    for (std::size_t i = 0; i < 4; ++i) {
+        succeed({"relight", "scene.prt", "lamp." + std::to_string(i) + ".hdr", "-o", "one.npy"});
+        const std::vector<float> expected = numbers("one.npy", 18);
+        const std::vector<float> frame = numbers("lit.00" + std::to_string(i) + ".npy", 18);
+        for (std::size_t k = 0; k < 18; ++k) {
+            EXPECT_NEAR(frame[k], expected[k], 1e-5f * (1.0f + expected[k])) << i;
+            EXPECT_EQ(frame[k], all[18 * i + k]);
+        }
+    }
+    EXPECT_NE(read("all.npy").find("'shape': (4, 6, 3)"), std::string::npos);
+}
+
+TEST_F(Animate, PicturesAreThoseOfRelight) {
+    succeed({"generate", "sequence", "switch", "-o", "seq", "--num-frames", "4", "--face-resolution", "16",
+             "-q"});
+    succeed({"animate", "scene.prt", "seq/switch.%04d.exr", "-o", "lit.%04d.png", "--size", "40x30", "-q"});
+    // Full relightings are bit by bit the same: the first frame, and the one where the light goes on.
+    for (const char* frame : {"0000", "0001"}) {
+        succeed({"relight", "scene.prt", std::string("seq/switch.") + frame + ".exr", "-o", "one.png",
+                 "--size", "40x30"});
+        EXPECT_TRUE(read("one.png") == read(std::string("lit.") + frame + ".png"));
+    }
+    EXPECT_TRUE(read("lit.0002.png") == read("lit.0003.png"));
+    EXPECT_FALSE(read("lit.0001.png") == read("lit.0002.png"));
+}
+
+TEST_F(Animate, TheSameForAnyNumberOfThreads) {
+    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "6", "--face-resolution", "16",
+             "-q"});
+    for (const char* method : {"prt", "importance"}) {
+        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "a.npy", "--threads", "1", "--method",
+                 method});
+        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "b.npy", "--threads", "2", "--method",
+                 method});
+        EXPECT_TRUE(read("a.npy") == read("b.npy")) << method;
+    }
+}
+
+TEST_F(Animate, EverySequenceIsMadeAndRead) {
+    write("probe.hdr", lamp_hdr(20));
+    for (const char* kind : {"sun", "switch", "clouds", "tunnel"})
+        succeed(
+            {"generate", "sequence", kind, "-o", kind, "--num-frames", "3", "--face-resolution", "8", "-q"});
+    succeed({"generate", "sequence", "turn", "-o", "turn", "--num-frames", "3", "--env", "probe.hdr", "-q"});
+    for (const char* kind : {"sun", "switch", "clouds", "tunnel", "turn"}) {
+        const std::string name(kind);
+        EXPECT_EQ(std::distance(fs::directory_iterator(folder() / name), {}), 3);
+        succeed({"info", name + "/" + name + ".0002.exr"});
+        const nlohmann::json report = succeed({"animate", "scene.prt", name + "/" + name + ".####.exr",
+                                               "--vertices", "v.npy", "--json"})
+                                          .json();
+        EXPECT_EQ(report["frames"], 3);
+    }
+    misuse({"generate", "sequence", "-o", "x"}, "KIND");
+    misuse({"generate", "sequence", "flood", "-o", "x"}, "flood");
+    misuse({"generate", "sequence", "turn", "-o", "x"}, "--env");
+    misuse({"generate", "sequence", "sun", "-o", "x", "--env", "probe.hdr"}, "--env");
+    misuse({"generate", "sequence", "sun", "-o", "x", "--num-frames", "0"}, "--num-frames");
+    misuse({"generate", "blob", "sun", "-o", "x"}, "KIND");
+    fail({"generate", "sequence", "sun", "-o", "x", "--face-resolution", "0"}, {"resolution"});
+}
+
+TEST_F(Animate, MissingAndDifferentFramesAreToldBeforeWorkStarts) {
+    lamps(4);
+    fs::remove(folder() / "lamp.2.hdr");
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy"},
+         {"lamp.%d.hdr", "expected frames 0 to 3 without a gap", "none for 2"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-5", "-o", "lit.%d.npy"}, {"none for 4-5"});
+    write("lamp.2.hdr", white_hdr()); // 64 x 32
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy"},
+         {"lamp.2.hdr", "expected 128x64", "got 64x32"});
+    fail({"animate", "scene.prt", "none.%d.hdr", "-o", "lit.%d.npy"}, {"none.%d.hdr", "no file"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-1", "-o", "lit.%d.npy"}, {"--frames", "3-1"});
+    succeed({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "0-1", "-o", "lit.%d.npy", "-q"});
+}
+
+TEST_F(Animate, ABadFrameEndsItAndFinishedFramesStay) {
+    lamps(4);
+    const std::string whole = read("lamp.2.hdr");
+    const auto run_until_2 = [&](const std::vector<std::string>& parts) {
+        for (const char* name : {"lit.0.npy", "lit.1.npy", "lit.all.npy.done"})
+            fs::remove(folder() / name);
+        const Result result = relumine(
+            {"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--vertices", "v.npy", "-q"});
+        EXPECT_EQ(result.exit_code, 1) << result.described();
+        EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.described();
+        for (const std::string& part : parts)
+            EXPECT_NE(result.err.find(part), std::string::npos) << result.described();
+        EXPECT_EQ(numbers("lit.0.npy", 18).size(), 18u);
+        EXPECT_TRUE(fs::exists(folder() / "lit.1.npy"));
+        EXPECT_FALSE(fs::exists(folder() / "lit.2.npy"));
+        EXPECT_FALSE(fs::exists(folder() / "v.npy"));
+        for (const auto& entry : fs::directory_iterator(folder()))
+            EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+    };
+    write("lamp.2.hdr", whole.substr(0, whole.size() - 100));
+    run_until_2({"lamp.2.hdr", "expected"});
+    // By its content it is an OpenEXR file, whatever its name.
+    write("lamp.2.hdr", exr_file(128, 64, [](std::uint32_t x, std::uint32_t) {
+              return Rgb{x == 5 ? std::numeric_limits<float>::quiet_NaN() : 1.0f, 1, 1};
+          }));
+    run_until_2({"lamp.2.hdr", "NaN", "--fix-env"});
+
+    // Mended, it goes on from there.
+    write("lamp.2.hdr", whole);
+    const nlohmann::json report =
+        succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume", "--json"}).json();
+    EXPECT_EQ(report["frames_kept"], 2);
+    EXPECT_EQ(report["frames_lit"], 2);
+}
+
+TEST_F(Animate, ResumeMakesOnlyWhatIsNotThereAnyMore) {
+    lamps(4);
+    const std::vector<std::string> command = {"animate",    "scene.prt", "lamp.%d.hdr", "-o",
+                                              "lit.%d.npy", "--resume",  "--json"};
+    const auto kept = [&](const std::vector<std::string>& more = {}) {
+        std::vector<std::string> all = command;
+        all.insert(all.end(), more.begin(), more.end());
+        return succeed(all).json()["frames_kept"].get<int>();
+    };
+    EXPECT_EQ(kept(), 0);
+    EXPECT_EQ(kept(), 4);
+    write("lit.1.npy", "cut sho"); // an output that is not what was written
+    fs::remove(folder() / "lit.2.npy");
+    EXPECT_EQ(kept(), 2);
+    write("lamp.3.hdr", lamp_hdr(99)); // an input that changed
+    EXPECT_EQ(kept(), 3);
+    EXPECT_EQ(kept({"--rotate", "90"}), 0); // other settings
+    EXPECT_EQ(kept({"--rotate", "90"}), 4);
+    EXPECT_EQ(kept(), 0);
+    write("lit.all.npy.done", "nonsense\n");
+    EXPECT_EQ(kept(), 0);
+    // One file of all frames needs all of them lit.
+    EXPECT_EQ(succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume", "--vertices",
+                       "v.npy", "--json"})
+                  .json()["frames_lit"],
+              4);
+}
+
+TEST_F(Animate, AnInterruptLeavesWholeFramesToGoOnFrom) {
+    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "100", "--face-resolution", "32",
+             "-q"});
+    const std::vector<std::string> command = {"animate", "scene.prt",    "seq/tunnel.%04d.exr",
+                                              "-o",      "lit.%04d.png", "--size",
+                                              "500x400", "-q",           "--resume"};
+    Process process(folder(), command);
+    while (process.is_running() && !fs::exists(folder() / "lit.0002.png"))
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    process.send(SIGINT);
+    const Result result = process.wait();
+    EXPECT_EQ(result.exit_code, 1) << result.described();
+    EXPECT_TRUE(result.err.starts_with("relumine: cancelled; ")) << result.described();
+    EXPECT_NE(result.err.find("of 100 frames are written, --resume goes on"), std::string::npos)
+        << result.err;
+    std::size_t num_frames = 0;
+    for (const auto& entry : fs::directory_iterator(folder())) {
+        EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+        num_frames += static_cast<std::size_t>(entry.path().extension() == ".png");
+    }
+    EXPECT_GE(num_frames, 3u);
+    EXPECT_LT(num_frames, 100u);
+    std::vector<std::string> again = command;
+    again.insert(again.end(), {"--json", "--frames", "0-20"});
+    EXPECT_EQ(succeed(again).json()["frames_kept"].get<std::size_t>(), std::min<std::size_t>(num_frames, 21));
+}
+
+TEST_F(Animate, AMovieNeedsFfmpeg) {
+    lamps(2);
+    const std::string path = std::getenv("PATH");
+    const std::vector<std::string> command = {"animate", "scene.prt", "lamp.%d.hdr", "-o",  "lit.%d.png",
+                                              "--mp4",   "out.mp4",   "--size",      "8x6", "-q"};
+    ::setenv("PATH", folder().c_str(), 1);
+    fail(command, {"out.mp4: expected ffmpeg on the PATH"});
+
+    // A stand-in that keeps its input: what it gets are the pictures, one after the other.
+    write("ffmpeg", "#!/bin/sh\nfor last; do :; done\nexec /bin/cat > \"$last\"\n");
+    fs::permissions(folder() / "ffmpeg", fs::perms::owner_all);
+    succeed(command);
+    EXPECT_TRUE(read("out.mp4") == read("lit.0.png") + read("lit.1.png"));
+
+    write("out.mp4", "the old one");
+    write("ffmpeg", "#!/bin/sh\necho first >&2\necho no such codec >&2\nexit 1\n");
+    const Result result = relumine(command);
+    EXPECT_EQ(result.exit_code, 1);
+    EXPECT_EQ(result.err, "relumine: out.mp4: ffmpeg failed: no such codec\n");
+    EXPECT_EQ(read("out.mp4"), "the old one");
+    for (const auto& entry : fs::directory_iterator(folder()))
+        EXPECT_NE(entry.path().filename().string().front(), '.') << entry.path();
+    ::setenv("PATH", path.c_str(), 1);
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--mp4", "out.mp4"},
+         {"out.mp4", ".png frames"});
+}
+
+TEST_F(Animate, OutputsThatCannotBe) {
+    lamps(2);
+    misuse({"animate", "scene.prt", "lamp.%d.hdr"}, "-o");
+    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--bound", "-1"}, "--bound");
+    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--method", "magic"}, "--method");
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.png"},
+         {"lit.png", "a place for the frame's number"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.jpg"}, {"lit.%d.jpg", "expected .png"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "no/lit.%d.png"}, {"no/lit.%d.png", "cannot write"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "--vertices", "v.txt"}, {"v.txt", ".npy"});
+    write("in.0.exr", exr_file(4, 2, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));
+    fail({"animate", "scene.prt", "in.%d.exr", "-o", "in.%d.exr"}, {"in.0.exr", "other than the input"});
+    fail({"animate", "missing.prt", "lamp.%d.hdr", "-o", "lit.%d.png"}, {"missing.prt"});
+}
+
+} // namespace
+} // namespace relumine::app
