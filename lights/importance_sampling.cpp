@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include <tbb/parallel_for.h>
 
@@ -46,8 +47,13 @@ public:
         return sum;
     }
 
-    /// The direction at a share of the marginal sum and of the conditional one.
-    [[nodiscard]] glm::dvec3 direction(double down, double across) const {
+    struct Place {
+        glm::dvec3 direction{0.0};
+        double luminance = 0.0; ///< of the pixel
+    };
+
+    /// The place at a share of the marginal sum and of the conditional one.
+    [[nodiscard]] Place place(double down, double across) const {
         const double wanted_down = down * marginal_.back();
         // the last row that begins at or before it and has light
         auto row = std::upper_bound(marginal_.begin(), marginal_.end(), wanted_down) - 1;
@@ -70,7 +76,7 @@ public:
             if (wanted < before)
                 break;
         }
-        return grid_.direction(column, y, part_across, part_down);
+        return {grid_.direction(column, y, part_across, part_down), luminance(grid_.radiance(column, y))};
     }
 
 private:
@@ -88,8 +94,9 @@ private:
 
 /// Adds the share `down` of an image row to the strata of a row of strata, each getting as much of the conditional sum.
 void share_row(const LatLongGrid& grid, const Distribution& distribution, std::uint32_t y, double down,
-               std::vector<DistantLight>::iterator strata, std::size_t num_strata) {
+               std::span<ImportanceSample> strata) {
     const double sum = distribution.row_sum(y);
+    const std::size_t num_strata = strata.size();
     const auto border = [&](std::size_t stratum) {
         return sum * static_cast<double>(stratum) / static_cast<double>(num_strata);
     };
@@ -105,22 +112,22 @@ void share_row(const LatLongGrid& grid, const Distribution& distribution, std::u
         // The parts of the pixel's share of the sum that end at a border of strata; the last stratum has none.
         while (stratum + 1 < num_strata && border(stratum + 1) < after) {
             const double part = down * (std::max(border(stratum + 1), from) - from) / weight;
-            strata[static_cast<std::ptrdiff_t>(stratum)].irradiance += part * irradiance;
-            strata[static_cast<std::ptrdiff_t>(stratum)].solid_angle += part * grid.solid_angle(x, y);
+            strata[stratum].light.irradiance += part * irradiance;
+            strata[stratum].light.solid_angle += part * grid.solid_angle(x, y);
             from = std::max(border(stratum + 1), from);
             ++stratum;
         }
         const double part = down * (after - from) / weight;
-        strata[static_cast<std::ptrdiff_t>(stratum)].irradiance += part * irradiance;
-        strata[static_cast<std::ptrdiff_t>(stratum)].solid_angle += part * grid.solid_angle(x, y);
+        strata[stratum].light.irradiance += part * irradiance;
+        strata[stratum].light.solid_angle += part * grid.solid_angle(x, y);
         before = after;
     }
 }
 
 } // namespace
 
-std::vector<DistantLight> importance_sample(const LatLongGrid& grid, std::size_t num_lights,
-                                            std::uint64_t seed) {
+std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid, std::size_t num_lights,
+                                                 std::uint64_t seed) {
     const Distribution distribution(grid);
     const std::vector<double>& marginal = distribution.marginal();
     // The image is twice as wide as high: strata are about square where the distribution is even.
@@ -130,7 +137,7 @@ std::vector<DistantLight> importance_sample(const LatLongGrid& grid, std::size_t
     const auto first_of_row = [&](std::size_t row) {
         return row * num_lights / num_rows;
     };
-    std::vector<DistantLight> lights(num_lights);
+    std::vector<ImportanceSample> samples(num_lights);
     tbb::parallel_for(std::size_t{0}, num_rows, [&](std::size_t row) {
         const std::size_t first = first_of_row(row);
         const std::size_t num_strata = first_of_row(row + 1) - first;
@@ -142,15 +149,26 @@ std::vector<DistantLight> importance_sample(const LatLongGrid& grid, std::size_t
             const double part = std::min(marginal[y + 1], bottom_sum) - std::max(marginal[y], top_sum);
             if (part > 0.0)
                 share_row(grid, distribution, y, part / (marginal[y + 1] - marginal[y]),
-                          lights.begin() + static_cast<std::ptrdiff_t>(first), num_strata);
+                          std::span(samples).subspan(first, num_strata));
         }
         for (std::size_t i = 0; i < num_strata; ++i) {
             const double down = top + (bottom - top) * random(seed, 2 * (first + i));
             const double across = (static_cast<double>(i) + random(seed, 2 * (first + i) + 1)) /
                                   static_cast<double>(num_strata);
-            lights[first + i].direction = distribution.direction(down, across);
+            const Distribution::Place place = distribution.place(down, across);
+            samples[first + i].light.direction = place.direction;
+            samples[first + i].luminance = place.luminance;
         }
     });
+    return samples;
+}
+
+std::vector<DistantLight> importance_sample(const LatLongGrid& grid, std::size_t num_lights,
+                                            std::uint64_t seed) {
+    std::vector<DistantLight> lights;
+    lights.reserve(num_lights);
+    for (const ImportanceSample& sample : importance_samples(grid, num_lights, seed))
+        lights.push_back(sample.light);
     return lights;
 }
 

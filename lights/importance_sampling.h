@@ -22,4 +22,14 @@ namespace relumine::lights {
 [[nodiscard]] std::vector<DistantLight> importance_sample(const LatLongGrid& grid, std::size_t num_lights,
                                                           std::uint64_t seed);
 
+/// A light with the luminance of the map's radiance where it stands.
+struct ImportanceSample {
+    DistantLight light;
+    double luminance = 0.0;
+};
+
+/// The same lights, with that luminance.
+[[nodiscard]] std::vector<ImportanceSample>
+importance_samples(const LatLongGrid& grid, std::size_t num_lights, std::uint64_t seed);
+
 } // namespace relumine::lights
