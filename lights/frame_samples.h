@@ -21,9 +21,9 @@ using FrameImages = std::function<cubemap::EnvironmentImage(std::size_t frame)>;
 /// A part of one frame's light.
 struct FrameSample {
     glm::dvec3 direction{0.0, 1.0, 0.0}; ///< unit, from the scene to the light
-    glm::dvec3 irradiance{0.0}; ///< RGB, on a surface that faces it: the c_u of [S, Eq. 8]
-    double solid_angle = 0.0;   ///< steradians that it stands for
-    double luminance = 0.0;     ///< of the environment's radiance in this direction: the Lum_u of [S, Eq. 5]
+    glm::dvec3 irradiance{0.0};          ///< RGB, on a surface that faces it: the c_u of [S, Eq. 8]
+    double solid_angle = 0.0;            ///< steradians that it stands for
+    double luminance = 0.0; ///< of the environment's radiance in this direction: the Lum_u of [S, Eq. 5]
     std::uint32_t frame = 0;
 };
 

@@ -29,7 +29,7 @@ struct ImportanceSample {
 };
 
 /// The same lights, with that luminance.
-[[nodiscard]] std::vector<ImportanceSample>
-importance_samples(const LatLongGrid& grid, std::size_t num_lights, std::uint64_t seed);
+[[nodiscard]] std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid,
+                                                               std::size_t num_lights, std::uint64_t seed);
 
 } // namespace relumine::lights

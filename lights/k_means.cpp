@@ -36,7 +36,8 @@ private:
     std::uint64_t state_;
 };
 
-std::vector<ClusterPoint> forgy(std::span<const ClusterPoint> points, std::size_t num_clusters, Random& random) {
+std::vector<ClusterPoint> forgy(std::span<const ClusterPoint> points, std::size_t num_clusters,
+                                Random& random) {
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
     std::vector<ClusterPoint> centres;
@@ -214,11 +215,11 @@ private:
     ClusterWeights weights_;
     double slack_;
     KMeans& result_;
-    std::vector<double> distance_; ///< [points] to the own centre
-    std::vector<double> others_;   ///< [points] no other centre is nearer
-    std::vector<double> moves_;    ///< [clusters] how far the centre moved since the last assignment
-    std::vector<std::size_t> begin_;      ///< [clusters + 1] of each cluster in members_
-    std::vector<std::uint32_t> members_;  ///< [points]
+    std::vector<double> distance_;       ///< [points] to the own centre
+    std::vector<double> others_;         ///< [points] no other centre is nearer
+    std::vector<double> moves_;          ///< [clusters] how far the centre moved since the last assignment
+    std::vector<std::size_t> begin_;     ///< [clusters + 1] of each cluster in members_
+    std::vector<std::uint32_t> members_; ///< [points]
 };
 
 void check(const KMeansOptions& options) {

@@ -30,13 +30,13 @@ struct KMeansOptions {
 };
 
 struct KMeans {
-    std::vector<std::uint32_t> cluster_of; ///< [points] index of the nearest centre, the first of equally near ones
-    std::vector<ClusterPoint> centres;     ///< [clusters]
+    std::vector<std::uint32_t>
+        cluster_of; ///< [points] index of the nearest centre, the first of equally near ones
+    std::vector<ClusterPoint> centres; ///< [clusters]
     std::vector<double> objective; ///< the sum of D over all points, after each assignment; it never rises
     bool converged = false;        ///< no point changed its cluster in the last iteration
     std::size_t num_reseeded = 0;  ///< times that a cluster without points was given a new one
-    std::size_t num_empty =
-        0; ///< clusters without points at the end: more clusters than points that differ
+    std::size_t num_empty = 0; ///< clusters without points at the end: more clusters than points that differ
     std::size_t num_searches = 0; ///< of points among all centres; points x assignments without bounds
     double seconds = 0.0;
 };

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -31,5 +32,15 @@ private:
     std::size_t frames_left_;
     std::size_t num_values_;
 };
+
+/// Vectors in rows: the array's shape without its last axis, which is x, y, z.
+struct VectorArray {
+    std::vector<std::size_t> shape;
+    std::vector<glm::vec3> values; ///< as many as the product of the shape, C order
+};
+
+/// Reads a .npy file (versions 1 to 3) of little-endian float32 or float64, C order, whose last axis is 3 long.
+/// Throws std::runtime_error "path: expected X, got Y".
+[[nodiscard]] VectorArray load_npy(const std::filesystem::path& path);
 
 } // namespace relumine::relight

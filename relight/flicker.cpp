@@ -1,0 +1,158 @@
+#include "relight/flicker.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "lights/lat_long_grid.h"
+#include "relight/array_file.h"
+#include "relight/plot.h"
+
+namespace relumine::relight {
+
+namespace {
+
+double mean(std::span<const double> values) {
+    double sum = 0.0;
+    for (const double value : values)
+        sum += value;
+    return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+std::vector<double> luminances(std::span<const glm::dvec3> radiance, double exposure) {
+    std::vector<double> result;
+    result.reserve(radiance.size());
+    for (const glm::dvec3& value : radiance)
+        result.push_back(exposure * lights::luminance(value));
+    return result;
+}
+
+void require_finite(std::span<const glm::dvec3> radiance, const char* what) {
+    for (std::size_t i = 0; i < radiance.size(); ++i)
+        if (!std::isfinite(radiance[i].r) || !std::isfinite(radiance[i].g) || !std::isfinite(radiance[i].b))
+            throw std::invalid_argument(fmt::format("{}: expected finite radiance, got ({}, {}, {}) at {}",
+                                                    what, radiance[i].r, radiance[i].g, radiance[i].b, i));
+}
+
+double relative_l2(std::span<const glm::dvec3> frame, std::span<const glm::dvec3> reference) {
+    double errors = 0.0;
+    double all = 0.0;
+    for (std::size_t i = 0; i < frame.size(); ++i) {
+        const glm::dvec3 error = frame[i] - reference[i];
+        errors += glm::dot(error, error);
+        all += glm::dot(reference[i], reference[i]);
+    }
+    return errors > 0.0 ? std::sqrt(errors / all) : 0.0;
+}
+
+std::vector<glm::dvec3> in_double(std::span<const glm::vec3> values) {
+    return {values.begin(), values.end()};
+}
+
+void require_equal_counts(std::size_t frames, std::size_t reference) {
+    if (frames != reference)
+        throw std::invalid_argument(
+            fmt::format("expected {} frames as in the reference, got {}", reference, frames));
+}
+
+} // namespace
+
+void FlickerMeter::add_frame(std::span<const glm::dvec3> frame, std::span<const glm::dvec3> reference) {
+    const std::size_t wanted = report_.relative_l2.empty() ? reference.size() : last_.size();
+    if (frame.size() != wanted || reference.size() != wanted)
+        throw std::invalid_argument(
+            fmt::format("expected {} values of a frame and its reference, got {} and {}", wanted,
+                        frame.size(), reference.size()));
+    if (wanted == 0)
+        throw std::invalid_argument("expected a frame of at least 1 value, got 0");
+    require_finite(frame, "frame");
+    require_finite(reference, "reference");
+
+    std::vector<double> now = luminances(frame, exposure_);
+    std::vector<double> now_reference = luminances(reference, exposure_);
+    if (!last_.empty()) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < wanted; ++i) { // [S, Eq. 9]
+            const double weight = std::abs(last_[i] - last_reference_[i]) + 1.0;
+            sum += weight * std::abs((last_[i] - now[i]) - (last_reference_[i] - now_reference[i]));
+        }
+        report_.inconsistency.push_back(sum / static_cast<double>(wanted));
+    }
+    report_.relative_l2.push_back(relative_l2(frame, reference));
+    last_ = std::move(now);
+    last_reference_ = std::move(now_reference);
+}
+
+void FlickerMeter::add_frame(std::span<const glm::vec3> frame, std::span<const glm::vec3> reference) {
+    add_frame(in_double(frame), in_double(reference));
+}
+
+FlickerReport FlickerMeter::report() const {
+    FlickerReport report = report_;
+    report.mean_inconsistency = mean(report.inconsistency);
+    report.mean_relative_l2 = mean(report.relative_l2);
+    for (const double value : report.inconsistency)
+        report.worst_inconsistency = std::max(report.worst_inconsistency, value);
+    return report;
+}
+
+FlickerReport measure_flicker(std::span<const std::vector<glm::dvec3>> frames,
+                              std::span<const std::vector<glm::dvec3>> reference, double exposure) {
+    require_equal_counts(frames.size(), reference.size());
+    FlickerMeter meter(exposure);
+    for (std::size_t t = 0; t < frames.size(); ++t)
+        meter.add_frame(frames[t], reference[t]);
+    return meter.report();
+}
+
+FlickerReport measure_flicker(std::span<const std::filesystem::path> frames,
+                              std::span<const std::filesystem::path> reference, double exposure) {
+    require_equal_counts(frames.size(), reference.size());
+    FlickerMeter meter(exposure);
+    for (std::size_t t = 0; t < frames.size(); ++t) {
+        const VectorArray frame = load_npy(frames[t]);
+        const VectorArray wanted = load_npy(reference[t]);
+        try {
+            meter.add_frame(frame.values, wanted.values);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(
+                fmt::format("{} against {}: {}", frames[t].string(), reference[t].string(), error.what()));
+        }
+    }
+    return meter.report();
+}
+
+std::string inconsistency_plot(std::span<const NamedReport> reports, const std::string& title) {
+    Plot plot{.title = title, .x_label = "frame", .y_label = "temporal inconsistency", .y_scale = Scale::Log};
+    for (const NamedReport& named : reports) {
+        Plot::Series series{.name = fmt::format("{}: {:.2g}", named.name, named.report.mean_inconsistency),
+                            .x = {},
+                            .y = named.report.inconsistency};
+        for (std::size_t t = 0; t < series.y.size(); ++t)
+            series.x.push_back(static_cast<double>(t));
+        plot.series.push_back(std::move(series));
+    }
+    return svg(plot);
+}
+
+std::string light_positions_plot(const lights::FrameLights& lights, std::size_t first_frame,
+                                 std::size_t num_frames, const std::string& title) {
+    constexpr double Degrees = 180.0 * std::numbers::inv_pi;
+    Plot plot{.title = title, .x_label = "longitude (degrees, from +Z to +X)", .y_label = "latitude"};
+    const std::size_t end = std::min(first_frame + num_frames, lights.num_frames());
+    for (std::size_t frame = first_frame; frame < end; ++frame) {
+        Plot::Series series{.name = fmt::format("frame {}", frame), .x = {}, .y = {}, .line = false};
+        for (const lights::DistantLight& light : lights.at(frame)) {
+            series.x.push_back(Degrees * std::atan2(light.direction.x, light.direction.z));
+            series.y.push_back(Degrees * std::asin(std::clamp(light.direction.y, -1.0, 1.0)));
+        }
+        plot.series.push_back(std::move(series));
+    }
+    return svg(plot);
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,374 @@
+// The experiment of Staton et al., "Light clustering for Dynamic Image Based Lighting", Section 4: how much an animation flickers that is lit by
+// clustered lights, by importance sampling of every frame, and by Relumine's own transfer. On a sun that moves through the sky and a probe that turns.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cubemap/environment.h"
+#include "cubemap/resample.h"
+#include "data_gen/environments.h"
+#include "lights/light_clusters.h"
+#include "lights/place_lights.h"
+#include "mesh/floor.h"
+#include "mesh/load.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+#include "relight/exact.h"
+#include "relight/flicker.h"
+#include "relight/light_packets.h"
+#include "relight/relighter.h"
+
+namespace fs = std::filesystem;
+using namespace relumine;
+
+namespace {
+
+constexpr double PaperImportance = 0.00262;
+constexpr double PaperClusters = 0.00125;
+constexpr double MeanLuminance =
+    0.25; ///< frames are exposed so that the ground truth's mean luminance is this
+
+struct Settings {
+    fs::path data = RELUMINE_DATA_DIR;
+    fs::path scene; ///< a bunny.prt that is there already
+    fs::path json = "video.json";
+    fs::path plots; ///< folder, or none
+    std::size_t num_frames = 100;
+    std::size_t num_receivers = 500;
+    std::uint32_t resolution = 128;
+    std::size_t num_samples = 1024;
+    std::size_t num_clusters = 512;
+    std::uint64_t seed = 1;
+    bool variants = false;
+};
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double median(std::vector<double> values) {
+    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
+                     values.end());
+    return values[values.size() / 2];
+}
+
+using Maps = std::function<cubemap::CubeMap(std::size_t frame)>;
+
+struct Sequence {
+    std::string name;
+    Maps map;
+};
+
+prt::Scene bunny(const Settings& settings) {
+    if (!settings.scene.empty())
+        return prt::load_scene(settings.scene);
+    fmt::print(stderr, "precompute; name a finished one with --scene to save the time\n");
+    prt::Scene scene;
+    scene.mesh = mesh::load(settings.data / "meshes/stanford/bun_zipper.ply");
+    mesh::append_floor(scene.mesh);
+    const prt::RayScene rays(scene.mesh);
+    scene.settings.bias = prt::automatic_bias(scene.mesh);
+    scene.settings.tolerance = prt::PrecomputeOptions{}.tolerance;
+    scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, {.bias = scene.settings.bias});
+    return scene;
+}
+
+std::vector<Sequence> sequences(const Settings& settings) {
+    const auto part = [n = settings.num_frames](std::size_t frame) {
+        return static_cast<double>(frame) / static_cast<double>(n);
+    };
+    std::vector<Sequence> result;
+    result.push_back({"sun through the sky", [=, r = settings.resolution](std::size_t frame) {
+                          const double day = part(frame);
+                          return data_gen::sun_and_sky(
+                              r, {.sun_elevation_degrees = 10.0 + 45.0 * std::sin(3.14159265 * day),
+                                  .sun_azimuth_degrees = -90.0 + 180.0 * day,
+                                  .ground_albedo = {0.24, 0.20, 0.15},
+                                  .scale = 1.0 / 20.0});
+                      }});
+    const fs::path grace = settings.data / "envs/debevec/grace_cross.hdr";
+    if (fs::exists(grace)) {
+        const cubemap::CubeMap probe =
+            cubemap::resample(cubemap::load_environment(grace), settings.resolution);
+        result.push_back({"grace, turning", [=](std::size_t frame) {
+                              return cubemap::rotated(probe, 360.0 * part(frame));
+                          }});
+    } else {
+        fmt::print("grace: skipped, no {}; name the folder with --data\n", grace.string());
+    }
+    return result;
+}
+
+/// One method's figures on one sequence.
+struct Row {
+    std::string method;
+    double lights = 0.0; ///< a frame, mean
+    relight::FlickerReport report;
+    double seconds_prepare = 0.0; ///< a frame: sampling and clustering
+    double seconds_light = 0.0;   ///< a frame: all vertices
+};
+
+class Experiment {
+public:
+    Experiment(const Settings& settings, const prt::Scene& scene)
+        : settings_(settings), scene_(scene), rays_(scene.mesh),
+          receivers_(prt::vertex_receivers(scene.mesh)),
+          sample_(relight::random_receivers(scene.transfer, settings.num_receivers, 1)),
+          shadow_rays_{.blockers = &rays_,
+                       .positions = scene.mesh.positions,
+                       .bias = scene.settings.bias,
+                       .tolerance = scene.settings.tolerance},
+          relighter_(scene.transfer, shadow_rays_) {}
+
+    std::vector<Row> run(const Sequence& sequence) {
+        rows_.clear();
+        integrate(sequence);
+        const lights::FrameImages images = [&](std::size_t frame) {
+            return lights::lat_long_of(sequence.map(frame));
+        };
+        const auto sampled = [&](bool seed_per_frame, double& seconds) {
+            seconds = 0.0;
+            Clock::time_point start;
+            // the clock stands while a frame is made
+            const lights::FrameImages timed = [&](std::size_t frame) {
+                if (frame > 0)
+                    seconds += seconds_since(start);
+                cubemap::EnvironmentImage image = images(frame);
+                start = Clock::now();
+                return image;
+            };
+            lights::FrameSamples samples = lights::sample_frames(timed, settings_.num_frames,
+                                                                 {.samples_per_frame = settings_.num_samples,
+                                                                  .seed = settings_.seed,
+                                                                  .seed_per_frame = seed_per_frame});
+            seconds += seconds_since(start);
+            return samples;
+        };
+        double seconds_sample = 0.0;
+        const lights::FrameSamples samples = sampled(false, seconds_sample);
+        const lights::LightClusters clusters = cluster(samples, {});
+        const auto num_lights = static_cast<std::size_t>(std::lround(clusters.mean_live()));
+        const double per_frame = 1.0 / static_cast<double>(settings_.num_frames);
+
+        for (const bool fresh : {true, false})
+            add(fresh ? "importance" : "importance, one seed",
+                lights::importance_lights(images, settings_.num_frames, num_lights,
+                                          {.seed = settings_.seed, .seed_per_frame = fresh}),
+                seconds_sample * per_frame * static_cast<double>(num_lights) /
+                    static_cast<double>(settings_.num_samples));
+        clusters_ = lights::frame_lights(clusters);
+        add("clusters", clusters_, (seconds_sample + clusters.k_means.seconds) * per_frame);
+        if (settings_.variants) {
+            for (const std::size_t fade : {1, 2, 4, 8})
+                add(fmt::format("clusters, fade {}", fade), lights::frame_lights(clusters, {.frames = fade}),
+                    (seconds_sample + clusters.k_means.seconds) * per_frame);
+            const lights::LightClusters better = cluster(samples, {.start = lights::Start::PlusPlus});
+            add("clusters, k-means++", lights::frame_lights(better),
+                (seconds_sample + better.k_means.seconds) * per_frame);
+            double seconds_fresh = 0.0;
+            const lights::FrameSamples fresh = sampled(true, seconds_fresh);
+            const lights::LightClusters other = cluster(fresh, {});
+            add("clusters, a seed per frame", lights::frame_lights(other),
+                (seconds_fresh + other.k_means.seconds) * per_frame);
+        }
+        rows_.push_back(prt_);
+        return rows_;
+    }
+
+    [[nodiscard]] const lights::FrameLights& cluster_lights() const { return clusters_; }
+    [[nodiscard]] std::size_t num_receivers() const { return sample_.size(); }
+
+private:
+    /// Ground truth, and the transfer's frames beside it.
+    void integrate(const Sequence& sequence) {
+        exact_.clear();
+        std::vector<std::vector<glm::dvec3>> relit;
+        std::vector<double> seconds;
+        double luminance = 0.0;
+        for (std::size_t frame = 0; frame < settings_.num_frames; ++frame) {
+            fmt::print(stderr, "\r{}: exact integration of frame {} of {} ", sequence.name, frame + 1,
+                       settings_.num_frames);
+            const cubemap::CubeMap map = sequence.map(frame);
+            exact_.push_back(
+                relight::exact_radiance(receivers_, sample_, rays_, map, {.bias = scene_.settings.bias}));
+            for (const glm::dvec3& value : exact_.back())
+                luminance += lights::luminance(value);
+            const relight::RelightTimes times = relighter_.set_environment(map);
+            seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
+            relit.emplace_back();
+            for (const std::uint32_t receiver : sample_)
+                relit.back().emplace_back(relighter_.radiance()[receiver]);
+        }
+        fmt::print(stderr, "\n");
+        exposure_ = MeanLuminance * static_cast<double>(exact_.size() * sample_.size()) / luminance;
+        prt_ = {.method = "prt",
+                .report = relight::measure_flicker(relit, exact_, exposure_),
+                .seconds_light = median(seconds)};
+    }
+
+    [[nodiscard]] lights::LightClusters cluster(const lights::FrameSamples& samples,
+                                                lights::KMeansOptions options) const {
+        options.num_clusters = settings_.num_clusters;
+        options.seed = settings_.seed;
+        lights::LightClusters result = lights::cluster_lights(samples, options);
+        const lights::KMeans& k = result.k_means;
+        fmt::print(stderr,
+                   "{} samples into {} clusters: {} iterations{}, {:.2f} s, objective {:.4g} -> {:.4g}, {} "
+                   "reseeded, {} empty, {:.1f} % searched, {:.1f} lights live\n",
+                   samples.samples.size(), result.clusters.size(), k.objective.size(),
+                   k.converged ? "" : " (not converged)", k.seconds, k.objective.front(), k.objective.back(),
+                   k.num_reseeded, k.num_empty,
+                   100.0 * static_cast<double>(k.num_searches) /
+                       static_cast<double>(samples.samples.size() * k.objective.size()),
+                   result.mean_live());
+        return result;
+    }
+
+    void add(const std::string& method, const lights::FrameLights& frames, double seconds_prepare) {
+        relight::FlickerMeter meter(exposure_);
+        Row row{.method = method, .report = {}, .seconds_prepare = seconds_prepare};
+        for (std::size_t frame = 0; frame < frames.num_frames(); ++frame) {
+            meter.add_frame(
+                relight::radiance_under(frames.at(frame), receivers_.normals, sample_, shadow_rays_),
+                exact_[frame]);
+            row.lights +=
+                static_cast<double>(frames.at(frame).size()) / static_cast<double>(frames.num_frames());
+        }
+        row.report = meter.report();
+        std::vector<double> seconds;
+        for (std::size_t i = 0; i < 5; ++i) {
+            const std::size_t frame = i * (frames.num_frames() - 1) / 4;
+            const relight::RelightTimes times = relighter_.set_lights(frames.at(frame));
+            seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
+        }
+        row.seconds_light = median(seconds);
+        rows_.push_back(std::move(row));
+    }
+
+    const Settings& settings_;
+    const prt::Scene& scene_;
+    prt::RayScene rays_;
+    prt::Receivers receivers_;
+    std::vector<std::uint32_t> sample_;
+    relight::ShadowRays shadow_rays_;
+    relight::Relighter relighter_;
+
+    std::vector<std::vector<glm::dvec3>> exact_; ///< [frames][receivers]
+    double exposure_ = 1.0;
+    Row prt_;
+    lights::FrameLights clusters_;
+    std::vector<Row> rows_;
+};
+
+void print_rows(const Sequence& sequence, const std::vector<Row>& rows) {
+    fmt::print("\n### {}\n\n| method | lights | inconsistency | of importance | relative L2 | prepare, ms a "
+               "frame | light, ms a frame |\n|---|---|---|---|---|---|---|\n",
+               sequence.name);
+    fmt::print("| importance, paper | 200 | {:.5f} | 1 | - | - | - |\n", PaperImportance);
+    fmt::print("| clusters, paper | 200 | {:.5f} | {:.2f} | - | - | - |\n", PaperClusters,
+               PaperClusters / PaperImportance);
+    const double importance = rows.front().report.mean_inconsistency;
+    for (const Row& row : rows)
+        fmt::print("| {} | {} | {:.6f} | {:.4f} | {:.4f} | {} | {:.1f} |\n", row.method,
+                   row.lights > 0.0 ? fmt::format("{:.0f}", row.lights) : "-", row.report.mean_inconsistency,
+                   row.report.mean_inconsistency / importance, row.report.mean_relative_l2,
+                   row.seconds_prepare > 0.0 ? fmt::format("{:.1f}", 1e3 * row.seconds_prepare) : "-",
+                   1e3 * row.seconds_light);
+}
+
+nlohmann::json json_of(const Sequence& sequence, const std::vector<Row>& rows) {
+    nlohmann::json methods = nlohmann::json::array();
+    for (const Row& row : rows)
+        methods.push_back({{"method", row.method},
+                           {"lights_per_frame", row.lights},
+                           {"mean_inconsistency", row.report.mean_inconsistency},
+                           {"worst_inconsistency", row.report.worst_inconsistency},
+                           {"mean_relative_l2", row.report.mean_relative_l2},
+                           {"inconsistency", row.report.inconsistency},
+                           {"seconds_prepare", row.seconds_prepare},
+                           {"seconds_light", row.seconds_light}});
+    return {{"sequence", sequence.name}, {"methods", methods}};
+}
+
+void write_plots(const Settings& settings, std::size_t index, const Sequence& sequence,
+                 const std::vector<Row>& rows, const Experiment& experiment) {
+    fs::create_directories(settings.plots);
+    const auto write = [&](const char* what, const std::string& text) {
+        std::ofstream(settings.plots / fmt::format("video{}_{}.svg", index + 1, what)) << text;
+    };
+    std::vector<relight::NamedReport> reports;
+    for (const Row& row : rows)
+        if (row.method == "importance" || row.method == "clusters" || row.method == "prt")
+            reports.push_back({row.method, row.report});
+    write("inconsistency", relight::inconsistency_plot(reports, sequence.name));
+    write("clusters", relight::light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
+                                                    fmt::format("{}: clusters", sequence.name)));
+    const lights::FrameLights jumping = lights::importance_lights(
+        [&](std::size_t frame) { return lights::lat_long_of(sequence.map(settings.num_frames / 2 + frame)); },
+        std::min<std::size_t>(5, settings.num_frames / 2), static_cast<std::size_t>(rows.front().lights),
+        {.seed = settings.seed, .seed_per_frame = true});
+    write("importance", relight::light_positions_plot(jumping, 0, 5,
+                                                      fmt::format("{}: importance sampling", sequence.name)));
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    CLI::App program{"Measures Staton et al.'s flicker experiment; Markdown on stdout, JSON in a file"};
+    program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
+        ->capture_default_str();
+    program.add_option("--scene", settings.scene, "the bunny's .prt, where it is there");
+    program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
+    program.add_option("--plots", settings.plots, "folder for plots as SVG");
+    program.add_option("--frames", settings.num_frames, "of each sequence")
+        ->check(CLI::Range(2, 100000))
+        ->capture_default_str();
+    program.add_option("--receivers", settings.num_receivers, "vertices that are integrated exactly")
+        ->capture_default_str();
+    program.add_option("--face-resolution", settings.resolution, "R")->capture_default_str();
+    program.add_option("--samples", settings.num_samples, "of each frame")->capture_default_str();
+    program.add_option("--clusters", settings.num_clusters)->capture_default_str();
+    program.add_option("--seed", settings.seed)->capture_default_str();
+    program.add_flag("--variants", settings.variants, "also fades, k-means++ and other seeds");
+    CLI11_PARSE(program, argc, argv);
+    if (settings.scene.empty() && !fs::exists(settings.data / "meshes/stanford/bun_zipper.ply")) {
+        fmt::print("skipped, no bunny in {}; name the folder with --data\n", settings.data.string());
+        return 0;
+    }
+    try {
+        const prt::Scene scene = bunny(settings);
+        Experiment experiment(settings, scene);
+        fmt::print("Bunny, {} vertices; {} frames at R = {}; ground truth by exact integration for {} "
+                   "vertices; {} clusters from {} samples a frame\n",
+                   scene.mesh.num_vertices(), settings.num_frames, settings.resolution,
+                   experiment.num_receivers(), settings.num_clusters, settings.num_samples);
+        nlohmann::json result = nlohmann::json::array();
+        const std::vector<Sequence> all = sequences(settings);
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const std::vector<Row> rows = experiment.run(all[i]);
+            print_rows(all[i], rows);
+            if (!settings.plots.empty())
+                write_plots(settings, i, all[i], rows, experiment);
+            result.push_back(json_of(all[i], rows));
+        }
+        std::ofstream(settings.json) << result.dump(2) << '\n';
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "video: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
