@@ -38,11 +38,13 @@ struct FrameSamplesOptions {
     /// Other random numbers in each frame. Without them equal frames have equal samples, which a light that stands still needs to be lit
     /// without flicker.
     bool seed_per_frame = false;
+    /// Directions at random in strata of equal luminance; otherwise independent of each other, and their sum is right on average [S, Eq. 2].
+    bool stratified = true;
     std::stop_token stop = {};                    ///< polled once a frame; what is there by then is returned
     std::function<void(double)> on_progress = {}; ///< fraction in [0, 1]
 };
 
-/// Samples each frame by luminance times solid angle, stratified (lights/importance_sampling.h): the irradiance of a frame's samples adds up to the
+/// Samples each frame by luminance times solid angle (lights/importance_sampling.h). Stratified, the irradiance of a frame's samples adds up to the
 /// frame's power in every channel. A black frame has none. Images of other layouts than lat-long become one by way of a cube map.
 /// One image is in memory at a time. Throws std::invalid_argument "frame F: expected X, got Y" for radiance that is negative or not finite,
 /// for 0 samples and for more than a frame has pixels.

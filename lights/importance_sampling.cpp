@@ -49,7 +49,7 @@ public:
 
     struct Place {
         glm::dvec3 direction{0.0};
-        double luminance = 0.0; ///< of the pixel
+        glm::dvec3 radiance{0.0}; ///< of the pixel
     };
 
     /// The place at a share of the marginal sum and of the conditional one.
@@ -76,7 +76,7 @@ public:
             if (wanted < before)
                 break;
         }
-        return {grid_.direction(column, y, part_across, part_down), luminance(grid_.radiance(column, y))};
+        return {grid_.direction(column, y, part_across, part_down), grid_.radiance(column, y)};
     }
 
 private:
@@ -157,7 +157,25 @@ std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid, std::s
                                   static_cast<double>(num_strata);
             const Distribution::Place place = distribution.place(down, across);
             samples[first + i].light.direction = place.direction;
-            samples[first + i].luminance = place.luminance;
+            samples[first + i].luminance = luminance(place.radiance);
+        }
+    });
+    return samples;
+}
+
+std::vector<ImportanceSample> independent_samples(const LatLongGrid& grid, std::size_t num_lights,
+                                                  std::uint64_t seed) {
+    const Distribution distribution(grid);
+    const double share = distribution.marginal().back() / static_cast<double>(num_lights);
+    std::vector<ImportanceSample> samples(num_lights);
+    tbb::parallel_for(std::size_t{0}, num_lights, [&](std::size_t i) {
+        const Distribution::Place place = distribution.place(random(seed, 2 * i), random(seed, 2 * i + 1));
+        ImportanceSample& sample = samples[i];
+        sample.light.direction = place.direction;
+        sample.luminance = luminance(place.radiance);
+        if (sample.luminance > 0.0) { // the density is luminance over its integral
+            sample.light.solid_angle = share / sample.luminance;
+            sample.light.irradiance = place.radiance * sample.light.solid_angle;
         }
     });
     return samples;

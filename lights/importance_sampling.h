@@ -32,4 +32,9 @@ struct ImportanceSample {
 [[nodiscard]] std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid,
                                                                std::size_t num_lights, std::uint64_t seed);
 
+/// Plain importance sampling: independent random directions, each likely as its luminance, with the irradiance L / (p num_lights). Their sum has the
+/// map's luminance, its colour is right on average only. A black map has lights of irradiance 0.
+[[nodiscard]] std::vector<ImportanceSample> independent_samples(const LatLongGrid& grid,
+                                                                std::size_t num_lights, std::uint64_t seed);
+
 } // namespace relumine::lights

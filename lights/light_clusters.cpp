@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "lights/lat_long_grid.h"
+
 namespace relumine::lights {
 
 namespace {
@@ -45,29 +47,46 @@ std::vector<ClusterPoint> points_of(const FrameSamples& samples) {
     return points;
 }
 
-/// How much of a light's total each frame gets, [num_frames], adding up to 1: the span's box, smoothed over `fade` frames by a raised cosine.
-/// What would leave the sequence at an end is reflected there, so a light of all frames stays constant.
-std::vector<double> profile(const LightCluster& cluster, std::size_t num_frames, std::size_t fade) {
-    const auto last = static_cast<std::ptrdiff_t>(num_frames) - 1;
-    const auto reach = static_cast<std::ptrdiff_t>(fade);
-    std::vector<double> kernel;
+/// A raised cosine from -reach to reach, adding up to 1.
+std::vector<double> fade_kernel(std::size_t reach) {
+    std::vector<double> kernel(2 * reach + 1);
     double sum = 0.0;
-    for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
-        kernel.push_back(
-            1.0 + std::cos(std::numbers::pi * static_cast<double>(k) / static_cast<double>(reach + 1)));
-        sum += kernel.back();
+    for (std::size_t k = 0; k < kernel.size(); ++k) {
+        const double place = static_cast<double>(k) - static_cast<double>(reach);
+        kernel[k] = 1.0 + std::cos(std::numbers::pi * place / static_cast<double>(reach + 1));
+        sum += kernel[k];
     }
-    std::vector<double> shares(num_frames, 0.0);
-    const double height = 1.0 / static_cast<double>(cluster.num_frames());
-    for (std::ptrdiff_t frame = cluster.first_frame; frame <= std::ptrdiff_t{cluster.last_frame}; ++frame)
+    for (double& weight : kernel)
+        weight /= sum;
+    return kernel;
+}
+
+/// The strengths, smoothed. What would leave the sequence at an end is reflected there, so that the total stays and what is constant stays so.
+std::vector<glm::dvec3> faded(const std::vector<glm::dvec3>& strengths, const std::vector<double>& kernel) {
+    const auto last = static_cast<std::ptrdiff_t>(strengths.size()) - 1;
+    const auto reach = static_cast<std::ptrdiff_t>(kernel.size() / 2);
+    std::vector<glm::dvec3> result(strengths.size(), glm::dvec3(0.0));
+    for (std::ptrdiff_t frame = 0; frame <= last; ++frame) {
+        const glm::dvec3& strength = strengths[static_cast<std::size_t>(frame)];
+        if (strength == glm::dvec3(0.0))
+            continue;
         for (std::ptrdiff_t k = -reach; k <= reach; ++k) {
             std::ptrdiff_t to = frame + k;
             while (to < 0 || to > last)
                 to = to < 0 ? -1 - to : 2 * last + 1 - to;
-            shares[static_cast<std::size_t>(to)] +=
-                height * kernel[static_cast<std::size_t>(k + reach)] / sum;
+            result[static_cast<std::size_t>(to)] += kernel[static_cast<std::size_t>(k + reach)] * strength;
         }
-    return shares;
+    }
+    return result;
+}
+
+/// The light's irradiance in every frame of the sequence.
+std::vector<glm::dvec3> strengths(const LightCluster& cluster, std::size_t num_frames, Strength strength) {
+    std::vector<glm::dvec3> result(num_frames, glm::dvec3(0.0));
+    for (std::size_t i = 0; i < cluster.num_frames(); ++i)
+        result[cluster.first_frame + i] =
+            strength == Strength::Even ? cluster.light.irradiance : cluster.frame_irradiance[i];
+    return result;
 }
 
 } // namespace
@@ -97,6 +116,9 @@ LightClusters cluster_lights(const FrameSamples& samples, const KMeansOptions& o
         cluster.light.irradiance += sample.irradiance;
         cluster.light.solid_angle += sample.solid_angle;
         directions += sample.direction;
+        // samples come frame after frame
+        cluster.frame_irradiance.resize(cluster.num_frames(), glm::dvec3(0.0));
+        cluster.frame_irradiance.back() += sample.irradiance;
         ++cluster.num_samples;
     }
     for (std::size_t j = 0; j < sums.size(); ++j) {
@@ -116,23 +138,21 @@ LightClusters cluster_lights(const FrameSamples& samples, const KMeansOptions& o
     return result;
 }
 
-FrameLights frame_lights(const LightClusters& clusters, const FadeOptions& fade) {
+FrameLights frame_lights(const LightClusters& clusters, const StrengthOptions& options) {
     FrameLights lights{.frames = std::vector<std::vector<DistantLight>>(clusters.num_frames)};
+    const std::vector<double> kernel = fade_kernel(options.fade);
     for (const LightCluster& cluster : clusters.clusters) {
-        if (fade.frames == 0) {
-            for (std::size_t frame = cluster.first_frame; frame <= cluster.last_frame; ++frame)
-                lights.frames[frame].push_back(cluster.light);
-            continue;
-        }
-        const std::vector<double> shares = profile(cluster, clusters.num_frames, fade.frames);
-        for (std::size_t frame = 0; frame < shares.size(); ++frame)
-            if (shares[frame] > 0.0) {
-                DistantLight light = cluster.light;
-                const double factor = shares[frame] * static_cast<double>(cluster.num_frames());
-                light.irradiance *= factor;
-                light.solid_angle *= factor;
-                lights.frames[frame].push_back(light);
-            }
+        std::vector<glm::dvec3> irradiance = strengths(cluster, clusters.num_frames, options.strength);
+        if (options.fade > 0)
+            irradiance = faded(irradiance, kernel);
+        const double mean = luminance(cluster.light.irradiance);
+        for (std::size_t frame = 0; frame < irradiance.size(); ++frame)
+            if (irradiance[frame] != glm::dvec3(0.0))
+                lights.frames[frame].push_back(
+                    {.direction = cluster.light.direction,
+                     .irradiance = irradiance[frame],
+                     .solid_angle = cluster.light.solid_angle *
+                                    (mean > 0.0 ? luminance(irradiance[frame]) / mean : 1.0)});
     }
     return lights;
 }

@@ -16,11 +16,12 @@ namespace relumine::lights {
 
 /// A light with its span of frames [S, Section 3.3].
 struct LightCluster {
-    DistantLight
-        light; ///< direction: mean of the samples' [S, Eq. 7]; irradiance: their sum over the number of frames [S, Eq. 8]
+    /// Direction: mean of the samples' [S, Eq. 7]. Irradiance: their sum over the number of frames [S, Eq. 8].
+    DistantLight light;
     std::uint32_t first_frame = 0; ///< f_start
     std::uint32_t last_frame = 0;  ///< f_end, a frame of its span, too
     std::size_t num_samples = 0;
+    std::vector<glm::dvec3> frame_irradiance; ///< [num_frames()] of the samples of each frame of the span
 
     [[nodiscard]] std::size_t num_frames() const { return std::size_t{last_frame} - first_frame + 1; }
 };
@@ -41,13 +42,20 @@ struct LightClusters {
 /// Throws as k_means() does.
 [[nodiscard]] LightClusters cluster_lights(const FrameSamples& samples, const KMeansOptions& options = {});
 
-struct FadeOptions {
-    /// Frames over which a light comes and goes, 0: at once, as in [S].
-    std::size_t frames = 0;
+/// How strong a light is over the frames of its span.
+enum class Strength {
+    Even, ///< the same in all frames [S, Eq. 8]: where the spans of two lights overlap, both shine in full
+    Followed, ///< in each frame that of its samples: each frame has the power of its environment
 };
 
-/// The lights of every frame: each in all frames of its span.
-[[nodiscard]] FrameLights frame_lights(const LightClusters& clusters, const FadeOptions& fade = {});
+struct StrengthOptions {
+    Strength strength = Strength::Followed;
+    /// Frames over which a change of strength is drawn out before and after, by a raised cosine; 0: not at all, as in [S]. The total stays.
+    std::size_t fade = 0;
+};
+
+/// The lights of every frame, each in all frames where it shines.
+[[nodiscard]] FrameLights frame_lights(const LightClusters& clusters, const StrengthOptions& options = {});
 
 /// The baseline of [S]: `lights_per_frame` lights by importance sampling for each frame on its own; options.samples_per_frame is not looked at.
 [[nodiscard]] FrameLights importance_lights(const FrameImages& images, std::size_t num_frames,

@@ -88,7 +88,8 @@ std::string entry(const std::string& text, const char* pattern, const std::files
                   const char* expected) {
     std::smatch match;
     if (!std::regex_search(text, match, std::regex(pattern)))
-        throw std::runtime_error(fmt::format("{}: expected {}, got {}", path.string(), expected, text));
+        throw std::runtime_error(
+            fmt::format("{}: expected {}, got {}", path.string(), expected, text.substr(0, 100)));
     return match[1];
 }
 

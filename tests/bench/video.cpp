@@ -36,6 +36,9 @@ namespace {
 
 constexpr double PaperImportance = 0.00262;
 constexpr double PaperClusters = 0.00125;
+constexpr const char* Importance = "importance";
+constexpr const char* EvenClusters = "clusters, even [S, Eq. 8]";
+constexpr const char* FollowedClusters = "clusters, followed";
 constexpr double MeanLuminance =
     0.25; ///< frames are exposed so that the ground truth's mean luminance is this
 
@@ -135,9 +138,10 @@ public:
 
     std::vector<Row> run(const Sequence& sequence) {
         rows_.clear();
+        images_.clear();
         integrate(sequence);
         const lights::FrameImages images = [&](std::size_t frame) {
-            return lights::lat_long_of(sequence.map(frame));
+            return images_[frame];
         };
         const auto sampled = [&](bool seed_per_frame, double& seconds) {
             seconds = 0.0;
@@ -163,26 +167,45 @@ public:
         const auto num_lights = static_cast<std::size_t>(std::lround(clusters.mean_live()));
         const double per_frame = 1.0 / static_cast<double>(settings_.num_frames);
 
-        for (const bool fresh : {true, false})
-            add(fresh ? "importance" : "importance, one seed",
-                lights::importance_lights(images, settings_.num_frames, num_lights,
-                                          {.seed = settings_.seed, .seed_per_frame = fresh}),
-                seconds_sample * per_frame * static_cast<double>(num_lights) /
-                    static_cast<double>(settings_.num_samples));
+        const double seconds_importance = seconds_sample * per_frame * static_cast<double>(num_lights) /
+                                          static_cast<double>(settings_.num_samples);
+        lights::FrameSamplesOptions baseline{
+            .seed = settings_.seed, .seed_per_frame = true, .stratified = false};
+        const auto add_importance = [&](const char* name) {
+            add(name, lights::importance_lights(images, settings_.num_frames, num_lights, baseline),
+                seconds_importance);
+        };
+        add_importance(Importance);
+        baseline.stratified = true;
+        add_importance("importance, stratified");
+        baseline.seed_per_frame = false;
+        add_importance("importance, stratified, one seed");
+
+        const double seconds_clusters = (seconds_sample + clusters.k_means.seconds) * per_frame;
+        add(EvenClusters, lights::frame_lights(clusters, {.strength = lights::Strength::Even}),
+            seconds_clusters);
         clusters_ = lights::frame_lights(clusters);
-        add("clusters", clusters_, (seconds_sample + clusters.k_means.seconds) * per_frame);
+        add(FollowedClusters, clusters_, seconds_clusters);
+        add("clusters, followed, fade 2", lights::frame_lights(clusters, {.fade = 2}), seconds_clusters);
         if (settings_.variants) {
-            for (const std::size_t fade : {1, 2, 4, 8})
-                add(fmt::format("clusters, fade {}", fade), lights::frame_lights(clusters, {.frames = fade}),
-                    (seconds_sample + clusters.k_means.seconds) * per_frame);
+            for (const lights::Strength strength : {lights::Strength::Even, lights::Strength::Followed})
+                for (const std::size_t fade : {1, 4, 8})
+                    add(fmt::format("clusters, {}, fade {}",
+                                    strength == lights::Strength::Even ? "even" : "followed", fade),
+                        lights::frame_lights(clusters, {.strength = strength, .fade = fade}),
+                        seconds_clusters);
             const lights::LightClusters better = cluster(samples, {.start = lights::Start::PlusPlus});
-            add("clusters, k-means++", lights::frame_lights(better),
-                (seconds_sample + better.k_means.seconds) * per_frame);
             double seconds_fresh = 0.0;
-            const lights::FrameSamples fresh = sampled(true, seconds_fresh);
-            const lights::LightClusters other = cluster(fresh, {});
-            add("clusters, a seed per frame", lights::frame_lights(other),
-                (seconds_fresh + other.k_means.seconds) * per_frame);
+            const lights::LightClusters other = cluster(sampled(true, seconds_fresh), {});
+            for (const lights::Strength strength : {lights::Strength::Even, lights::Strength::Followed}) {
+                const char* name = strength == lights::Strength::Even ? "even" : "followed";
+                add(fmt::format("clusters, {}, k-means++", name),
+                    lights::frame_lights(better, {.strength = strength}),
+                    (seconds_sample + better.k_means.seconds) * per_frame);
+                add(fmt::format("clusters, {}, a seed per frame", name),
+                    lights::frame_lights(other, {.strength = strength}),
+                    (seconds_fresh + other.k_means.seconds) * per_frame);
+            }
         }
         rows_.push_back(prt_);
         return rows_;
@@ -204,6 +227,7 @@ private:
             const cubemap::CubeMap map = sequence.map(frame);
             exact_.push_back(
                 relight::exact_radiance(receivers_, sample_, rays_, map, {.bias = scene_.settings.bias}));
+            images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
                 luminance += lights::luminance(value);
             const relight::RelightTimes times = relighter_.set_environment(map);
@@ -248,9 +272,13 @@ private:
                 static_cast<double>(frames.at(frame).size()) / static_cast<double>(frames.num_frames());
         }
         row.report = meter.report();
+        if (settings_.variants) { // light alone
+            rows_.push_back(std::move(row));
+            return;
+        }
         std::vector<double> seconds;
-        for (std::size_t i = 0; i < 5; ++i) {
-            const std::size_t frame = i * (frames.num_frames() - 1) / 4;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t frame = i * (frames.num_frames() - 1) / 2;
             const relight::RelightTimes times = relighter_.set_lights(frames.at(frame));
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
         }
@@ -266,7 +294,8 @@ private:
     relight::ShadowRays shadow_rays_;
     relight::Relighter relighter_;
 
-    std::vector<std::vector<glm::dvec3>> exact_; ///< [frames][receivers]
+    std::vector<cubemap::EnvironmentImage> images_; ///< [frames] as lat-longs
+    std::vector<std::vector<glm::dvec3>> exact_;    ///< [frames][receivers]
     double exposure_ = 1.0;
     Row prt_;
     lights::FrameLights clusters_;
@@ -282,11 +311,11 @@ void print_rows(const Sequence& sequence, const std::vector<Row>& rows) {
                PaperClusters / PaperImportance);
     const double importance = rows.front().report.mean_inconsistency;
     for (const Row& row : rows)
-        fmt::print("| {} | {} | {:.6f} | {:.4f} | {:.4f} | {} | {:.1f} |\n", row.method,
+        fmt::print("| {} | {} | {:.6f} | {:.4f} | {:.4f} | {} | {} |\n", row.method,
                    row.lights > 0.0 ? fmt::format("{:.0f}", row.lights) : "-", row.report.mean_inconsistency,
                    row.report.mean_inconsistency / importance, row.report.mean_relative_l2,
                    row.seconds_prepare > 0.0 ? fmt::format("{:.1f}", 1e3 * row.seconds_prepare) : "-",
-                   1e3 * row.seconds_light);
+                   row.seconds_light > 0.0 ? fmt::format("{:.0f}", 1e3 * row.seconds_light) : "-");
 }
 
 nlohmann::json json_of(const Sequence& sequence, const std::vector<Row>& rows) {
@@ -311,7 +340,8 @@ void write_plots(const Settings& settings, std::size_t index, const Sequence& se
     };
     std::vector<relight::NamedReport> reports;
     for (const Row& row : rows)
-        if (row.method == "importance" || row.method == "clusters" || row.method == "prt")
+        if (row.method == Importance || row.method == EvenClusters || row.method == FollowedClusters ||
+            row.method == "prt")
             reports.push_back({row.method, row.report});
     write("inconsistency", relight::inconsistency_plot(reports, sequence.name));
     write("clusters", relight::light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
