@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -30,7 +29,6 @@ public:
         z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
         return z ^ (z >> 31);
     }
-    double unit() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
 private:
     std::uint64_t state_;
@@ -44,27 +42,6 @@ std::vector<ClusterPoint> forgy(std::span<const ClusterPoint> points, std::size_
     for (std::size_t i = 0; i < num_clusters; ++i) { // Fisher and Yates' shuffle of the first ones
         std::swap(order[i], order[i + random.bits() % (points.size() - i)]);
         centres.push_back(points[order[i]]);
-    }
-    return centres;
-}
-
-std::vector<ClusterPoint> plus_plus(std::span<const ClusterPoint> points, std::size_t num_clusters,
-                                    const ClusterWeights& weights, Random& random) {
-    std::vector<ClusterPoint> centres = {points[random.bits() % points.size()]};
-    std::vector<double> nearest(points.size(), std::numeric_limits<double>::infinity());
-    std::vector<double> sums(points.size());
-    while (centres.size() < num_clusters) {
-        const ClusterPoint& last = centres.back();
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, points.size(), PointsPerTask),
-                          [&](const auto& some) {
-                              for (std::size_t i = some.begin(); i < some.end(); ++i)
-                                  nearest[i] = std::min(nearest[i], distance(points[i], last, weights));
-                          });
-        std::partial_sum(nearest.begin(), nearest.end(), sums.begin());
-        const double wanted = random.unit() * sums.back();
-        // the first whose sum lies above: never one of weight 0, unless all are
-        const auto chosen = std::upper_bound(sums.begin(), sums.end() - 1, wanted);
-        centres.push_back(points[static_cast<std::size_t>(chosen - sums.begin())]);
     }
     return centres;
 }
@@ -243,11 +220,7 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
     }
     Random random(options.seed);
     const std::size_t num_clusters = std::min(options.num_clusters, points.size());
-    Iteration iteration(points,
-                        options.start == Start::Forgy
-                            ? forgy(points, num_clusters, random)
-                            : plus_plus(points, num_clusters, options.weights, random),
-                        options.weights, result);
+    Iteration iteration(points, forgy(points, num_clusters, random), options.weights, result);
     iteration.assign();
     for (std::size_t step = 0; step < options.max_iterations && !options.stop.stop_requested(); ++step) {
         if (options.on_iteration)

@@ -13,17 +13,10 @@
 
 namespace relumine::lights {
 
-/// Which samples are the first centres.
-enum class Start {
-    Forgy,    ///< any, all as likely [S, Section 3.2]
-    PlusPlus, ///< one after the other, likely far from those before: by D, as the objective adds up D
-};
-
 struct KMeansOptions {
     std::size_t num_clusters = 512; ///< fewer where there are fewer points
     ClusterWeights weights = {};
-    Start start = Start::Forgy;
-    std::uint64_t seed = 1;
+    std::uint64_t seed = 1; ///< of the first centres: any points, all as likely (Forgy)
     std::size_t max_iterations = 300;
     std::stop_token stop = {}; ///< polled once an iteration; the clusters by then are returned
     std::function<void(std::size_t iteration, double objective)> on_iteration = {};

@@ -59,6 +59,43 @@ void require_equal_counts(std::size_t frames, std::size_t reference) {
             fmt::format("expected {} frames as in the reference, got {}", reference, frames));
 }
 
+/// The frames of files, one after the other; one file is in memory.
+class FileFrames {
+public:
+    explicit FileFrames(std::span<const std::filesystem::path> paths) : paths_(paths) {}
+
+    /// Values of the next frame; valid until the next call. None at the end.
+    std::span<const glm::vec3> next() {
+        while (frame_ == num_frames_) {
+            if (file_ == paths_.size()) {
+                at_end_ = true;
+                return {};
+            }
+            array_ = load_npy(paths_[file_]);
+            if (array_.shape.size() != 1 && array_.shape.size() != 2)
+                throw std::runtime_error(
+                    fmt::format("{}: expected [values x 3] or [frames x values x 3], got {} axes",
+                                paths_[file_].string(), array_.shape.size() + 1));
+            num_frames_ = array_.shape.size() == 2 ? array_.shape[0] : 1;
+            frame_ = 0;
+            ++file_;
+        }
+        const std::size_t size = array_.values.size() / num_frames_;
+        return std::span(array_.values).subspan(size * frame_++, size);
+    }
+    [[nodiscard]] bool at_end() const { return at_end_; }
+    /// Of the file that the last frame was in.
+    [[nodiscard]] std::string name() const { return file_ > 0 ? paths_[file_ - 1].string() : "no files"; }
+
+private:
+    std::span<const std::filesystem::path> paths_;
+    VectorArray array_;
+    std::size_t file_ = 0; ///< to read next
+    std::size_t frame_ = 0;
+    std::size_t num_frames_ = 0; ///< in array_
+    bool at_end_ = false;
+};
+
 } // namespace
 
 void FlickerMeter::add_frame(std::span<const glm::dvec3> frame, std::span<const glm::dvec3> reference) {
@@ -111,17 +148,25 @@ FlickerReport measure_flicker(std::span<const std::vector<glm::dvec3>> frames,
 
 FlickerReport measure_flicker(std::span<const std::filesystem::path> frames,
                               std::span<const std::filesystem::path> reference, double exposure) {
-    require_equal_counts(frames.size(), reference.size());
+    FileFrames wanted(reference);
+    FileFrames got(frames);
     FlickerMeter meter(exposure);
-    for (std::size_t t = 0; t < frames.size(); ++t) {
-        const VectorArray frame = load_npy(frames[t]);
-        const VectorArray wanted = load_npy(reference[t]);
+    std::size_t count = 0;
+    while (true) {
+        const std::span<const glm::vec3> frame = got.next();
+        const std::span<const glm::vec3> reference_frame = wanted.next();
+        if (got.at_end() && wanted.at_end())
+            break;
+        if (got.at_end() || wanted.at_end())
+            throw std::runtime_error(fmt::format("{}: expected as many frames as the other animation, got {}",
+                                                 (got.at_end() ? got : wanted).name(), count));
         try {
-            meter.add_frame(frame.values, wanted.values);
+            meter.add_frame(frame, reference_frame);
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error(
-                fmt::format("{} against {}: {}", frames[t].string(), reference[t].string(), error.what()));
+                fmt::format("{}: frame {} against {}: {}", got.name(), count, wanted.name(), error.what()));
         }
+        ++count;
     }
     return meter.report();
 }

@@ -53,7 +53,8 @@ private:
                                             std::span<const std::vector<glm::dvec3>> reference,
                                             double exposure = 1.0);
 
-/// Two animations as .npy files, one for each frame. Throws std::runtime_error "path: expected X, got Y".
+/// Two animations as .npy files, one after the other: each holds a frame, [values x 3], or many, [frames x values x 3].
+/// Throws std::runtime_error "path: expected X, got Y".
 [[nodiscard]] FlickerReport measure_flicker(std::span<const std::filesystem::path> frames,
                                             std::span<const std::filesystem::path> reference,
                                             double exposure = 1.0);

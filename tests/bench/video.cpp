@@ -163,7 +163,7 @@ public:
         };
         double seconds_sample = 0.0;
         const lights::FrameSamples samples = sampled(false, seconds_sample);
-        const lights::LightClusters clusters = cluster(samples, {});
+        const lights::LightClusters clusters = cluster(samples);
         const auto num_lights = static_cast<std::size_t>(std::lround(clusters.mean_live()));
         const double per_frame = 1.0 / static_cast<double>(settings_.num_frames);
 
@@ -194,14 +194,10 @@ public:
                                     strength == lights::Strength::Even ? "even" : "followed", fade),
                         lights::frame_lights(clusters, {.strength = strength, .fade = fade}),
                         seconds_clusters);
-            const lights::LightClusters better = cluster(samples, {.start = lights::Start::PlusPlus});
             double seconds_fresh = 0.0;
-            const lights::LightClusters other = cluster(sampled(true, seconds_fresh), {});
+            const lights::LightClusters other = cluster(sampled(true, seconds_fresh));
             for (const lights::Strength strength : {lights::Strength::Even, lights::Strength::Followed}) {
                 const char* name = strength == lights::Strength::Even ? "even" : "followed";
-                add(fmt::format("clusters, {}, k-means++", name),
-                    lights::frame_lights(better, {.strength = strength}),
-                    (seconds_sample + better.k_means.seconds) * per_frame);
                 add(fmt::format("clusters, {}, a seed per frame", name),
                     lights::frame_lights(other, {.strength = strength}),
                     (seconds_fresh + other.k_means.seconds) * per_frame);
@@ -243,8 +239,8 @@ private:
                 .seconds_light = median(seconds)};
     }
 
-    [[nodiscard]] lights::LightClusters cluster(const lights::FrameSamples& samples,
-                                                lights::KMeansOptions options) const {
+    [[nodiscard]] lights::LightClusters cluster(const lights::FrameSamples& samples) const {
+        lights::KMeansOptions options;
         options.num_clusters = settings_.num_clusters;
         options.seed = settings_.seed;
         lights::LightClusters result = lights::cluster_lights(samples, options);
@@ -373,7 +369,7 @@ int main(int argc, char** argv) {
     program.add_option("--samples", settings.num_samples, "of each frame")->capture_default_str();
     program.add_option("--clusters", settings.num_clusters)->capture_default_str();
     program.add_option("--seed", settings.seed)->capture_default_str();
-    program.add_flag("--variants", settings.variants, "also fades, k-means++ and other seeds");
+    program.add_flag("--variants", settings.variants, "also other fades, and a seed per frame"));
     CLI11_PARSE(program, argc, argv);
     if (settings.scene.empty() && !fs::exists(settings.data / "meshes/stanford/bun_zipper.ply")) {
         fmt::print("skipped, no bunny in {}; name the folder with --data\n", settings.data.string());

@@ -156,15 +156,14 @@ TEST(KMeans, TheSameAsWithoutBounds) {
 }
 
 TEST(KMeans, ObjectiveNeverRises) {
-    for (const Start start : {Start::Forgy, Start::PlusPlus})
-        for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
-            const KMeans result = k_means(clumps(2000, static_cast<unsigned>(seed)),
-                                          {.num_clusters = 100, .start = start, .seed = seed});
-            ASSERT_GT(result.objective.size(), 3u);
-            for (std::size_t i = 1; i < result.objective.size(); ++i)
-                EXPECT_LE(result.objective[i], result.objective[i - 1] * (1.0 + 1e-12)) << i;
-            EXPECT_TRUE(result.converged);
-        }
+    for (const std::uint64_t seed : {1u, 2u, 3u, 4u, 5u}) {
+        const KMeans result =
+            k_means(clumps(2000, static_cast<unsigned>(seed)), {.num_clusters = 100, .seed = seed});
+        ASSERT_GT(result.objective.size(), 3u);
+        for (std::size_t i = 1; i < result.objective.size(); ++i)
+            EXPECT_LE(result.objective[i], result.objective[i - 1] * (1.0 + 1e-12)) << i;
+        EXPECT_TRUE(result.converged);
+    }
 }
 
 TEST(KMeans, TheSameForAnyNumberOfThreads) {
@@ -192,18 +191,6 @@ TEST(KMeans, EmptyClustersAreReseeded) {
     // More clusters than points that differ: the rest stays empty, and is said.
     EXPECT_EQ(k_means(points, {.num_clusters = 8}).num_empty, 3u);
     EXPECT_EQ(k_means(points, {.num_clusters = 600}).centres.size(), points.size());
-}
-
-TEST(KMeans, PlusPlusStartsFromAllClumps) {
-    std::vector<ClusterPoint> points;
-    std::mt19937 engine(5);
-    std::normal_distribution<double> normal(0.0, 1e-6);
-    for (int clump = 0; clump < 6; ++clump) // sizes 1000, 500, ..., 31
-        for (int i = 0; i < 1000 >> clump; ++i)
-            points.push_back(
-                point(std::cos(clump) + normal(engine), std::sin(clump), normal(engine), 1.0, 0.5));
-    const KMeans result = k_means(points, {.num_clusters = 6, .start = Start::PlusPlus, .max_iterations = 0});
-    EXPECT_LT(result.objective.front(), 1e-5 * static_cast<double>(points.size()));
 }
 
 TEST(KMeans, BadOptions) {

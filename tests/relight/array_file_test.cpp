@@ -117,7 +117,7 @@ TEST_F(ArrayFileTest, RefusesWhatItDoesNotRead) {
         Version1,
         "{'descr': '<f4', 'fortran_order': False, 'shape': (999999999999999999, 999999999999999999, 3), }",
         six, "that memory can hold");
-    std::ofstream(path, std::ios::binary) << Version1 << "\xff\xff{";
+    std::ofstream(path, std::ios::binary) << Version1 << "\xff\xff{  ";
     scenes::expect_refused(path, "expected a description", [&] { static_cast<void>(load_npy(path)); });
 }
 

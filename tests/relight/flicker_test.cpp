@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
+#include <string>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -63,7 +65,7 @@ TEST(Flicker, AConstantErrorIsNoFlicker) {
     for (auto& frame : frames)
         for (glm::dvec3& value : frame)
             value += 0.25;
-    EXPECT_EQ(measure_flicker(frames, reference).mean_inconsistency, 0.0);
+    EXPECT_NEAR(measure_flicker(frames, reference).mean_inconsistency, 0.0, 1e-15);
     EXPECT_GT(measure_flicker(frames, reference).mean_relative_l2, 0.0);
     EXPECT_EQ(measure_flicker(Frames{reference[0]}, Frames{reference[0]}).mean_inconsistency, 0.0);
 }
@@ -98,12 +100,27 @@ TEST(Flicker, OfFilesIsThatOfArrays) {
     }
     // weights 1: the frames begin equal
     EXPECT_NEAR(measure_flicker(a, b).mean_inconsistency, (1.0 + 0.25) / 2.0, 1e-7);
+    // the same frames in one file, as [2 x 2 x 3]
+    const fs::path both = folder / "both.npy";
+    std::string description = "{'descr': '<f4', 'fortran_order': False, 'shape': (2, 2, 3), }";
+    std::ofstream file(both, std::ios::binary);
+    file << std::string("\x93NUMPY\x01\x00", 8) << static_cast<char>(description.size()) << '\0'
+         << description;
+    for (const auto& frame : frames)
+        file.write(reinterpret_cast<const char*>(frame.data()), static_cast<std::streamsize>(24));
+    file.close();
+    EXPECT_EQ(measure_flicker(std::vector{both}, b).inconsistency, measure_flicker(a, b).inconsistency);
+    EXPECT_THROW(static_cast<void>(measure_flicker(std::vector{both}, std::vector{b[0]})),
+                 std::runtime_error);
+    EXPECT_THROW(static_cast<void>(measure_flicker(std::vector{a[0]}, std::vector{both})),
+                 std::runtime_error);
     save_npy(b[1], std::vector<glm::vec3>(3));
     try {
         static_cast<void>(measure_flicker(a, b));
         FAIL();
     } catch (const std::runtime_error& error) {
-        EXPECT_THAT(error.what(), testing::HasSubstr("b1.npy: expected 2 values"));
+        EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("a1.npy: frame 1 against"),
+                                                 testing::HasSubstr("expected 2 values")));
     }
     fs::remove_all(folder);
 }
