@@ -10,6 +10,7 @@
 #include "cubemap/layer_composite.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
+#include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
@@ -169,5 +170,20 @@ void BM_Paint(benchmark::State& state) {
     }
 }
 BENCHMARK(BM_Paint)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+/// 100 frames of 1,024 samples, a studio that turns, into 512 clusters.
+void BM_ClusterLights(benchmark::State& state) {
+    const cubemap::CubeMap studio = data_gen::two_soft_boxes(64);
+    const lights::FrameSamples samples = lights::sample_frames(
+        [&](std::size_t frame) {
+            return lights::lat_long_of(cubemap::rotated(studio, 3.6 * static_cast<double>(frame)));
+        },
+        100);
+    std::size_t num_iterations = 0;
+    for (auto _ : state)
+        num_iterations = lights::cluster_lights(samples).k_means.objective.size();
+    state.SetLabel(std::to_string(num_iterations) + " assignments");
+}
+BENCHMARK(BM_ClusterLights)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 } // namespace

@@ -369,7 +369,7 @@ int main(int argc, char** argv) {
     program.add_option("--samples", settings.num_samples, "of each frame")->capture_default_str();
     program.add_option("--clusters", settings.num_clusters)->capture_default_str();
     program.add_option("--seed", settings.seed)->capture_default_str();
-    program.add_flag("--variants", settings.variants, "also other fades, and a seed per frame"));
+    program.add_flag("--variants", settings.variants, "also other fades, and a seed per frame");
     CLI11_PARSE(program, argc, argv);
     if (settings.scene.empty() && !fs::exists(settings.data / "meshes/stanford/bun_zipper.ply")) {
         fmt::print("skipped, no bunny in {}; name the folder with --data\n", settings.data.string());
