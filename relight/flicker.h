@@ -68,7 +68,7 @@ struct NamedReport {
 /// E(t) over frames as an SVG document, one curve for each [S, Fig. 3].
 [[nodiscard]] std::string inconsistency_plot(std::span<const NamedReport> reports, const std::string& title);
 
-/// Where the lights of some frames stand, longitude and latitude as in a lat-long image, one colour for each frame [S, Fig. 4 and 5].
+/// Where the lights of some frames stand, by longitude and latitude, one colour for each frame [S, Fig. 4 and 5].
 [[nodiscard]] std::string light_positions_plot(const lights::FrameLights& lights, std::size_t first_frame,
                                                std::size_t num_frames, const std::string& title);
 

@@ -48,7 +48,7 @@ struct Settings {
     fs::path json = "video.json";
     fs::path plots; ///< folder, or none
     std::size_t num_frames = 100;
-    std::size_t num_receivers = 500;
+    std::size_t num_receivers = 300;
     std::uint32_t resolution = 128;
     std::size_t num_samples = 1024;
     std::size_t num_clusters = 512;
