@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,9 +17,13 @@
 #include "app/movie.h"
 #include "cubemap/frame_sequence.h"
 #include "cubemap/read_ahead.h"
+#include "files/output_file.h"
+#include "lights/frame_samples.h"
+#include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "relight/array_file.h"
+#include "relight/flicker.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {
@@ -53,6 +58,8 @@ public:
         seconds_load_scene_ = watch_.lap();
         session_.poll();
         choose_frames();
+        if (options_.method == "clusters" && !todo_.empty())
+            cluster_frames();
         std::optional<relight::NpyFrames> vertices;
         if (!options_.vertices.empty())
             vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().mesh.num_vertices());
@@ -79,6 +86,8 @@ public:
         session_.end_progress();
         if (vertices)
             vertices->commit();
+        if (!options_.reference.empty())
+            measure();
         seconds_frames_ = watch_.lap();
         if (!options_.movie.empty())
             make_movie(find_ffmpeg(options_.movie), options_.movie, output_paths(),
@@ -102,8 +111,8 @@ private:
     /// Those that are not there yet; all of them where one file holds all.
     void choose_frames() {
         if (pattern_)
-            record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")), options_.settings(),
-                            options_.resume);
+            record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")),
+                            options_.settings(sequence_), options_.resume);
         for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
             const bool is_there = record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
                                                               output_path(frame));
@@ -114,6 +123,67 @@ private:
         }
         if (options_.resume)
             session_.say(fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
+    }
+
+    /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
+    [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
+        cubemap::EnvironmentImage image = sequence_.read(frame);
+        if (options_.environment.rotate_degrees == 0.0 && options_.environment.face_resolution == 0)
+            return image;
+        return lights::lat_long_of(cube_map_of(image, options_.environment));
+    }
+
+    void cluster_frames() {
+        Stopwatch watch;
+        const lights::FrameSamples samples =
+            lights::sample_frames([this](std::size_t frame) { return image_of(frame); }, sequence_.size(),
+                                  {.samples_per_frame = options_.num_samples,
+                                   .seed = options_.seed,
+                                   .stop = session_.stop(),
+                                   .on_progress = session_.progress("samples")});
+        session_.end_progress();
+        session_.poll();
+        const lights::LightClusters clusters = lights::cluster_lights(
+            samples, {.num_clusters = options_.num_clusters, .seed = options_.seed, .stop = session_.stop()});
+        session_.poll();
+        frame_lights_ = lights::frame_lights(
+            clusters, {.strength = options_.even ? lights::Strength::Even : lights::Strength::Followed,
+                       .fade = options_.fade});
+        const lights::KMeans& means = clusters.k_means;
+        session_.say(
+            fmt::format("{} samples in {} clusters, {} iterations{}, objective {:.4g} to {:.4g}, {} started "
+                        "again, {:.1f} s; {:.1f} lights live in a frame",
+                        samples.samples.size(), clusters.clusters.size(), means.objective.size(),
+                        means.converged ? "" : " (not converged)",
+                        means.objective.empty() ? 0.0 : means.objective.front(),
+                        means.objective.empty() ? 0.0 : means.objective.back(), means.num_reseeded,
+                        watch.lap(), clusters.mean_live()));
+        extra_report_ = {{"samples", samples.samples.size()}, {"light_clusters", clusters.clusters.size()},
+                         {"objective", means.objective},      {"reseeded", means.num_reseeded},
+                         {"converged", means.converged},      {"mean_live_lights", clusters.mean_live()},
+                         {"seconds_k_means", means.seconds}};
+    }
+
+    void measure() {
+        const std::filesystem::path own(options_.vertices);
+        const std::filesystem::path reference(options_.reference);
+        const relight::FlickerReport flicker = relight::measure_flicker({&own, 1}, {&reference, 1});
+        session_.say(
+            fmt::format("{}: temporal inconsistency {:.5g} on average, {:.5g} at worst; relative L2 {:.5g}",
+                        options_.vertices, flicker.mean_inconsistency, flicker.worst_inconsistency,
+                        flicker.mean_relative_l2));
+        extra_report_["mean_inconsistency"] = flicker.mean_inconsistency;
+        extra_report_["inconsistency"] = flicker.inconsistency;
+        extra_report_["mean_relative_l2"] = flicker.mean_relative_l2;
+        extra_report_["relative_l2"] = flicker.relative_l2;
+        if (options_.plot.empty())
+            return;
+        const relight::NamedReport named{options_.method, flicker};
+        files::OutputFile file(options_.plot);
+        const std::string text = relight::inconsistency_plot(
+            {&named, 1}, fmt::format("Temporal inconsistency, {}", options_.frames));
+        file.write(std::as_bytes(std::span(text)));
+        file.commit();
     }
 
     /// Runs on another thread; touches no state but the binner.
@@ -129,8 +199,11 @@ private:
                 result.binned = binner_.bin(std::move(map));
             } else {
                 result.lights =
-                    lights::place_lights(lights::Method::Importance, map, options_.num_lights,
-                                         options_.seed + static_cast<std::uint64_t>(sequence_.number(frame)));
+                    options_.method == "clusters"
+                        ? frame_lights_.frames.at(frame)
+                        : lights::place_lights(lights::Method::Importance, map, options_.num_lights,
+                                               options_.seed +
+                                                   static_cast<std::uint64_t>(sequence_.number(frame)));
                 result.background = std::move(map);
             }
         } catch (const std::invalid_argument& error) { // a radiance beyond all bounds
@@ -180,24 +253,26 @@ private:
             per_frame * totals_.seconds_write, per_frame * totals_.seconds_load,
             per_frame * totals_.seconds_resample, per_frame * totals_.seconds_bin,
             seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0));
-        session_.report({{"frames", sequence_.size()},
-                         {"frames_lit", totals_.num_lit},
-                         {"frames_kept", num_kept_},
-                         {"frames_resummed", totals_.num_resummed},
-                         {"clusters", lit_.scene().transfer.num_clusters()},
-                         {"clusters_changed", totals_.num_clusters},
-                         {"receivers", lit_.scene().transfer.num_receivers()},
-                         {"method", options_.method},
-                         {"seconds_load_scene", seconds_load_scene_},
-                         {"seconds_load", totals_.seconds_load},
-                         {"seconds_resample", totals_.seconds_resample},
-                         {"seconds_bin", totals_.seconds_bin},
-                         {"seconds_wait", totals_.seconds_wait},
-                         {"seconds_relight", totals_.seconds_relight},
-                         {"seconds_relight_frames", seconds_relight_frames_},
-                         {"seconds_trace", totals_.seconds_trace},
-                         {"seconds_write", totals_.seconds_write},
-                         {"seconds_frames", seconds_frames_}});
+        nlohmann::json result = {{"frames", sequence_.size()},
+                                 {"frames_lit", totals_.num_lit},
+                                 {"frames_kept", num_kept_},
+                                 {"frames_resummed", totals_.num_resummed},
+                                 {"clusters", lit_.scene().transfer.num_clusters()},
+                                 {"clusters_changed", totals_.num_clusters},
+                                 {"receivers", lit_.scene().transfer.num_receivers()},
+                                 {"method", options_.method},
+                                 {"seconds_load_scene", seconds_load_scene_},
+                                 {"seconds_load", totals_.seconds_load},
+                                 {"seconds_resample", totals_.seconds_resample},
+                                 {"seconds_bin", totals_.seconds_bin},
+                                 {"seconds_wait", totals_.seconds_wait},
+                                 {"seconds_relight", totals_.seconds_relight},
+                                 {"seconds_relight_frames", seconds_relight_frames_},
+                                 {"seconds_trace", totals_.seconds_trace},
+                                 {"seconds_write", totals_.seconds_write},
+                                 {"seconds_frames", seconds_frames_}};
+        result.update(extra_report_);
+        session_.report(result);
     }
 
     const AnimateOptions& options_;
@@ -214,6 +289,8 @@ private:
     std::vector<std::size_t> todo_;
     std::size_t num_kept_ = 0, num_written_ = 0;
     Totals totals_;
+    lights::FrameLights frame_lights_; ///< --method clusters
+    nlohmann::json extra_report_ = nlohmann::json::object();
     std::vector<double> seconds_relight_frames_;
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };

@@ -25,9 +25,11 @@ void AnimateOptions::add_to(CLI::App& command) {
                        "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)");
     environment.add_conversion_to(command);
     command
-        .add_option("--method", method,
-                    "prt: clusters' transfer, exact; importance: a few lights chosen anew for every frame")
-        ->check(CLI::IsMember({"prt", "importance"}))
+        .add_option(
+            "--method", method,
+            "prt: clusters' transfer, exact; clusters: lights that live over many frames (Staton et al.); "
+            "importance: a few lights chosen anew for every frame")
+        ->check(CLI::IsMember({"prt", "clusters", "importance"}))
         ->capture_default_str();
     command
         .add_option("--bound", bound,
@@ -38,6 +40,17 @@ void AnimateOptions::add_to(CLI::App& command) {
     command.add_option("--lights", num_lights, "importance: lights in a frame")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
+    command.add_option("--clusters", num_clusters, "clusters: lights of all frames together")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    command.add_option("--samples", num_samples, "clusters: samples of a frame")
+        ->check(CLI::Range(1, 1000000))
+        ->capture_default_str();
+    command.add_option("--fade", fade, "clusters: frames over which lights come and go")
+        ->check(CLI::Range(0, 10000))
+        ->capture_default_str();
+    command.add_flag("--even", even,
+                     "clusters: lights are equally strong over all their frames, as in the paper");
     command.add_option("--seed", seed, "of the random numbers")->capture_default_str();
     output.add_to(command);
     command.get_option("--output")
@@ -46,6 +59,10 @@ void AnimateOptions::add_to(CLI::App& command) {
                       "(numbers), .ply, .glb");
     command.add_option("--vertices", vertices,
                        "all frames in one .npy [frames x vertices x 3]: radiance times albedo");
+    command.add_option(
+        "--measure", reference,
+        "another --vertices file of the same frames: says how much this one flickers against it");
+    command.add_option("--plot", plot, "of --measure: flicker over frames, .svg");
     command.add_option("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
     command.add_option("--fps", frames_per_second, "frames per second of the movie")
         ->check(number_between(0.01, 1000.0))
@@ -89,6 +106,20 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
             throw std::runtime_error(fmt::format("{}: expected a name that ends in .npy", vertices));
         check_output(vertices, {scene.path});
     }
+    if (!reference.empty()) {
+        if (vertices.empty())
+            throw CLI::ValidationError("--measure", "expected --vertices with it");
+        if (fs::path(reference).extension() != ".npy" || !fs::exists(reference))
+            throw std::runtime_error(fmt::format("{}: expected a .npy file that is there", reference));
+        check_output(vertices, {reference});
+    }
+    if (!plot.empty()) {
+        if (reference.empty())
+            throw CLI::ValidationError("--plot", "expected --measure with it");
+        if (fs::path(plot).extension() != ".svg")
+            throw std::runtime_error(fmt::format("{}: expected a name that ends in .svg", plot));
+        check_output(plot, {scene.path, reference});
+    }
     if (!movie.empty()) {
         if (fs::path(movie).extension() != ".mp4")
             throw std::runtime_error(fmt::format("{}: expected a name that ends in .mp4", movie));
@@ -100,12 +131,19 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     }
 }
 
-std::string AnimateOptions::settings() const {
-    return fmt::format("{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {}", RELUMINE_VERSION,
-                       FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
-                       environment.face_resolution, environment.fix, environment.rotate_degrees, method,
-                       bound, num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye,
-                       output.target, output.fov_degrees, output.size);
+std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
+    std::string all = fmt::format(
+        "{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {}", RELUMINE_VERSION,
+        FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout, environment.face_resolution,
+        environment.fix, environment.rotate_degrees, method, bound, num_lights, seed, output.path,
+        output.albedo, output.exposure_ev, output.eye, output.target, output.fov_degrees, output.size);
+    if (method == "clusters") { // every frame depends on all
+        all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
+        for (const cubemap::FrameFile& frame : sequence.files())
+            for (const fs::path& file : cubemap::environment_files(frame.path))
+                all += '\n' + FrameRecord::stamp(file);
+    }
+    return all;
 }
 
 } // namespace relumine::app

@@ -25,9 +25,15 @@ struct AnimateOptions {
     double bound = 0.0;          ///< --method prt
     std::size_t num_lights = 64; ///< --method importance: lights per frame
     std::uint64_t seed = 1;
-    OutputOptions output; ///< path: a pattern, or empty
-    std::string vertices; ///< .npy, or empty
-    std::string movie;    ///< .mp4, or empty
+    std::size_t num_clusters = 512; ///< --method clusters: of all frames
+    std::size_t num_samples = 1024; ///< of a frame
+    std::size_t fade = 0;           ///< frames
+    bool even = false;              ///< the paper's strength
+    std::string reference;          ///< --measure: .npy of all frames, or empty
+    std::string plot;               ///< of --measure: .svg, or empty
+    OutputOptions output;           ///< path: a pattern, or empty
+    std::string vertices;           ///< .npy, or empty
+    std::string movie;              ///< .mp4, or empty
     double frames_per_second = 24.0;
     bool resume = false;
 
@@ -39,7 +45,7 @@ struct AnimateOptions {
     [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
     [[nodiscard]] bool writes_pictures() const;
     /// All that shapes every frame, for FrameRecord.
-    [[nodiscard]] std::string settings() const;
+    [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
 };
 
 } // namespace relumine::app
