@@ -179,11 +179,9 @@ private:
         if (options_.plot.empty())
             return;
         const relight::NamedReport named{options_.method, flicker};
-        files::OutputFile file(options_.plot);
-        const std::string text = relight::inconsistency_plot(
-            {&named, 1}, fmt::format("Temporal inconsistency, {}", options_.frames));
-        file.write(std::as_bytes(std::span(text)));
-        file.commit();
+        files::save_text(options_.plot,
+                         relight::inconsistency_plot(
+                             {&named, 1}, fmt::format("Temporal inconsistency, {}", options_.frames)));
     }
 
     /// Runs on another thread; touches no state but the binner.

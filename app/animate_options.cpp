@@ -70,11 +70,6 @@ void AnimateOptions::add_to(CLI::App& command) {
     command.add_flag("--resume", resume, "keep frames that are there already, from the same inputs");
 }
 
-bool AnimateOptions::writes_pictures() const {
-    const std::string extension = fs::path(output.path).extension().string();
-    return extension == ".png" || extension == ".exr" || extension == ".PNG" || extension == ".EXR";
-}
-
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
     if (output.path.empty())
         return std::nullopt;

@@ -43,7 +43,6 @@ struct AnimateOptions {
     void check(const cubemap::FrameSequence& sequence) const;
     /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no place.
     [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
-    [[nodiscard]] bool writes_pictures() const;
     /// All that shapes every frame, for FrameRecord.
     [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
 };

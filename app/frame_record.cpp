@@ -59,10 +59,7 @@ FrameRecord::FrameRecord(std::filesystem::path path, const std::string& settings
         for (const auto& [number, rest] : done_)
             kept << number << ' ' << rest << '\n';
     }
-    files::OutputFile file(path_);
-    const std::string text = kept.str();
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    files::save_text(path_, kept.str());
 }
 
 bool FrameRecord::is_done(std::int64_t number, const std::filesystem::path& input,

@@ -10,6 +10,7 @@
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/info_environment.h"
+#include "app/output_options.h"
 #include "mesh/load.h"
 #include "prt/scene_file.h"
 
@@ -86,9 +87,7 @@ void describe_mesh(const Options& options, const Session& session) {
 }
 
 void run(const Options& options, const Session& session) {
-    std::string extension = std::filesystem::path(options.path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = extension_of(options.path);
     const bool is_environment = extension == ".exr" || extension == ".hdr";
     if (!options.picture.empty() && !is_environment)
         throw std::runtime_error(fmt::format(

@@ -100,10 +100,7 @@ void draw(const ComparisonOptions& options, const std::string& environment, cons
             }
         plot.series.push_back(series);
     }
-    files::OutputFile file(options.plot);
-    const std::string text = relight::svg(plot);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    files::save_text(options.plot, relight::svg(plot));
 }
 
 } // namespace

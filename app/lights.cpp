@@ -106,10 +106,8 @@ struct Lit {
         const prt::Receivers receivers = prt::vertex_receivers(scene.scene().mesh);
         std::vector<std::uint32_t> all(receivers.size());
         std::iota(all.begin(), all.end(), 0u);
-        const std::vector<glm::vec3> under_lights = [&] {
-            const auto radiance = relight::radiance_under(list, receivers.normals, all, scene.shadow_rays());
-            return std::vector<glm::vec3>(radiance.begin(), radiance.end());
-        }();
+        const std::vector<glm::vec3> under_lights =
+            relight::radiance_under(list, receivers.normals, scene.shadow_rays());
         const std::span<const glm::vec3> environment = relighter.radiance();
         return relight::compare(all, std::vector<glm::dvec3>(environment.begin(), environment.end()),
                                 under_lights)

@@ -1,13 +1,11 @@
 #include "app/lit_scene.h"
 
-#include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "app/output_options.h"
 #include "mesh/load.h"
 #include "prt/receivers.h"
 
@@ -26,9 +24,7 @@ void SceneOptions::add_to(CLI::App& command) {
 namespace {
 
 prt::Scene load(const SceneOptions& options) {
-    std::string extension = std::filesystem::path(options.path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = extension_of(options.path);
     const bool is_mesh =
         extension == ".obj" || extension == ".ply" || extension == ".off" || extension == ".stl";
     if (!options.mesh_too || !is_mesh)

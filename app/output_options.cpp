@@ -49,14 +49,6 @@ relight::Camera camera_of(const OutputOptions& options, const mesh::TriangleMesh
     return camera;
 }
 
-/// In small letters.
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 /// The factor of --albedo, nothing for the mesh's own colours.
 std::optional<glm::vec3> parse_albedo(const std::string& text) {
     if (text == "mesh")
@@ -163,6 +155,13 @@ std::vector<glm::vec3> FrameWriter::values(std::span<const glm::vec3> radiance) 
     for (glm::vec3& value : values)
         value *= scale;
     return values;
+}
+
+std::string extension_of(const std::string& path) {
+    std::string extension = std::filesystem::path(path).extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
 }
 
 void check_output(const std::string& path, const std::vector<std::string>& inputs) {

@@ -53,6 +53,9 @@ private:
     std::unique_ptr<relight::PictureView> view_; ///< once there is a picture
 };
 
+/// A path's extension in small letters, with the dot.
+[[nodiscard]] std::string extension_of(const std::string& path);
+
 /// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever name.
 void check_output(const std::string& path, const std::vector<std::string>& inputs);
 

@@ -1,6 +1,5 @@
 #include <filesystem>
 #include <memory>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -73,12 +72,8 @@ std::vector<glm::vec3> radiance_under(const lights::LightList& list, const LitSc
         relighter.set_lights(list.lights);
         return {relighter.radiance().begin(), relighter.radiance().end()};
     }
-    const prt::Receivers receivers = prt::vertex_receivers(lit.scene().mesh);
-    std::vector<std::uint32_t> all(receivers.size());
-    std::iota(all.begin(), all.end(), 0u);
-    const std::vector<glm::dvec3> radiance =
-        relight::radiance_under(list.lights, receivers.normals, all, lit.shadow_rays());
-    return {radiance.begin(), radiance.end()};
+    return relight::radiance_under(list.lights, prt::vertex_receivers(lit.scene().mesh).normals,
+                                   lit.shadow_rays());
 }
 
 void light_with_list(const Options& options, Session& session) {

@@ -102,11 +102,11 @@ double ArcTree::squared_distance(const glm::dvec3& w, double limit) const {
     return nearest;
 }
 
-bool ArcTree::several_within(const glm::dvec3& w, double chord) const {
+template<typename Visit>
+void ArcTree::visit_within(const glm::dvec3& w, double chord, const Visit& visit) const {
     std::array<std::uint32_t, StackSize> stack;
     std::size_t size = 0;
     stack[size++] = 0;
-    int found = 0;
     while (size > 0) {
         const std::uint32_t index = stack[--size];
         const Node& node = nodes_[index];
@@ -118,12 +118,16 @@ bool ArcTree::several_within(const glm::dvec3& w, double chord) const {
             stack[size++] = index + 1;
             continue;
         }
-        for (std::uint32_t i = node.begin; i < node.end; ++i) {
-            if (arcs_[i].squared_distance(w) <= chord * chord && ++found == 2)
-                return true;
-        }
+        for (std::uint32_t i = node.begin; i < node.end; ++i)
+            if (arcs_[i].squared_distance(w) <= chord * chord && !visit(i))
+                return;
     }
-    return false;
+}
+
+bool ArcTree::several_within(const glm::dvec3& w, double chord) const {
+    int found = 0;
+    visit_within(w, chord, [&](std::uint32_t) { return ++found < 2; });
+    return found == 2;
 }
 
 void ArcTree::set_plane(std::span<const glm::dvec2> starts) {
@@ -204,30 +208,14 @@ NearArcs::NearArcs(const NearArcs& wider, const glm::dvec3& w, double chord) : t
 }
 
 void NearArcs::collect_from_tree(const glm::dvec3& w, double reach) {
-    std::array<std::uint32_t, StackSize> stack;
-    std::size_t size = 0;
-    stack[size++] = 0;
-    while (size > 0) {
-        const std::uint32_t index = stack[--size];
-        const ArcTree::Node& node = tree_->nodes_[index];
-        const double to_ball = reach + node.radius;
-        if (squared_length(w - node.centre) > to_ball * to_ball)
-            continue;
-        if (node.second != 0) {
-            stack[size++] = node.second;
-            stack[size++] = index + 1;
-            continue;
+    tree_->visit_within(w, reach, [&](std::uint32_t arc) {
+        if (count_ == MaxArcs) {
+            count_ = MaxArcs + 1;
+            return false;
         }
-        for (std::uint32_t i = node.begin; i < node.end; ++i) {
-            if (tree_->arcs_[i].squared_distance(w) > reach * reach)
-                continue;
-            if (count_ == MaxArcs) {
-                count_ = MaxArcs + 1;
-                return;
-            }
-            arcs_[count_++] = i;
-        }
-    }
+        arcs_[count_++] = arc;
+        return true;
+    });
 }
 
 double NearArcs::squared_distance(const glm::dvec3& w, double limit) const {

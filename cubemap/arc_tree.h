@@ -51,6 +51,9 @@ private:
         std::uint32_t begin = 0, end = 0, second = 0;
     };
     void build(std::uint32_t begin, std::uint32_t end);
+    /// Calls `visit(arc)` for the arcs within a chord of a unit direction until it returns false.
+    template<typename Visit>
+    void visit_within(const glm::dvec3& w, double chord, const Visit& visit) const;
 
     std::vector<Arc> arcs_;
     std::vector<Node> nodes_;

@@ -146,10 +146,6 @@ struct Finder {
 
 } // namespace
 
-double luminance(const glm::dvec3& radiance) {
-    return 0.2126 * radiance.x + 0.7152 * radiance.y + 0.0722 * radiance.z;
-}
-
 std::uint32_t texel_index(const glm::dvec3& direction, std::uint32_t resolution) {
     const FacePoint point = face_point(direction);
     const auto texel = [&](double position) {

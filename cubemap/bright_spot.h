@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/luminance.h"
 
 namespace relumine::cubemap {
 
@@ -38,8 +39,5 @@ struct SpotOptions {
 
 /// Index of the texel that a direction (any length but zero) goes through.
 [[nodiscard]] std::uint32_t texel_index(const glm::dvec3& direction, std::uint32_t resolution);
-
-/// Luminance with Rec. 709 weights.
-[[nodiscard]] double luminance(const glm::dvec3& radiance);
 
 } // namespace relumine::cubemap

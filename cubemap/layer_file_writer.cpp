@@ -124,9 +124,7 @@ void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
         throw std::invalid_argument(
             fmt::format("{}: expected names and paths in UTF-8, got other bytes", path.string()));
     }
-    files::OutputFile file(path);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    files::save_text(path, text);
 }
 
 } // namespace relumine::cubemap

@@ -5,15 +5,11 @@
 #include <limits>
 
 #include "cubemap/image_layout.h"
+#include "cubemap/luminance.h"
 
 namespace relumine::cubemap {
 
 namespace {
-
-/// Rec. 709 weights.
-double luminance(const glm::dvec3& radiance) {
-    return 0.2126 * radiance.x + 0.7152 * radiance.y + 0.0722 * radiance.z;
-}
 
 bool is_good(const glm::vec3& radiance) {
     const auto good = [](float value) {

@@ -96,6 +96,12 @@ void OutputFile::commit() {
     committed_ = true;
 }
 
+void save_text(const std::filesystem::path& path, std::string_view text) {
+    OutputFile file(path);
+    file.write(std::as_bytes(std::span(text)));
+    file.commit();
+}
+
 std::vector<std::byte> read(const std::filesystem::path& path) {
     const auto [fd, num_bytes] = open_for_reading(path);
     const Descriptor file(fd);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace relumine::files {
@@ -35,6 +36,9 @@ private:
     std::filesystem::path temporary_;
     bool committed_ = false;
 };
+
+/// Writes a text file. Whole or not at all; throws as OutputFile does.
+void save_text(const std::filesystem::path& path, std::string_view text);
 
 /// The whole file. Throws std::runtime_error "path: cannot read: reason" for what is missing, unreadable or a folder.
 [[nodiscard]] std::vector<std::byte> read(const std::filesystem::path& path);

@@ -280,10 +280,7 @@ std::string light_text(const LightList& list, LightFormat format, const ExportOp
 
 void export_lights(const std::filesystem::path& path, const LightList& list, LightFormat format,
                    const ExportOptions& options) {
-    const std::string text = light_text(list, format, options);
-    files::OutputFile file(path);
-    file.write(std::as_bytes(std::span(text)));
-    file.commit();
+    files::save_text(path, light_text(list, format, options));
 }
 
 } // namespace relumine::lights

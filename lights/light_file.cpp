@@ -182,10 +182,7 @@ std::string json_text(const LightList& list) {
 }
 
 void save_lights(const std::filesystem::path& path, const LightList& list) {
-    const std::string content = json_text(list);
-    files::OutputFile file(path);
-    file.write(std::as_bytes(std::span(content)));
-    file.commit();
+    files::save_text(path, json_text(list));
 }
 
 } // namespace relumine::lights

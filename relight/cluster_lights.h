@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
@@ -24,6 +25,8 @@ struct VectorIrradiance {
     bool operator==(const VectorIrradiance&) const = default;
     /// The vector of the luminance (Rec. 709 weights).
     [[nodiscard]] glm::dvec3 luminance() const { return 0.2126 * red + 0.7152 * green + 0.0722 * blue; }
+    /// Its length: the light's power in luminance, where the part of the environment is small.
+    [[nodiscard]] double power() const { return glm::length(luminance()); }
 };
 
 /// Sums an environment's texels into cells. Keeps the texels' solid angles for one resolution, so that many sums are cheap.

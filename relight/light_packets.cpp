@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <numbers>
+#include <numeric>
 
 #include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
@@ -82,6 +83,14 @@ std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lig
             }
         });
     return radiance;
+}
+
+std::vector<glm::vec3> radiance_under(std::span<const lights::DistantLight> lights,
+                                      std::span<const glm::vec3> normals, const ShadowRays& rays) {
+    std::vector<std::uint32_t> all(normals.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const std::vector<glm::dvec3> radiance = radiance_under(lights, normals, all, rays);
+    return {radiance.begin(), radiance.end()};
 }
 
 } // namespace relumine::relight

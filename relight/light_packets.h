@@ -55,4 +55,9 @@ private:
                                                      std::span<const std::uint32_t> receiver_indices,
                                                      const ShadowRays& rays);
 
+/// The same for all receivers, [normals.size()].
+[[nodiscard]] std::vector<glm::vec3> radiance_under(std::span<const lights::DistantLight> lights,
+                                                    std::span<const glm::vec3> normals,
+                                                    const ShadowRays& rays);
+
 } // namespace relumine::relight

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -44,10 +45,6 @@ bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t n
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double power(const VectorIrradiance& sum) {
-    return glm::length(sum.luminance());
 }
 
 /// The sum of all squares, over channels and axes.
@@ -188,7 +185,7 @@ RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights)
     }
     std::stable_sort(sharp_lights_.begin(), sharp_lights_.end(),
                      [](const SharpLight& a, const SharpLight& b) { return a.cluster < b.cluster; });
-    std::transform(sums_.begin(), sums_.end(), powers_.begin(), power);
+    std::transform(sums_.begin(), sums_.end(), powers_.begin(), std::mem_fn(&VectorIrradiance::power));
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
@@ -283,7 +280,7 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
     tbb::parallel_for(std::size_t{0}, num_changed, [&](std::size_t i) {
         const std::uint32_t cluster = changed_[i];
         sums_[cluster] = binning_->sum(environment_, transfer_.quadtree.leaves()[cluster]);
-        powers_[cluster] = power(sums_[cluster]);
+        powers_[cluster] = sums_[cluster].power();
     });
     const bool sharp_changed = rays_.blockers != nullptr && update_sharp_lights();
     const std::size_t num_receivers = update_changed(sharp_changed);

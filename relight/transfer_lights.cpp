@@ -10,6 +10,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "cubemap/luminance.h"
 #include "prt/precompute.h"
 #include "relight/light_pursuit.h"
 #include "relight/transfer_matrix.h"
@@ -37,9 +38,7 @@ public:
     explicit Candidates(const cubemap::CubeMap& environment)
         : environment_(environment), binning_(environment.resolution),
           texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))) {
-        const glm::dvec3 power = cubemap::total_power(environment);
-        const glm::dvec3 luminance_weights(0.2126, 0.7152, 0.0722);
-        most_power_ = glm::dot(luminance_weights, power) * LargestShare;
+        most_power_ = cubemap::luminance(cubemap::total_power(environment)) * LargestShare;
         for (const cubemap::Face face : cubemap::AllFaces)
             add({.face = face});
     }

@@ -14,12 +14,9 @@
 
 #include "cubemap/environment.h"
 #include "cubemap/resample.h"
-#include "mesh/floor.h"
-#include "mesh/load.h"
-#include "prt/precompute.h"
 #include "prt/ray_scene.h"
-#include "prt/scene_file.h"
 #include "relight/light_editor.h"
+#include "tests/bench/bunny.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -35,20 +32,6 @@ struct Settings {
     fs::path json = "edit.json";
     std::uint32_t resolution = 1024;
 };
-
-prt::Scene bunny(const Settings& settings) {
-    if (!settings.scene.empty())
-        return prt::load_scene(settings.scene);
-    fmt::print(stderr, "precompute; name a finished one with --scene to save the time\n");
-    prt::Scene scene;
-    scene.mesh = mesh::load(settings.data / "meshes/stanford/bun_zipper.ply");
-    mesh::append_floor(scene.mesh);
-    const prt::RayScene rays(scene.mesh);
-    scene.settings.bias = prt::automatic_bias(scene.mesh);
-    scene.settings.tolerance = prt::PrecomputeOptions{}.tolerance;
-    scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, {.bias = scene.settings.bias});
-    return scene;
-}
 
 /// A disc whose radius is a part of the map's width; a face, a quarter of the map's width around, spans 90 degrees.
 cubemap::LightLayer disc(const std::string& name, const glm::dvec3& direction, double part_of_face,
@@ -110,7 +93,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     try {
-        const prt::Scene scene = bunny(settings);
+        const prt::Scene scene = bench::bunny(settings.scene, settings.data);
         const prt::RayScene rays(scene.mesh);
         relight::LightEditor editor(scene.transfer, {.blockers = &rays,
                                                      .positions = scene.mesh.positions,

@@ -19,15 +19,12 @@
 #include "data_gen/environments.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "mesh/floor.h"
-#include "mesh/load.h"
-#include "prt/precompute.h"
 #include "prt/ray_scene.h"
-#include "prt/scene_file.h"
 #include "relight/exact.h"
 #include "relight/flicker.h"
 #include "relight/light_packets.h"
 #include "relight/relighter.h"
+#include "tests/bench/bunny.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -74,20 +71,6 @@ struct Sequence {
     std::string name;
     Maps map;
 };
-
-prt::Scene bunny(const Settings& settings) {
-    if (!settings.scene.empty())
-        return prt::load_scene(settings.scene);
-    fmt::print(stderr, "precompute; name a finished one with --scene to save the time\n");
-    prt::Scene scene;
-    scene.mesh = mesh::load(settings.data / "meshes/stanford/bun_zipper.ply");
-    mesh::append_floor(scene.mesh);
-    const prt::RayScene rays(scene.mesh);
-    scene.settings.bias = prt::automatic_bias(scene.mesh);
-    scene.settings.tolerance = prt::PrecomputeOptions{}.tolerance;
-    scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, {.bias = scene.settings.bias});
-    return scene;
-}
 
 std::vector<Sequence> sequences(const Settings& settings) {
     const auto part = [n = settings.num_frames](std::size_t frame) {
@@ -376,7 +359,7 @@ int main(int argc, char** argv) {
         return 0;
     }
     try {
-        const prt::Scene scene = bunny(settings);
+        const prt::Scene scene = bench::bunny(settings.scene, settings.data);
         Experiment experiment(settings, scene);
         fmt::print("Bunny, {} vertices; {} frames at R = {}; ground truth by exact integration for {} "
                    "vertices; {} clusters from {} samples a frame\n",
