@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/surface.h"
 
 namespace relumine::prt {
 
@@ -15,6 +16,9 @@ namespace relumine::prt {
 struct Receivers {
     std::vector<glm::vec3> positions; ///< [num_receivers]
     std::vector<glm::vec3> normals;   ///< [num_receivers], unit length or zero
+    std::vector<glm::vec3> to_eye =
+        {}; ///< [num_receivers], unit length; or empty: seen from anywhere, diffuse
+    std::vector<Surface> surfaces = {}; ///< [num_receivers]; or empty: Lambert, albedo 1
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
 };

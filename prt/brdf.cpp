@@ -1,0 +1,75 @@
+#include "prt/brdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v).
+float ggx(float roughness, float n_h, float n_w, float n_v) {
+    const float alpha = roughness * roughness;
+    const float a2 = alpha * alpha;
+    const float d = n_h * n_h * (a2 - 1.0f) + 1.0f;
+    const float distribution = a2 / (std::numbers::pi_v<float> * d * d);
+    const float visibility = 0.5f / (n_w * std::sqrt(n_v * n_v * (1.0f - a2) + a2) +
+                                     n_v * std::sqrt(n_w * n_w * (1.0f - a2) + a2));
+    return distribution * visibility;
+}
+
+/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less of all other.
+float blinn_phong(float exponent, float n_h) {
+    const float norm = (exponent + 2.0f) * (exponent + 4.0f) /
+                       (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * exponent) + exponent));
+    return norm * std::pow(n_h, exponent);
+}
+
+} // namespace
+
+Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye,
+                            const glm::vec3& w) {
+    Lobes<float> lobes;
+    const float n_w = glm::dot(normal, w);
+    if (n_w <= 0.0f)
+        return lobes;
+    const float n_v = glm::dot(normal, to_eye);
+    if (surface.highlight == Highlight::None) {
+        lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
+        return lobes;
+    }
+    if (n_v <= 0.0f)
+        return lobes;
+    lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
+    const glm::vec3 half = glm::normalize(to_eye + w);
+    const float n_h = std::clamp(glm::dot(normal, half), 0.0f, 1.0f);
+    if (surface.highlight == Highlight::BlinnPhong) {
+        lobes.specular = blinn_phong(surface.shape, n_h) * n_w;
+        return lobes;
+    }
+    const float v_h = std::clamp(glm::dot(to_eye, half), 0.0f, 1.0f);
+    const float c = std::pow(1.0f - v_h, 5.0f);
+    lobes.specular = ggx(surface.shape, n_h, n_w, n_v) * n_w;
+    lobes.diffuse_grazing = c * lobes.diffuse;
+    lobes.specular_grazing = c * lobes.specular;
+    return lobes;
+}
+
+glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes) {
+    const glm::vec3 one(1.0f);
+    switch (surface.highlight) {
+    case Highlight::None:
+        return surface.albedo * lobes.diffuse;
+    case Highlight::BlinnPhong:
+        return surface.albedo * lobes.diffuse + surface.specular * lobes.specular;
+    case Highlight::Ggx:
+        break;
+    }
+    return surface.albedo * (one - surface.specular) * (lobes.diffuse - lobes.diffuse_grazing) +
+           surface.specular * (lobes.specular - lobes.specular_grazing) + lobes.specular_grazing;
+}
+
+} // namespace relumine::prt

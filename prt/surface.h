@@ -1,0 +1,28 @@
+// What a receiver's surface does with light.
+#pragma once
+
+#include <cstdint>
+
+#include <glm/vec3.hpp>
+
+namespace relumine::prt {
+
+/// The shape of a surface's highlight.
+enum class Highlight : std::uint8_t {
+    None,       ///< Lambert
+    Ggx,        ///< metallic-roughness as glTF 2.0 defines it (its Appendix B)
+    BlinnPhong, ///< normalised Blinn-Phong, of OBJ materials
+};
+
+/// Reflection of one receiver. Colours may change after a precompute, the shape of the highlight may not.
+struct Surface {
+    glm::vec3 albedo{1.0f};                ///< diffuse reflectance, 0..1
+    glm::vec3 specular{0.0f};              ///< GGX: reflectance at normal incidence, F0; Blinn-Phong: Ks
+    Highlight highlight = Highlight::None; ///< what `shape` means
+    float shape =
+        1.0f; ///< GGX: glTF's roughness, 0..1 (alpha is its square); Blinn-Phong: the exponent, >= 0
+
+    bool operator==(const Surface&) const = default;
+};
+
+} // namespace relumine::prt
