@@ -10,25 +10,28 @@ namespace relumine::prt {
 
 namespace {
 
-/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v).
-float ggx(float roughness, float n_h, float n_w, float n_v) {
-    const float alpha = roughness * roughness;
+/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v). sin2: squared sine of the angle
+/// between normal and half vector; cos^2 alone loses it to cancellation where alpha is small.
+float ggx(float alpha, float sin2, float n_w, float n_v) {
     const float a2 = alpha * alpha;
-    const float d = n_h * n_h * (a2 - 1.0f) + 1.0f;
+    const float d = sin2 + (1.0f - sin2) * a2; // cos^2 (a2 - 1) + 1
     const float distribution = a2 / (std::numbers::pi_v<float> * d * d);
     const float visibility = 0.5f / (n_w * std::sqrt(n_v * n_v * (1.0f - a2) + a2) +
                                      n_v * std::sqrt(n_w * n_w * (1.0f - a2) + a2));
     return distribution * visibility;
 }
 
-/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less of all other.
-float blinn_phong(float exponent, float n_h) {
-    const float norm = (exponent + 2.0f) * (exponent + 4.0f) /
-                       (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * exponent) + exponent));
-    return norm * std::pow(n_h, exponent);
+} // namespace
+
+float ggx_alpha(float roughness) {
+    return std::max(roughness * roughness, 1e-3f);
 }
 
-} // namespace
+/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less of all other.
+float blinn_phong_norm(float exponent) {
+    return (exponent + 2.0f) * (exponent + 4.0f) /
+           (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * exponent) + exponent));
+}
 
 Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye,
                             const glm::vec3& w) {
@@ -44,15 +47,18 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, con
     if (n_v <= 0.0f)
         return lobes;
     lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
-    const glm::vec3 half = glm::normalize(to_eye + w);
-    const float n_h = std::clamp(glm::dot(normal, half), 0.0f, 1.0f);
+    // Not normalised: |v + w| is 2 v.h.
+    const glm::vec3 half = to_eye + w;
+    const float length2 = std::max(glm::dot(half, half), 1e-12f);
+    const glm::vec3 across = glm::cross(normal, half);
+    const float sin2 = std::min(glm::dot(across, across) / length2, 1.0f);
     if (surface.highlight == Highlight::BlinnPhong) {
-        lobes.specular = blinn_phong(surface.shape, n_h) * n_w;
+        lobes.specular = blinn_phong_norm(surface.shape) * std::pow(1.0f - sin2, 0.5f * surface.shape) * n_w;
         return lobes;
     }
-    const float v_h = std::clamp(glm::dot(to_eye, half), 0.0f, 1.0f);
+    const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);
     const float c = std::pow(1.0f - v_h, 5.0f);
-    lobes.specular = ggx(surface.shape, n_h, n_w, n_v) * n_w;
+    lobes.specular = ggx(ggx_alpha(surface.shape), sin2, n_w, n_v) * n_w;
     lobes.diffuse_grazing = c * lobes.diffuse;
     lobes.specular_grazing = c * lobes.specular;
     return lobes;

@@ -21,6 +21,13 @@ struct Lobes {
     Value specular_grazing{}; ///< Sc: what Fresnel whitens of S
 };
 
+/// Trowbridge-Reitz alpha of glTF's roughness: its square, but at least 1e-3 (roughness 0.032), below which half a degree of sun is
+/// wider than the lobe and float runs out of digits.
+[[nodiscard]] float ggx_alpha(float roughness);
+
+/// Factor of (n.h)^exponent in normalised Blinn-Phong.
+[[nodiscard]] float blinn_phong_norm(float exponent);
+
 /// The lobes for unit vectors n (normal), to_eye and w (to the light). All zero where the light or the eye is below the horizon;
 /// for Highlight::None the eye does not matter.
 [[nodiscard]] Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
