@@ -40,13 +40,9 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, con
     if (n_w <= 0.0f)
         return lobes;
     const float n_v = glm::dot(normal, to_eye);
-    if (surface.highlight == Highlight::None) {
-        lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
-        return lobes;
-    }
-    if (n_v <= 0.0f)
-        return lobes;
     lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
+    if (surface.highlight == Highlight::None || n_v <= 0.0f)
+        return lobes;
     // Not normalised: |v + w| is 2 v.h.
     const glm::vec3 half = to_eye + w;
     const float length2 = std::max(glm::dot(half, half), 1e-12f);

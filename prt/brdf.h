@@ -28,8 +28,8 @@ struct Lobes {
 /// Factor of (n.h)^exponent in normalised Blinn-Phong.
 [[nodiscard]] float blinn_phong_norm(float exponent);
 
-/// The lobes for unit vectors n (normal), to_eye and w (to the light). All zero where the light or the eye is below the horizon;
-/// for Highlight::None the eye does not matter.
+/// The lobes for unit vectors n (normal), to_eye and w (to the light). All zero where the light is below the horizon; only D where the eye
+/// is, or for Highlight::None.
 [[nodiscard]] Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
                                           const glm::vec3& to_eye, const glm::vec3& w);
 

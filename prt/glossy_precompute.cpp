@@ -1,0 +1,199 @@
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN], Sections 3.1 and 4.
+#include "prt/glossy_precompute.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "prt/brdf.h"
+#include "prt/cell_index.h"
+#include "prt/lobe_refinement.h"
+#include "prt/precompute.h"
+
+namespace relumine::prt {
+
+namespace {
+
+/// One block's entries of one lobe.
+struct BlockEntries {
+    std::vector<std::uint32_t> cells;
+    std::vector<float> scales;
+    std::vector<std::uint8_t> values;
+};
+
+/// Bytes hold the square root: a highlight's foot, shared by many directions, keeps its digits beside the peak.
+BlockEntries quantised(const LobeCut& cut) {
+    BlockEntries entries;
+    for (const CutCell& cell : cut.cells) {
+        const float largest = *std::max_element(cell.mean.begin(), cell.mean.end());
+        entries.cells.push_back(cell_index(cell.cell));
+        entries.scales.push_back(largest / (255.0f * 255.0f));
+        for (const float mean : cell.mean)
+            entries.values.push_back(
+                static_cast<std::uint8_t>(std::lround(255.0f * std::sqrt(mean / largest))));
+    }
+    return entries;
+}
+
+/// Frees the blocks' own arrays as it goes.
+LobeCuts joined(std::vector<BlockEntries>&& blocks) {
+    LobeCuts cuts;
+    cuts.begin.push_back(0);
+    for (const BlockEntries& block : blocks)
+        cuts.begin.push_back(cuts.begin.back() + block.cells.size());
+    cuts.cells.reserve(cuts.begin.back());
+    cuts.scales.reserve(cuts.begin.back());
+    cuts.values.reserve(cuts.begin.back() * BlockSize);
+    for (BlockEntries& block : blocks) {
+        const BlockEntries moved = std::move(block);
+        cuts.cells.insert(cuts.cells.end(), moved.cells.begin(), moved.cells.end());
+        cuts.scales.insert(cuts.scales.end(), moved.scales.begin(), moved.scales.end());
+        cuts.values.insert(cuts.values.end(), moved.values.begin(), moved.values.end());
+    }
+    return cuts;
+}
+
+/// The angle over which a highlight changes, as seen from the light: twice that of the half vector.
+float narrowness_of(const Surface& surface) {
+    switch (surface.highlight) {
+    case Highlight::Ggx:
+        return 2.0f * ggx_alpha(surface.shape);
+    case Highlight::BlinnPhong:
+        return 2.0f * std::sqrt(2.0f / (surface.shape + 2.0f));
+    case Highlight::None:
+        break;
+    }
+    return 0.0f;
+}
+
+class GlossyPrecompute {
+public:
+    GlossyPrecompute(const Receivers& receivers, const Blockers& blockers, const Transfer& transfer,
+                     const GlossyOptions& options)
+        : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options) {}
+
+    GlossyTransfer run(GlossyStatistics& statistics);
+
+private:
+    using EntriesOfBlock = std::array<BlockEntries, NumGlossyLobes>;
+
+    BlockToRefine block_at(std::size_t block, std::vector<glm::vec3>& origins) const;
+    EntriesOfBlock refine(std::size_t block);
+
+    const Receivers& receivers_;
+    const Blockers& blockers_;
+    const Transfer& transfer_;
+    const GlossyOptions& options_;
+    std::atomic<std::uint64_t> num_rays_ = 0;
+};
+
+BlockToRefine GlossyPrecompute::block_at(std::size_t block, std::vector<glm::vec3>& origins) const {
+    BlockToRefine result{.block = block};
+    const std::size_t begin = block * BlockSize;
+    const std::size_t end = std::min(begin + BlockSize, transfer_.num_receivers());
+    for (std::size_t place = begin; place < end; ++place) {
+        const std::uint32_t receiver = transfer_.order[place];
+        const glm::vec3& normal = receivers_.normals[receiver];
+        const glm::vec3& to_eye = receivers_.to_eye[receiver];
+        const Surface& surface = receivers_.surfaces[receiver];
+        const std::size_t lane = place - begin;
+        result.surfaces.set(lane, surface, normal, to_eye);
+        result.mirror[lane] = 2.0f * result.surfaces.normal_dot_eye[lane] * normal - to_eye;
+        result.narrowness[lane] = result.surfaces.normal_dot_eye[lane] > 0.0f ? narrowness_of(surface) : 0.0f;
+        origins.push_back(ray_origin(receivers_.positions[receiver], normal, options_.bias));
+    }
+    result.origins = origins;
+    return result;
+}
+
+GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
+    std::vector<glm::vec3> origins;
+    const BlockToRefine to_refine = block_at(block, origins);
+    EntriesOfBlock entries;
+    RefinementLimits limits{.tolerance = options_.tolerance,
+                            .max_level =
+                                static_cast<std::uint32_t>(std::bit_width(options_.face_resolution - 1))};
+    for (const GlossyLobe lobe :
+         {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
+        if (!to_refine.surfaces.has(lobe))
+            continue;
+        // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
+        if (lobe == GlossyLobe::DiffuseGrazing)
+            limits.reference_power = std::popcount(to_refine.surfaces.ggx) * 2.0 / (3.0 * std::numbers::pi);
+        const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
+        if (lobe == GlossyLobe::Specular)
+            limits.reference_power = cut.power;
+        entries[static_cast<std::size_t>(lobe)] = quantised(cut);
+        num_rays_ += cut.num_rays;
+    }
+    return entries;
+}
+
+GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
+    const std::size_t num_blocks = transfer_.counts.num_blocks();
+    std::array<std::vector<BlockEntries>, NumGlossyLobes> entries;
+    for (std::vector<BlockEntries>& of_lobe : entries)
+        of_lobe.resize(num_blocks);
+    std::mutex mutex;
+    std::size_t num_done = 0;
+    tbb::parallel_for(std::size_t{0}, num_blocks, [&](std::size_t block) {
+        if (options_.stop.stop_requested())
+            throw Cancelled();
+        EntriesOfBlock of_block = refine(block);
+        for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
+            entries[lobe][block] = std::move(of_block[lobe]);
+        const std::scoped_lock lock(mutex);
+        ++num_done;
+        if (options_.on_progress)
+            options_.on_progress(static_cast<double>(num_done) / static_cast<double>(num_blocks));
+    });
+
+    GlossyTransfer glossy;
+    for (const std::uint32_t receiver : transfer_.order)
+        glossy.to_eye.push_back(receivers_.to_eye[receiver]);
+    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
+        glossy.lobes[lobe] = joined(std::move(entries[lobe]));
+        statistics.num_entries += glossy.lobes[lobe].num_entries();
+    }
+    statistics.num_rays = num_rays_;
+    return glossy;
+}
+
+void check(const Receivers& receivers, const Transfer& transfer, const GlossyOptions& options) {
+    const std::size_t count = transfer.num_receivers();
+    if (receivers.size() != count || receivers.to_eye.size() != count || receivers.surfaces.size() != count)
+        throw std::invalid_argument(
+            fmt::format("expected the transfer's {} receivers with eye directions and surfaces", count));
+    if (!(options.tolerance > 0.0f && options.tolerance <= 1.0f))
+        throw std::invalid_argument(
+            fmt::format("expected a glossy tolerance above 0, at most 1, got {}", options.tolerance));
+    if (options.face_resolution < 1 || options.face_resolution > (1u << MaxLevel))
+        throw std::invalid_argument(fmt::format("expected a face resolution from 1 to {}, got {}",
+                                                1u << MaxLevel, options.face_resolution));
+}
+
+} // namespace
+
+GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
+                                 const Transfer& transfer, const GlossyOptions& options,
+                                 GlossyStatistics* statistics) {
+    check(receivers, transfer, options);
+    const auto start = std::chrono::steady_clock::now();
+    GlossyStatistics local;
+    GlossyTransfer glossy = GlossyPrecompute(receivers, blockers, transfer, options).run(local);
+    local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (statistics != nullptr)
+        *statistics = local;
+    return glossy;
+}
+
+} // namespace relumine::prt

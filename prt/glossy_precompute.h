@@ -1,0 +1,40 @@
+// Precomputes the view-dependent part of light transfer, on top of the visible counts of the diffuse part.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <stop_token>
+
+#include "prt/blockers.h"
+#include "prt/glossy_transfer.h"
+#include "prt/receivers.h"
+#include "prt/transfer.h"
+
+namespace relumine::prt {
+
+struct GlossyOptions {
+    /// A block's cut is fine enough when the error of its lobe, T_C - T over all directions, is at most this part of the lobe itself
+    /// without blockers: sqrt(sum over cells of dw mean (T - T_C)^2) < tolerance sqrt(sum of dw T^2). It is the relative L2 error under a small light that may
+    /// stand anywhere. For the grazing part of the diffuse lobe the whole diffuse lobe is what counts.
+    float tolerance = 0.02f;
+    std::uint32_t face_resolution = 1024; ///< as PrecomputeOptions
+    float bias = 0.0f;                    ///< as PrecomputeOptions
+    std::stop_token stop = {};
+    std::function<void(double)> on_progress = {}; ///< fraction in [0, 1], one call at a time
+};
+
+struct GlossyStatistics {
+    std::uint64_t num_entries = 0; ///< (block, cell) pairs of all lobes
+    std::uint64_t num_rays = 0;
+    double seconds = 0.0;
+};
+
+/// Cuts of all blocks, for receivers with to_eye and surfaces. Each block refines the cell with the largest error first, nine samples to a cell [JN,
+/// Section 4.1], T with the BRDF [JN, Eq. 3]. Where the transfer's counts say that a receiver sees all of a cluster or nothing, that is taken for its
+/// visibility; only in between rays are traced. Parallel over blocks (TBB); the same bits for any number of threads.
+/// Throws std::invalid_argument for receivers that do not fit the transfer, Cancelled when stopped.
+[[nodiscard]] GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
+                                               const Transfer& transfer, const GlossyOptions& options = {},
+                                               GlossyStatistics* statistics = nullptr);
+
+} // namespace relumine::prt
