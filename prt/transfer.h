@@ -2,23 +2,27 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <optional>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "prt/glossy_transfer.h"
 #include "prt/quadtree.h"
+#include "prt/surface.h"
 #include "prt/visible_counts.h"
 
 namespace relumine::prt {
 
-/// Light transfer of a set of diffuse receivers, albedo 1 (colour is a factor applied when the light is known).
+/// Light transfer of a set of receivers. The diffuse part is for albedo 1, colour is a factor applied when the light is known:
 /// T_C(x) = c(x, C)/16 * max(dot(n(x), w), 0) / pi, unit 1/sr [JN, Eqs. 2 and 10]. Immutable once made.
 struct Transfer {
-    Quadtree quadtree;                ///< its leaves are the clusters
-    std::vector<std::uint32_t> order; ///< [num_receivers] place in spatial order -> receiver index
-    std::vector<glm::vec3> normals;   ///< [num_receivers] by place, unit or zero
-    VisibleCounts counts;             ///< by place
+    Quadtree quadtree;                         ///< its leaves are the clusters
+    std::vector<std::uint32_t> order;          ///< [num_receivers] place in spatial order -> receiver index
+    std::vector<glm::vec3> normals;            ///< [num_receivers] by place, unit or zero
+    VisibleCounts counts;                      ///< by place
+    std::vector<Surface> surfaces = {};        ///< [num_receivers] by place; or empty: Lambert, albedo 1
+    std::optional<GlossyTransfer> glossy = {}; ///< what depends on the view; only with surfaces
 
     [[nodiscard]] std::size_t num_receivers() const { return order.size(); }
     [[nodiscard]] std::size_t num_clusters() const { return quadtree.num_leaves(); }

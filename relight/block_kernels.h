@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "prt/transfer.h"
 #include "relight/cluster_lights.h"
 
@@ -47,6 +49,10 @@ struct alignas(64) BlockNormals {
 /// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver].
 struct alignas(64) BlockRadiance {
     std::array<std::array<float, prt::BlockSize>, 3> channels{};
+
+    [[nodiscard]] glm::vec3 of(std::size_t receiver) const {
+        return {channels[0][receiver], channels[1][receiver], channels[2][receiver]};
+    }
 };
 
 /// Both parts of a block's light put together, never below zero.

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
@@ -25,6 +26,11 @@ struct VectorIrradiance {
     bool operator==(const VectorIrradiance&) const = default;
     /// The vector of the luminance (Rec. 709 weights).
     [[nodiscard]] glm::dvec3 luminance() const { return 0.2126 * red + 0.7152 * green + 0.0722 * blue; }
+    /// Irradiance of a surface with this normal that sees all of it, never below zero.
+    [[nodiscard]] glm::dvec3 on(const glm::vec3& normal) const {
+        const glm::dvec3 n(normal);
+        return glm::max(glm::dvec3(glm::dot(n, red), glm::dot(n, green), glm::dot(n, blue)), 0.0);
+    }
     /// Its length: the light's power in luminance, where the part of the environment is small.
     [[nodiscard]] double power() const { return glm::length(luminance()); }
 };

@@ -11,6 +11,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "prt/brdf.h"
 #include "prt/precompute.h"
 
 namespace relumine::relight {
@@ -24,7 +25,7 @@ static_assert(std::size_t{TileSize} * TileSize == prt::PacketSize);
 
 struct Tile {
     prt::DirectionPacket packet;
-    std::array<glm::dvec3, prt::PacketSize> power{}; ///< L dw / pi
+    std::array<glm::dvec3, prt::PacketSize> power{}; ///< L dw
     std::uint32_t lit = 0;                           ///< lanes with any light
 };
 
@@ -42,15 +43,16 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
         tile.packet.set(i, cubemap::texel_direction(face, inner_x, inner_y, r));
         if (x >= r || y >= r)
             continue;
-        tile.power[i] = glm::dvec3(environment.at(face, x, y)) *
-                        (solid_angles[std::size_t{y} * r + x] / std::numbers::pi);
+        tile.power[i] = glm::dvec3(environment.at(face, x, y)) * solid_angles[std::size_t{y} * r + x];
         tile.lit |= static_cast<std::uint32_t>(tile.power[i] != glm::dvec3(0.0)) << i;
     }
     return tile;
 }
 
-void add_tile(const Tile& tile, const glm::vec3& origin, const glm::vec3& normal,
-              const prt::Blockers& blockers, glm::dvec3& radiance) {
+/// Calls visit(lane, cosine) for the tile's lights that reach the receiver.
+template<typename Visit>
+void for_visible(const Tile& tile, const glm::vec3& origin, const glm::vec3& normal,
+                 const prt::Blockers& blockers, const Visit& visit) {
     std::array<float, prt::PacketSize> cosines{};
     std::uint32_t above = 0;
     for (std::size_t i = 0; i < prt::PacketSize; ++i) {
@@ -63,8 +65,50 @@ void add_tile(const Tile& tile, const glm::vec3& origin, const glm::vec3& normal
     const std::uint32_t visible = above & ~blockers.occluded(origin, tile.packet, above);
     for (std::size_t i = 0; i < prt::PacketSize; ++i)
         if ((visible >> i & 1u) != 0)
-            radiance += tile.power[i] * static_cast<double>(cosines[i]);
+            visit(i, cosines[i]);
 }
+
+/// Light that one receiver sends back, colours put in last.
+class ExactReceiver {
+public:
+    ExactReceiver(const prt::Receivers& receivers, std::uint32_t index, float bias)
+        : normal_(receivers.normals[index]),
+          origin_(prt::ray_origin(receivers.positions[index], normal_, bias)) {
+        if (!receivers.surfaces.empty())
+            surface_ = receivers.surfaces[index];
+        if (!receivers.to_eye.empty())
+            to_eye_ = receivers.to_eye[index];
+    }
+
+    void add(const Tile& tile, const prt::Blockers& blockers, prt::Lobes<glm::dvec3>& sums) const {
+        const bool diffuse_only = surface_.highlight == prt::Highlight::None;
+        for_visible(tile, origin_, normal_, blockers, [&](std::size_t i, float cosine) {
+            sums.diffuse += tile.power[i] * (static_cast<double>(cosine) / std::numbers::pi);
+            if (diffuse_only)
+                return;
+            const prt::Lobes<float> lobes = prt::evaluate_lobes(
+                surface_, normal_, to_eye_, {tile.packet.x[i], tile.packet.y[i], tile.packet.z[i]});
+            sums.diffuse_grazing += tile.power[i] * static_cast<double>(lobes.diffuse_grazing);
+            sums.specular += tile.power[i] * static_cast<double>(lobes.specular);
+            sums.specular_grazing += tile.power[i] * static_cast<double>(lobes.specular_grazing);
+        });
+    }
+
+    [[nodiscard]] glm::dvec3 radiance(const prt::Lobes<glm::dvec3>& sums) const {
+        if (surface_ == prt::Surface())
+            return sums.diffuse;
+        return prt::reflect(surface_, {.diffuse = sums.diffuse,
+                                       .diffuse_grazing = sums.diffuse_grazing,
+                                       .specular = sums.specular,
+                                       .specular_grazing = sums.specular_grazing});
+    }
+
+private:
+    glm::vec3 normal_;
+    glm::vec3 origin_;
+    glm::vec3 to_eye_{0.0f}; ///< below every horizon: no highlight
+    prt::Surface surface_;
+};
 
 } // namespace
 
@@ -74,7 +118,11 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
                                        const ExactOptions& options) {
     const std::uint32_t r = environment.resolution;
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(r);
-    std::vector<glm::dvec3> radiance(receiver_indices.size(), glm::dvec3(0.0));
+    std::vector<prt::Lobes<glm::dvec3>> sums(receiver_indices.size());
+    std::vector<ExactReceiver> exact;
+    exact.reserve(receiver_indices.size());
+    for (const std::uint32_t receiver : receiver_indices)
+        exact.emplace_back(receivers, receiver, options.bias);
     std::mutex mutex;
     std::size_t rows_done = 0;
     const std::size_t num_tasks = (receiver_indices.size() + ReceiversPerTask - 1) / ReceiversPerTask;
@@ -98,17 +146,15 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
                     const Tile tile = tile_at(environment, solid_angles, face, x, y);
                     if (tile.lit == 0)
                         continue;
-                    for (std::size_t i = begin; i < end; ++i) {
-                        const std::uint32_t receiver = receiver_indices[i];
-                        const glm::vec3& normal = receivers.normals[receiver];
-                        const glm::vec3 origin =
-                            prt::ray_origin(receivers.positions[receiver], normal, options.bias);
-                        add_tile(tile, origin, normal, blockers, radiance[i]);
-                    }
+                    for (std::size_t i = begin; i < end; ++i)
+                        exact[i].add(tile, blockers, sums[i]);
                 }
                 report_row();
             }
     });
+    std::vector<glm::dvec3> radiance(sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        radiance[i] = exact[i].radiance(sums[i]);
     return radiance;
 }
 

@@ -38,9 +38,9 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
     packet.irradiance[lane] = irradiance;
 }
 
-glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& normal,
-                                  const ShadowRays& rays) const {
-    glm::dvec3 irradiance(0.0);
+template<typename Visit>
+void LightPackets::for_visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
+                               const Visit& visit) const {
     const glm::vec3 origin = prt::ray_origin(position, normal, rays.bias);
     for (const Packet& packet : packets_) {
         std::uint32_t above = 0;
@@ -52,15 +52,36 @@ glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& no
         if (above == 0)
             continue;
         std::uint32_t visible = above & ~rays.blockers->occluded(origin, packet.directions, above);
-        for (; visible != 0; visible &= visible - 1) {
-            const VectorIrradiance& e =
-                packet.irradiance[static_cast<std::size_t>(std::countr_zero(visible))];
-            const glm::dvec3 n(normal);
-            irradiance +=
-                glm::max(glm::dvec3(glm::dot(n, e.red), glm::dot(n, e.green), glm::dot(n, e.blue)), 0.0);
-        }
+        for (; visible != 0; visible &= visible - 1)
+            visit(packet, static_cast<std::size_t>(std::countr_zero(visible)));
     }
+}
+
+glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& normal,
+                                  const ShadowRays& rays) const {
+    glm::dvec3 irradiance(0.0);
+    for_visible(position, normal, rays, [&](const Packet& packet, std::size_t lane) {
+        irradiance += packet.irradiance[lane].on(normal);
+    });
     return irradiance / std::numbers::pi;
+}
+
+prt::Lobes<glm::dvec3> LightPackets::lobes(const glm::vec3& position, const glm::vec3& normal,
+                                           const glm::vec3& to_eye, const prt::Surface& surface,
+                                           const ShadowRays& rays) const {
+    prt::Lobes<glm::dvec3> sums;
+    for_visible(position, normal, rays, [&](const Packet& packet, std::size_t lane) {
+        const prt::DirectionPacket& d = packet.directions;
+        const VectorIrradiance& e = packet.irradiance[lane];
+        const prt::Lobes<float> lobes =
+            prt::evaluate_lobes(surface, normal, to_eye, {d.x[lane], d.y[lane], d.z[lane]});
+        const glm::dvec3 light(glm::length(e.red), glm::length(e.green), glm::length(e.blue));
+        sums.diffuse += e.on(normal) / std::numbers::pi;
+        sums.diffuse_grazing += light * static_cast<double>(lobes.diffuse_grazing);
+        sums.specular += light * static_cast<double>(lobes.specular);
+        sums.specular_grazing += light * static_cast<double>(lobes.specular_grazing);
+    });
+    return sums;
 }
 
 VectorIrradiance vector_irradiance(const lights::DistantLight& light) {

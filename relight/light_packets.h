@@ -10,6 +10,7 @@
 
 #include "lights/light_list.h"
 #include "prt/blockers.h"
+#include "prt/brdf.h"
 #include "prt/receivers.h"
 #include "relight/cluster_lights.h"
 #include "relight/sharp_lights.h"
@@ -35,7 +36,16 @@ public:
     [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
                                       const ShadowRays& rays) const;
 
+    /// The same for a surface seen from `to_eye`, colours not put in: radiance through each lobe. A light smaller than a cell is a point.
+    [[nodiscard]] prt::Lobes<glm::dvec3> lobes(const glm::vec3& position, const glm::vec3& normal,
+                                               const glm::vec3& to_eye, const prt::Surface& surface,
+                                               const ShadowRays& rays) const;
+
 private:
+    /// Calls visit(packet, lane) for each light that reaches the receiver.
+    template<typename Visit>
+    void for_visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
+                     const Visit& visit) const;
     void add(const glm::dvec3& direction, const VectorIrradiance& irradiance);
 
     struct Packet {

@@ -87,7 +87,11 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
       radiance_(transfer.num_receivers()) {
     if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
         throw std::invalid_argument("expected one position per receiver");
-    traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0, glm::dvec3(0.0));
+    traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0);
+    if (transfer.glossy) {
+        pyramid_.emplace(transfer.glossy->deepest_level());
+        glossy_.resize(transfer.counts.num_blocks());
+    }
     for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
         for (int axis = 0; axis < 3; ++axis)
             normals_[place / prt::BlockSize].axes[static_cast<std::size_t>(axis)][place % prt::BlockSize] =
@@ -103,6 +107,9 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace += seconds_since(start);
 
+    start = std::chrono::steady_clock::now();
+    set_pyramid();
+    times.seconds_bin += seconds_since(start);
     start = std::chrono::steady_clock::now();
     resum();
     times.seconds_relight = seconds_since(start);
@@ -149,6 +156,7 @@ UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
     }
     environment_ = std::move(frame.map);
     binning_ = std::move(frame.binning);
+    set_pyramid();
     if (is_first || is_cheaper_to_sum_all(changed_, sums_.size())) {
         resum();
         report.resummed = true;
@@ -186,6 +194,8 @@ RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights)
     std::stable_sort(sharp_lights_.begin(), sharp_lights_.end(),
                      [](const SharpLight& a, const SharpLight& b) { return a.cluster < b.cluster; });
     std::transform(sums_.begin(), sums_.end(), powers_.begin(), std::mem_fn(&VectorIrradiance::power));
+    if (pyramid_)
+        pyramid_->set_lights(rays_.blockers == nullptr ? lights : std::span<const lights::DistantLight>());
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
@@ -207,8 +217,10 @@ void Relighter::resum() {
     tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
         light_tile(transfer_.counts, tile, normals_, lights_, light_);
         for (std::size_t block = transfer_.counts.tile_begin(tile);
-             block < transfer_.counts.tile_begin(tile + 1); ++block)
+             block < transfer_.counts.tile_begin(tile + 1); ++block) {
+            light_glossy(block);
             write_radiance(block);
+        }
     });
     lit_by_ = lights_.vectors;
 }
@@ -228,11 +240,19 @@ void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
 
 void Relighter::trace_sharp_lights() {
     const LightPackets packets(sharp_lights_);
+    const auto trace = [&](std::size_t place) {
+        const glm::vec3& position = rays_.positions[transfer_.order[place]];
+        const glm::vec3& normal = transfer_.normals[place];
+        if (transfer_.glossy)
+            traced_[place] = packets.lobes(position, normal, transfer_.glossy->to_eye[place],
+                                           transfer_.surfaces[place], rays_);
+        else
+            traced_[place].diffuse = packets.radiance(position, normal, rays_);
+    };
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, traced_.size(), ReceiversPerTask),
                       [&](const auto& places) {
                           for (std::size_t place = places.begin(); place < places.end(); ++place)
-                              traced_[place] = packets.radiance(rays_.positions[transfer_.order[place]],
-                                                                transfer_.normals[place], rays_);
+                              trace(place);
                       });
 }
 
@@ -283,6 +303,7 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
         powers_[cluster] = sums_[cluster].power();
     });
     const bool sharp_changed = rays_.blockers != nullptr && update_sharp_lights();
+    set_pyramid();
     const std::size_t num_receivers = update_changed(sharp_changed);
     return {.num_clusters = num_changed,
             .num_receivers = num_receivers,
@@ -303,13 +324,14 @@ std::size_t Relighter::update_changed(bool sharp_changed) {
     tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
         std::uint64_t touched =
             update_tile(transfer_.counts, tile, normals_, changed_words_, lit_by_, lights_.vectors, light_);
-        if (sharp_changed)
+        if (sharp_changed || transfer_.glossy)
             touched = ~std::uint64_t{0};
         const std::size_t begin = transfer_.counts.tile_begin(tile);
         const std::size_t end = transfer_.counts.tile_begin(tile + 1);
         std::size_t num_touched = 0;
         for (std::size_t block = begin; block < end; ++block)
             if ((touched >> (block - begin) & 1u) != 0) {
+                light_glossy(block);
                 write_radiance(block);
                 ++num_touched;
             }
@@ -341,17 +363,49 @@ bool Relighter::replace_sharp_lights(std::vector<SharpLight> lights) {
     return true;
 }
 
+void Relighter::set_pyramid() {
+    if (pyramid_)
+        pyramid_->set(environment_, *binning_, sharp_lights_);
+}
+
+void Relighter::light_glossy(std::size_t block) {
+    if (!pyramid_)
+        return;
+    for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
+        light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(), glossy_[block][lobe]);
+}
+
+/// Radiance through all lobes of a receiver; `diffuse` is that of the clusters.
+prt::Lobes<glm::vec3> Relighter::lobes_of(std::size_t place, const glm::vec3& diffuse) const {
+    prt::Lobes<glm::vec3> lobes{.diffuse = diffuse};
+    if (!glossy_.empty()) {
+        const GlossyLight& light = glossy_[place / prt::BlockSize];
+        const auto through = [&](prt::GlossyLobe lobe) {
+            return light[static_cast<std::size_t>(lobe)].of(place % prt::BlockSize);
+        };
+        lobes.specular = through(prt::GlossyLobe::Specular);
+        lobes.specular_grazing = through(prt::GlossyLobe::SpecularGrazing);
+        lobes.diffuse_grazing = through(prt::GlossyLobe::DiffuseGrazing);
+    }
+    if (!traced_.empty()) {
+        const prt::Lobes<glm::dvec3>& traced = traced_[place];
+        lobes.diffuse = glm::vec3(glm::dvec3(lobes.diffuse) + traced.diffuse);
+        lobes.diffuse_grazing += glm::vec3(traced.diffuse_grazing);
+        lobes.specular += glm::vec3(traced.specular);
+        lobes.specular_grazing += glm::vec3(traced.specular_grazing);
+    }
+    return lobes;
+}
+
 void Relighter::write_radiance(std::size_t block) {
     BlockRadiance sums;
     block_radiance(normals_[block], light_[block], sums);
     const std::size_t begin = block * prt::BlockSize;
     const std::size_t end = std::min(begin + prt::BlockSize, radiance_.size());
     for (std::size_t place = begin; place < end; ++place) {
-        const std::size_t lane = place - begin;
-        glm::vec3 sum(sums.channels[0][lane], sums.channels[1][lane], sums.channels[2][lane]);
-        if (!traced_.empty())
-            sum = glm::vec3(glm::dvec3(sum) + traced_[place]);
-        radiance_[transfer_.order[place]] = sum;
+        const prt::Lobes<glm::vec3> lobes = lobes_of(place, sums.of(place - begin));
+        radiance_[transfer_.order[place]] =
+            transfer_.surfaces.empty() ? lobes.diffuse : prt::reflect(transfer_.surfaces[place], lobes);
     }
 }
 

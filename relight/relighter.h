@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,7 +17,9 @@
 #include "relight/binned_environment.h"
 #include "relight/block_kernels.h"
 #include "relight/cluster_lights.h"
+#include "relight/glossy_kernels.h"
 #include "relight/light_packets.h"
+#include "relight/light_pyramid.h"
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
@@ -88,7 +91,8 @@ public:
     /// bit by bit what set_environment() of the same map gives. Costs a relighting without the binning.
     void resum();
 
-    /// Outgoing radiance for albedo 1, [num_receivers] in the receivers' own order; the unit of the environment's radiance.
+    /// Outgoing radiance, [num_receivers] in the receivers' own order; the unit of the environment's radiance. With the transfer's surfaces,
+    /// toward the eye where it has a glossy part; for albedo 1 where it has none.
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
 
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
@@ -107,16 +111,21 @@ private:
     bool update_sharp_lights();
     bool replace_sharp_lights(std::vector<SharpLight> lights);
     std::size_t update_changed(bool sharp_changed);
+    void set_pyramid();
+    void light_glossy(std::size_t block);
     void write_radiance(std::size_t block);
+    [[nodiscard]] prt::Lobes<glm::vec3> lobes_of(std::size_t place, const glm::vec3& diffuse) const;
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
     std::vector<VectorIrradiance> sums_; ///< [num_clusters] all light of each cluster
     std::vector<double> powers_;         ///< [num_clusters] length of its luminance
     std::vector<SharpLight> sharp_lights_;
-    std::vector<glm::dvec3> traced_;    ///< [num_receivers] by place: radiance from the sharp lights
-    std::vector<BlockNormals> normals_; ///< [num_blocks]
-    std::vector<BlockLight> light_;     ///< [num_blocks]
+    std::vector<prt::Lobes<glm::dvec3>> traced_; ///< [num_receivers] by place: radiance from the sharp lights
+    std::optional<LightPyramid> pyramid_;        ///< where the transfer has a glossy part
+    std::vector<GlossyLight> glossy_;            ///< [num_blocks], or none
+    std::vector<BlockNormals> normals_;          ///< [num_blocks]
+    std::vector<BlockLight> light_;              ///< [num_blocks]
     ClusterLights lights_;
     std::vector<float> lit_by_; ///< ClusterLights::vectors that light_ is made of
     EnvironmentBinner binner_;
