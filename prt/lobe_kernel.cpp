@@ -157,7 +157,7 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
         alpha_squared[lane] = alpha * alpha;
     } else if (surface.highlight == Highlight::BlinnPhong) {
         blinn_phong |= bit;
-        exponent[lane] = surface.shape;
+        exponent[lane] = blinn_phong_exponent(surface.shape);
         factor[lane] = blinn_phong_norm(surface.shape);
     }
 }
