@@ -52,7 +52,8 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     extend(mesh.colors, mesh.num_vertices(), glm::vec3(1.0f));
     extend(mesh.uvs, mesh.num_vertices(), glm::vec2(0.0f));
 
-    mesh.triangles.reserve(mesh.num_triangles() + 2 * std::size_t{n - 1} * (n - 1));
+    const std::size_t first_triangle = mesh.num_triangles();
+    mesh.triangles.reserve(first_triangle + 2 * std::size_t{n - 1} * (n - 1));
     for (std::uint32_t row = 0; row + 1 < n; ++row)
         for (std::uint32_t column = 0; column + 1 < n; ++column) {
             // a b   +X to the right, +Z down: counter-clockwise seen from above is a c b.
@@ -62,6 +63,20 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
             mesh.triangles.push_back({a, c, b});
             mesh.triangles.push_back({b, c, d});
         }
+    extend(mesh.corner_uvs, mesh.num_triangles(), {});
+    if (!mesh.triangle_materials.empty()) {
+        mesh.triangle_materials.resize(mesh.num_triangles(),
+                                       static_cast<std::uint32_t>(mesh.materials.size()));
+        mesh.materials.push_back({.name = "floor"});
+    }
+    if (mesh.triangle_groups.empty()) {
+        mesh.groups = {"mesh"};
+        mesh.triangle_groups.assign(first_triangle, 0);
+    }
+    const auto group = std::find(mesh.groups.begin(), mesh.groups.end(), "floor") - mesh.groups.begin();
+    if (static_cast<std::size_t>(group) == mesh.groups.size())
+        mesh.groups.emplace_back("floor");
+    mesh.triangle_groups.resize(mesh.num_triangles(), static_cast<std::uint32_t>(group));
 }
 
 } // namespace relumine::mesh

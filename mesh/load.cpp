@@ -1,6 +1,7 @@
 #include "mesh/load.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <new>
 #include <stdexcept>
@@ -14,9 +15,12 @@ namespace relumine::mesh {
 
 namespace {
 
-PolygonSoup read_soup(const std::string& extension, std::span<const std::byte> bytes) {
+PolygonSoup read_soup(const std::filesystem::path& path, const std::string& extension,
+                      std::span<const std::byte> bytes) {
     if (extension == ".obj")
-        return read_obj(bytes);
+        return read_obj(bytes, path.parent_path());
+    if (extension == ".gltf" || extension == ".glb")
+        return read_gltf(bytes, path.parent_path());
     if (extension == ".off")
         return read_off(bytes);
     if (extension == ".ply")
@@ -30,9 +34,11 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
-    if (extension != ".obj" && extension != ".off" && extension != ".ply" && extension != ".stl")
-        throw std::runtime_error(fmt::format("{}: expected a mesh file (.obj, .off, .ply or .stl), got '{}'",
-                                             path.string(), extension));
+    constexpr std::array<std::string_view, 6> Extensions = {".glb", ".gltf", ".obj", ".off", ".ply", ".stl"};
+    if (std::find(Extensions.begin(), Extensions.end(), extension) == Extensions.end())
+        throw std::runtime_error(
+            fmt::format("{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
+                        path.string(), extension));
     // Opening a pipe would wait for someone to write into it.
     std::error_code error;
     if (const auto status = std::filesystem::status(path, error);
@@ -40,7 +46,7 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
         throw std::runtime_error(fmt::format("{}: expected a regular file, got another kind", path.string()));
     const std::vector<std::byte> bytes = files::read(path);
     try {
-        return to_mesh(read_soup(extension, bytes), normals);
+        return to_mesh(read_soup(path, extension, bytes), normals);
     } catch (const std::bad_alloc&) {
         throw std::runtime_error(fmt::format("{}: expected a mesh that fits into memory, got {} bytes",
                                              path.string(), bytes.size()));

@@ -1,4 +1,4 @@
-// Mesh files in: OBJ, PLY, OFF, STL.
+// Mesh files in: OBJ with MTL, glTF, PLY, OFF, STL.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,13 @@ enum class NormalSource {
     Smooth, ///< always recomputed from the faces
 };
 
-/// Reads a mesh. The format is told by the extension (.obj .ply .off .stl, any case). Vertices keep the file's count
+/// Reads a mesh. The format is told by the extension (.obj .gltf .glb .ply .off .stl, any case). Vertices keep the file's count
 /// and order (STL, which has no vertices, is welded exactly); polygons are triangulated, concave ones included, n corners into
 /// n - 2 triangles, degenerate ones as well. Faces of one or two corners are skipped.
 /// Colours come as the file has them, bytes divided by 255, without alpha; those of faces are skipped. Colours and uvs are
-/// left out where some are not finite, or where a vertex has none or several (uvs of OBJ).
+/// left out where some are not finite. OBJ whose vertices have several uvs, or none, has corner_uvs instead.
+/// Materials, groups and textures come with OBJ and glTF (docs/materials.md). Material libraries and images that are not there do
+/// not stop the load: TriangleMesh::missing has their names. Those that are there and broken do.
 /// Throws std::runtime_error "path: expected X, got Y" when the file cannot be read, has no face of three corners, an index
 /// out of range, a position that is not finite, or declares more or less than it holds.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path, NormalSource normals = NormalSource::File);

@@ -1,4 +1,4 @@
-// Wavefront OBJ: v (with colours), vt, vn and f; everything else in the format (groups, materials, lines, curves) is skipped.
+// Wavefront OBJ: v (with colours), vt, vn, f, o, g, mtllib and usemtl; everything else in the format (lines, curves) is skipped.
 //
 // Our own reader, since no library in Debian reads OBJ without silent changes: OpenMesh drops vertices with an unreadable or
 // non-finite number (later indices then mean other vertices) and faces with a continued line; tinyobjloader reads such numbers
@@ -7,11 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
+#include "mesh/mtl_reader.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/text_reader.h"
 
@@ -30,7 +34,8 @@ struct Corner {
 
 class ObjReader {
 public:
-    explicit ObjReader(std::string_view text) : reader_(text, '#') {}
+    ObjReader(std::string_view text, const std::filesystem::path& folder)
+        : reader_(text, '#'), folder_(folder), library_(folder) {}
     PolygonSoup read();
 
 private:
@@ -38,13 +43,23 @@ private:
     void read_vertex();
     void read_uv();
     void read_face();
+    void read_libraries();
+    void begin_group();
+    [[nodiscard]] std::string rest_of_statement() const;
     [[nodiscard]] std::uint32_t index(std::string_view word, std::size_t count) const;
     [[nodiscard]] Corner corner(std::string_view word) const;
     void check_indices();
     void sum_normals();
     void gather_uvs();
+    void gather_corner_uvs();
+    void gather_materials();
 
     TextReader reader_;
+    std::filesystem::path folder_;
+    MtlLibrary library_;
+    std::vector<std::string> used_materials_; ///< distinct, in the order of use
+    std::map<std::string, std::uint32_t> material_indices_, group_indices_;
+    std::uint32_t material_ = NoIndex, group_ = NoIndex; ///< of the faces that follow
     std::vector<std::string_view> words_;
     PolygonSoup soup_;
     std::vector<glm::vec2> uvs_;
@@ -116,6 +131,33 @@ void ObjReader::read_face() {
         soup_.corners.push_back(corners_.back().position);
     }
     soup_.end_face();
+    soup_.face_materials.push_back(material_);
+    soup_.face_groups.push_back(group_);
+}
+
+std::string ObjReader::rest_of_statement() const {
+    return fmt::format("{}", fmt::join(words_.begin() + 1, words_.end(), " "));
+}
+
+/// One name with blanks, or several names: both occur.
+void ObjReader::read_libraries() {
+    const std::string whole = rest_of_statement();
+    if (words_.size() == 2 || !find_file(folder_, whole).empty()) {
+        library_.read(whole);
+        return;
+    }
+    for (std::size_t i = 1; i < words_.size(); ++i)
+        library_.read(std::string(words_[i]));
+}
+
+/// Objects and groups alike: the newest o or g names the faces that follow.
+void ObjReader::begin_group() {
+    const std::string name = words_.size() > 1 ? rest_of_statement() : std::string("default");
+    const auto [place, is_new] =
+        group_indices_.try_emplace(name, static_cast<std::uint32_t>(soup_.groups.size()));
+    if (is_new)
+        soup_.groups.push_back(name);
+    group_ = place->second;
 }
 
 /// Files that refer to texture coordinates or normals but have none at all are common and lose nothing but these.
@@ -165,6 +207,48 @@ void ObjReader::gather_uvs() {
         soup_.uvs.push_back(uv.value_or(glm::vec2(0.0f)));
 }
 
+/// Where the corners of one vertex have several: each corner has its own, (0, 0) where it has none.
+void ObjReader::gather_corner_uvs() {
+    if (!soup_.uvs.empty() || uvs_.empty())
+        return;
+    soup_.corner_uvs.reserve(corners_.size());
+    for (const Corner& corner : corners_)
+        soup_.corner_uvs.push_back(corner.uv == NoIndex ? glm::vec2(0.0f) : uvs_[corner.uv]);
+}
+
+/// Libraries may follow the faces, so names become materials only now. Faces before the first usemtl or o have "default".
+void ObjReader::gather_materials() {
+    if (used_materials_.empty()) {
+        soup_.face_materials.clear();
+    } else {
+        std::vector<std::uint32_t> indices;
+        for (const std::string& name : used_materials_)
+            indices.push_back(library_.index_of(name));
+        for (std::uint32_t& material : soup_.face_materials) {
+            if (material == NoIndex) {
+                material = static_cast<std::uint32_t>(indices.size());
+                indices.push_back(static_cast<std::uint32_t>(library_.materials.size()));
+                library_.materials.push_back({.name = "default"});
+                std::replace(soup_.face_materials.begin(), soup_.face_materials.end(), NoIndex, material);
+            }
+            material = indices[material];
+        }
+        soup_.materials = std::move(library_.materials);
+        soup_.textures = std::move(library_.textures);
+    }
+    soup_.missing = std::move(library_.missing);
+    if (soup_.groups.empty()) {
+        soup_.face_groups.clear();
+    } else if (std::find(soup_.face_groups.begin(), soup_.face_groups.end(), NoIndex) !=
+               soup_.face_groups.end()) {
+        group_indices_.try_emplace("default", static_cast<std::uint32_t>(soup_.groups.size()));
+        if (group_indices_.at("default") == soup_.groups.size())
+            soup_.groups.emplace_back("default");
+        std::replace(soup_.face_groups.begin(), soup_.face_groups.end(), NoIndex,
+                     group_indices_.at("default"));
+    }
+}
+
 PolygonSoup ObjReader::read() {
     while (next_statement()) {
         const std::string_view keyword = words_[0];
@@ -179,10 +263,23 @@ PolygonSoup ObjReader::read() {
                                   reader_.number(words_[3]));
         } else if (keyword == "f" || keyword == "fo") // fo: faces in files of the eighties
             read_face();
+        else if (keyword == "o" || keyword == "g")
+            begin_group();
+        else if (keyword == "mtllib")
+            read_libraries();
+        else if (keyword == "usemtl") {
+            const auto [place, is_new] = material_indices_.try_emplace(
+                rest_of_statement(), static_cast<std::uint32_t>(used_materials_.size()));
+            if (is_new)
+                used_materials_.push_back(place->first);
+            material_ = place->second;
+        }
     }
     check_indices();
     sum_normals();
     gather_uvs();
+    gather_corner_uvs();
+    gather_materials();
     if (soup_.colors.size() != soup_.positions.size())
         soup_.colors.clear();
     normalize_text_colors(soup_.colors);
@@ -191,8 +288,8 @@ PolygonSoup ObjReader::read() {
 
 } // namespace
 
-PolygonSoup read_obj(std::span<const std::byte> bytes) {
-    return ObjReader(as_text(bytes)).read();
+PolygonSoup read_obj(std::span<const std::byte> bytes, const std::filesystem::path& folder) {
+    return ObjReader(as_text(bytes), folder).read();
 }
 
 } // namespace relumine::mesh

@@ -34,21 +34,34 @@ void check(const PolygonSoup& soup) {
                 fmt::format("expected vertex indices below {}, got {}", num_vertices, vertex));
 }
 
-std::vector<Triangle> triangulate(const PolygonSoup& soup) {
-    std::vector<Triangle> triangles;
-    triangles.reserve(soup.face_ends.size());
+/// Cuts the faces; each triangle takes its corners' uvs, its face's material and its group along.
+void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
+    mesh.triangles.reserve(soup.face_ends.size());
     Triangulator triangulator(soup.positions);
+    std::vector<std::array<std::uint32_t, 3>> cut;
     std::size_t begin = 0;
-    for (const std::size_t end : soup.face_ends) {
+    for (std::size_t face = 0; face < soup.face_ends.size(); ++face) {
+        const std::size_t end = soup.face_ends[face];
+        cut.clear();
         if (end - begin >= 3)
-            triangulator.append(std::span(soup.corners).subspan(begin, end - begin), triangles);
+            triangulator.cut(std::span(soup.corners).subspan(begin, end - begin), cut);
+        for (const auto& [a, b, c] : cut) {
+            mesh.triangles.push_back(
+                {soup.corners[begin + a], soup.corners[begin + b], soup.corners[begin + c]});
+            if (!soup.corner_uvs.empty())
+                mesh.corner_uvs.push_back(
+                    {soup.corner_uvs[begin + a], soup.corner_uvs[begin + b], soup.corner_uvs[begin + c]});
+            if (!soup.face_materials.empty())
+                mesh.triangle_materials.push_back(soup.face_materials[face]);
+            if (!soup.face_groups.empty())
+                mesh.triangle_groups.push_back(soup.face_groups[face]);
+        }
         begin = end;
     }
-    if (triangles.empty())
+    if (mesh.triangles.empty())
         throw std::runtime_error(
             fmt::format("expected faces with three or more corners, got {} vertices and {} faces",
                         soup.positions.size(), soup.face_ends.size()));
-    return triangles;
 }
 
 /// Makes the normals unit length. False where a vertex of some face has none that is usable.
@@ -72,19 +85,27 @@ bool normalize_normals(TriangleMesh& mesh) {
 TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     check(soup);
     TriangleMesh mesh;
-    mesh.triangles = triangulate(soup);
+    triangulate(soup, mesh);
     mesh.positions = std::move(soup.positions);
     mesh.normals = std::move(soup.normals);
     mesh.colors = std::move(soup.colors);
     mesh.uvs = std::move(soup.uvs);
+    mesh.materials = std::move(soup.materials);
+    mesh.groups = std::move(soup.groups);
+    mesh.textures = std::move(soup.textures);
+    mesh.missing = std::move(soup.missing);
     if (source == NormalSource::Smooth || mesh.normals.empty() || !normalize_normals(mesh))
         mesh.normals = smooth_normals(mesh);
     if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), is_finite))
         mesh.colors.clear();
-    if (!std::all_of(mesh.uvs.begin(), mesh.uvs.end(), [](const glm::vec2& uv) {
-            return is_finite({uv, 0.0f});
-        }))
+    const auto is_finite_uv = [](const glm::vec2& uv) {
+        return is_finite({uv, 0.0f});
+    };
+    if (!std::all_of(mesh.uvs.begin(), mesh.uvs.end(), is_finite_uv))
         mesh.uvs.clear();
+    if (!std::all_of(mesh.corner_uvs.begin(), mesh.corner_uvs.end(),
+                     [&](const auto& uvs) { return std::all_of(uvs.begin(), uvs.end(), is_finite_uv); }))
+        mesh.corner_uvs.clear();
     return mesh;
 }
 

@@ -3,7 +3,9 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -21,6 +23,14 @@ struct PolygonSoup {
     std::vector<glm::vec3> normals;     ///< [num_vertices], any length, or empty
     std::vector<glm::vec3> colors;      ///< [num_vertices], or empty
     std::vector<glm::vec2> uvs;         ///< [num_vertices], or empty
+    std::vector<glm::vec2> corner_uvs;  ///< parallel to `corners`, or empty
+
+    std::vector<std::uint32_t> face_materials; ///< [num_faces], indices into materials; or empty
+    std::vector<std::uint32_t> face_groups;    ///< [num_faces], indices into groups; or empty
+    std::vector<Material> materials;
+    std::vector<std::string> groups;
+    std::vector<Texture> textures;
+    std::vector<std::string> missing; ///< as TriangleMesh has it
 
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }
@@ -31,8 +41,11 @@ struct PolygonSoup {
 [[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source);
 
 /// The readers, one per format, of a whole file's bytes. They throw std::runtime_error "expected X, got Y" (load() puts
-/// the path in front), never read outside `bytes`, and allocate no more than a small multiple of its size.
-[[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes);
+/// the path in front), never read outside `bytes`, and allocate no more than a small multiple of its size. Files that a file
+/// names are looked for from its `folder` on. What glTF repeats (a mesh of many nodes) is repeated.
+[[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder);
+[[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
+                                   const std::filesystem::path& folder = {});
 [[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);
 [[nodiscard]] PolygonSoup read_ply(std::span<const std::byte> bytes);
 [[nodiscard]] PolygonSoup read_stl(std::span<const std::byte> bytes);

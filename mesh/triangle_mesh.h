@@ -4,10 +4,14 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+
+#include "mesh/material.h"
+#include "mesh/texture.h"
 
 namespace relumine::mesh {
 
@@ -23,6 +27,16 @@ struct TriangleMesh {
         normals; ///< [num_vertices], unit length, or zero where a vertex has no face with an area
     std::vector<glm::vec3> colors; ///< [num_vertices] linear RGB, or empty
     std::vector<glm::vec2> uvs;    ///< [num_vertices], or empty
+
+    std::vector<std::array<glm::vec2, 3>>
+        corner_uvs; ///< [num_triangles], instead of uvs where a vertex has several (seams); or empty
+    std::vector<Material> materials; ///< in the file's order, or empty
+    std::vector<std::uint32_t>
+        triangle_materials;                     ///< [num_triangles], every one < materials.size(); or empty
+    std::vector<std::string> groups;            ///< names of the file's objects or groups, distinct; or empty
+    std::vector<std::uint32_t> triangle_groups; ///< [num_triangles], every one < groups.size(); or empty
+    std::vector<Texture> textures;              ///< of the materials
+    std::vector<std::string> missing; ///< material and image files that the file names and that are not there
 
     [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
     [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }

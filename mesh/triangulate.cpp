@@ -103,9 +103,18 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
 }
 
 void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {
+    const std::size_t first = triangles.size();
+    cut(polygon, triangles);
+    for (std::size_t i = first; i < triangles.size(); ++i)
+        for (std::uint32_t& corner : triangles[i])
+            corner = polygon[corner];
+}
+
+void Triangulator::cut(std::span<const std::uint32_t> polygon,
+                       std::vector<std::array<std::uint32_t, 3>>& triangles) {
     if (polygon.size() == 3 || !project(polygon)) {
-        for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-            triangles.push_back({polygon[0], polygon[i], polygon[i + 1]});
+        for (std::uint32_t i = 1; i + 1 < polygon.size(); ++i)
+            triangles.push_back({0, i, i + 1});
         return;
     }
     find_reflex_corners();
@@ -129,7 +138,7 @@ void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Tr
         const std::uint32_t previous = corners_[corner].previous;
         const std::uint32_t next = corners_[corner].next;
         if (is_ear(corner, kind)) {
-            triangles.push_back({polygon[previous], polygon[corner], polygon[next]});
+            triangles.push_back({previous, corner, next});
             corners_[previous].next = next;
             corners_[next].previous = previous;
             corners_[corner].clipped = true;

@@ -22,9 +22,12 @@ public:
     /// `positions` must outlive the triangulator.
     explicit Triangulator(std::span<const glm::vec3> positions) : positions_(positions) {}
 
-    /// Appends the triangles of one polygon of at least three corners, all of them valid indices. Throws
-    /// std::runtime_error for polygons of many thousand corners (self-crossing ones, above all) that would take
-    /// minutes to cut.
+    /// Appends the triangles of one polygon of at least three corners, all of them valid indices, as places in `polygon`:
+    /// a corner keeps what belongs to it. Throws std::runtime_error for polygons of many thousand corners (self-crossing
+    /// ones, above all) that would take minutes to cut.
+    void cut(std::span<const std::uint32_t> polygon, std::vector<std::array<std::uint32_t, 3>>& triangles);
+
+    /// The same, as indices of vertices.
     void append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles);
 
 private:

@@ -10,15 +10,23 @@ namespace relumine::prt {
 
 namespace {
 
-/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v). sin2: squared sine of the angle
-/// between normal and half vector; cos^2 alone loses it to cancellation where alpha is small.
+/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v) times n.w: glTF 2.0, Appendix
+/// B.3.2. sin2: squared sine of the angle between normal and half vector; cos^2 alone loses it to cancellation where alpha is
+/// small. The quotient is ordered so that no cosine, however small, makes it infinite.
 float ggx(float alpha, float sin2, float n_w, float n_v) {
     const float a2 = alpha * alpha;
     const float d = sin2 + (1.0f - sin2) * a2; // cos^2 (a2 - 1) + 1
     const float distribution = a2 / (std::numbers::pi_v<float> * d * d);
-    const float visibility = 0.5f / (n_w * std::sqrt(n_v * n_v * (1.0f - a2) + a2) +
-                                     n_v * std::sqrt(n_w * n_w * (1.0f - a2) + a2));
-    return distribution * visibility;
+    const float mask_v = std::sqrt(n_v * n_v * (1.0f - a2) + a2);
+    const float mask_w = std::sqrt(n_w * n_w * (1.0f - a2) + a2);
+    return distribution * 0.5f / (mask_v + n_v / n_w * mask_w);
+}
+
+/// cos^exponent of the angle with that sine: where it is small, log1p keeps what 1 - sin2 would round away.
+float cosine_power(float sin2, float exponent) {
+    if (exponent == 0.0f)
+        return 1.0f;
+    return std::exp(0.5f * exponent * (sin2 < 0.5f ? std::log1p(-sin2) : std::log(1.0f - sin2)));
 }
 
 } // namespace
@@ -27,10 +35,14 @@ float ggx_alpha(float roughness) {
     return std::max(roughness * roughness, 1e-3f);
 }
 
+float blinn_phong_exponent(float exponent) {
+    return std::clamp(exponent, 0.0f, 1e6f);
+}
+
 /// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less of all other.
 float blinn_phong_norm(float exponent) {
-    return (exponent + 2.0f) * (exponent + 4.0f) /
-           (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * exponent) + exponent));
+    const float e = blinn_phong_exponent(exponent);
+    return (e + 2.0f) * (e + 4.0f) / (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * e) + e));
 }
 
 Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye,
@@ -49,12 +61,13 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, con
     const glm::vec3 across = glm::cross(normal, half);
     const float sin2 = std::min(glm::dot(across, across) / length2, 1.0f);
     if (surface.highlight == Highlight::BlinnPhong) {
-        lobes.specular = blinn_phong_norm(surface.shape) * std::pow(1.0f - sin2, 0.5f * surface.shape) * n_w;
+        lobes.specular =
+            blinn_phong_norm(surface.shape) * cosine_power(sin2, blinn_phong_exponent(surface.shape)) * n_w;
         return lobes;
     }
     const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);
     const float c = std::pow(1.0f - v_h, 5.0f);
-    lobes.specular = ggx(ggx_alpha(surface.shape), sin2, n_w, n_v) * n_w;
+    lobes.specular = ggx(ggx_alpha(surface.shape), sin2, n_w, n_v);
     lobes.diffuse_grazing = c * lobes.diffuse;
     lobes.specular_grazing = c * lobes.specular;
     return lobes;

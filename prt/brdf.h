@@ -25,11 +25,15 @@ struct Lobes {
 /// wider than the lobe and float runs out of digits.
 [[nodiscard]] float ggx_alpha(float roughness);
 
-/// Factor of (n.h)^exponent in normalised Blinn-Phong.
+/// The exponent of Blinn-Phong that is evaluated: at most 1e6, as sharp as ggx_alpha() at its least; at least 0, which is Lambert.
+[[nodiscard]] float blinn_phong_exponent(float exponent);
+
+/// Factor of (n.h)^exponent in normalised Blinn-Phong: reflects all that comes along the normal, and less of all other light.
 [[nodiscard]] float blinn_phong_norm(float exponent);
 
 /// The lobes for unit vectors n (normal), to_eye and w (to the light). All zero where the light is below the horizon; only D where the eye
-/// is, or for Highlight::None.
+/// is, or for Highlight::None. Always finite. D and S each reflect at most what arrives, so Blinn-Phong does where albedo + Ks <= 1.
+/// glTF's sum does not at grazing views: its diffuse part ignores what the highlight takes (white under F0 = 0.04: up to 1.85).
 [[nodiscard]] Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
                                           const glm::vec3& to_eye, const glm::vec3& w);
 

@@ -109,9 +109,10 @@ private:
 
     [[nodiscard]] Vector blinn_phong() const {
         const Tag d;
-        const auto cos2 = hn::Max(hn::Sub(hn::Set(d, 1.0f), nxh_), hn::Set(d, 1e-30f));
-        const auto power =
-            hn::Exp(d, hn::Mul(hn::Mul(hn::Set(d, 0.5f), load(surfaces_.exponent)), hn::Log(d, cos2)));
+        // log1p keeps what 1 - sin^2 would round away.
+        const auto sin2 = hn::Min(nxh_, hn::Set(d, 1.0f - 6e-8f));
+        const auto log_cos = hn::Mul(hn::Set(d, 0.5f), hn::Log1p(d, hn::Neg(sin2)));
+        const auto power = hn::Exp(d, hn::Mul(load(surfaces_.exponent), log_cos));
         return hn::Mul(hn::Mul(load(surfaces_.factor), power), n_w_);
     }
 
@@ -157,7 +158,7 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
         alpha_squared[lane] = alpha * alpha;
     } else if (surface.highlight == Highlight::BlinnPhong) {
         blinn_phong |= bit;
-        exponent[lane] = surface.shape;
+        exponent[lane] = blinn_phong_exponent(surface.shape);
         factor[lane] = blinn_phong_norm(surface.shape);
     }
 }

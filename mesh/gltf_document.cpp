@@ -1,0 +1,271 @@
+#include "mesh/gltf_document.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "files/output_file.h"
+#include "mesh/mtl_reader.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh::gltf {
+
+namespace {
+
+[[noreturn]] void fail(std::string_view expected, std::string_view got) {
+    throw std::runtime_error(fmt::format("expected {}, got {}", expected, got));
+}
+
+/// For an error message. Not of arrays and objects: they may be nested as deep as the file is long.
+std::string described(const Json& value) {
+    return value.is_structured() ? std::string(value.type_name())
+                                 : excerpt(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+}
+
+[[noreturn]] void fail(const char* key, std::string_view expected, const Json& got) {
+    fail(fmt::format("{} as \"{}\"", expected, key), described(got));
+}
+
+/// Null where the object does not have it.
+const Json* find(const Json& object, const char* key) {
+    if (!object.is_object())
+        fail(fmt::format("an object with \"{}\"", key), object.type_name());
+    const auto found = object.find(key);
+    return found == object.end() ? nullptr : &*found;
+}
+
+const Json& require(const Json& object, const char* key) {
+    const Json* value = find(object, key);
+    if (value == nullptr)
+        fail(fmt::format("\"{}\"", key), "none");
+    return *value;
+}
+
+std::uint32_t word(std::span<const std::byte> bytes, std::size_t offset) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, bytes.data() + offset, sizeof value);
+    return value;
+}
+
+/// RFC 4648; '=' ends it.
+std::vector<std::byte> base64(std::string_view text) {
+    std::vector<std::byte> bytes;
+    bytes.reserve(text.size() / 4 * 3);
+    std::uint32_t bits = 0;
+    int num_bits = 0;
+    while (text.ends_with('='))
+        text.remove_suffix(1);
+    constexpr std::string_view Alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::array<std::int8_t, 256> values{};
+    values.fill(-1);
+    for (std::size_t i = 0; i < Alphabet.size(); ++i)
+        values[static_cast<unsigned char>(Alphabet[i])] = static_cast<std::int8_t>(i);
+    for (const char c : text) {
+        const int value = values[static_cast<unsigned char>(c)];
+        if (value < 0)
+            fail("base64 in a data URI", excerpt(std::string_view(&c, 1)));
+        bits = (bits << 6u | static_cast<std::uint32_t>(value)) & 0xffffu;
+        num_bits += 6;
+        if (num_bits >= 8) {
+            num_bits -= 8;
+            bytes.push_back(static_cast<std::byte>(bits >> static_cast<unsigned>(num_bits) & 0xffu));
+        }
+    }
+    return bytes;
+}
+
+/// %20 and the like.
+std::string percent_decoded(std::string_view uri) {
+    const auto digit = [](char c) {
+        return c >= '0' && c <= '9'   ? c - '0'
+               : c >= 'a' && c <= 'f' ? c - 'a' + 10
+               : c >= 'A' && c <= 'F' ? c - 'A' + 10
+                                      : -1;
+    };
+    std::string result;
+    for (std::size_t i = 0; i < uri.size(); ++i) {
+        if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+            result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
+            i += 2;
+        } else {
+            result += uri[i];
+        }
+    }
+    if (result.find('\0') != std::string::npos)
+        fail("a file name in a URI", excerpt(result));
+    return result;
+}
+
+} // namespace
+
+std::uint64_t whole_value(const Json& value, const char* name) {
+    // Sums and products of two such numbers stay far from 2^64.
+    constexpr double Max = 1e12;
+    if (!value.is_number() || !(value.get<double>() >= 0.0 && value.get<double>() <= Max) ||
+        value.get<double>() != std::floor(value.get<double>()))
+        fail(name, "a whole number", value);
+    return static_cast<std::uint64_t>(value.get<double>());
+}
+
+std::uint64_t whole(const Json& object, const char* key, std::optional<std::uint64_t> fallback) {
+    const Json* value = fallback ? find(object, key) : &require(object, key);
+    return value == nullptr ? *fallback : whole_value(*value, key);
+}
+
+double number(const Json& object, const char* key, std::optional<double> fallback) {
+    const Json* value = fallback ? find(object, key) : &require(object, key);
+    if (value == nullptr)
+        return *fallback;
+    if (!value->is_number() || !std::isfinite(value->get<double>()))
+        fail(key, "a number", *value);
+    return value->get<double>();
+}
+
+float fraction(const Json& object, const char* key, float fallback) {
+    const double value = number(object, key, double{fallback});
+    if (!(value >= 0.0 && value <= 1.0))
+        fail(key, "a number of 0 to 1", require(object, key));
+    return static_cast<float>(value);
+}
+
+std::string text(const Json& object, const char* key, const std::string& fallback) {
+    const Json* value = find(object, key);
+    if (value == nullptr)
+        return fallback;
+    if (!value->is_string())
+        fail(key, "text", *value);
+    return value->get<std::string>();
+}
+
+std::vector<double> numbers(const Json& object, const char* key, std::vector<double> fallback) {
+    const Json* value = find(object, key);
+    if (value == nullptr)
+        return fallback;
+    if (!value->is_array() || value->size() != fallback.size() ||
+        !std::all_of(value->begin(), value->end(),
+                     [](const Json& item) { return item.is_number() && std::isfinite(item.get<double>()); }))
+        fail(key, fmt::format("{} numbers", fallback.size()), *value);
+    return value->get<std::vector<double>>();
+}
+
+const Json& child(const Json& object, const char* key) {
+    static const Json none = Json::object();
+    const Json* value = find(object, key);
+    if (value == nullptr)
+        return none;
+    if (!value->is_structured())
+        fail(key, "an object or an array", *value);
+    return *value;
+}
+
+Document::Document(std::span<const std::byte> file, std::filesystem::path folder)
+    : folder_(std::move(folder)), json_text_(as_text(file)) {
+    if (json_text_.starts_with("glTF"))
+        split_glb(file);
+    try {
+        root_ = Json::parse(json_text_);
+    } catch (const Json::parse_error& error) {
+        fail("glTF's JSON", fmt::format("a syntax error at byte {}", error.byte));
+    } catch (const Json::exception&) {
+        fail("glTF's JSON", "a number out of range");
+    }
+    const std::string version = text(child(root_, "asset"), "version", "none");
+    if (!version.starts_with("2."))
+        fail("glTF version 2", excerpt(version));
+    check_extensions();
+    buffers_.resize(count("buffers"));
+}
+
+/// Header, JSON chunk, binary chunk; what follows is for extensions.
+void Document::split_glb(std::span<const std::byte> file) {
+    if (file.size() < 20)
+        fail("a .glb file of 20 bytes or more", fmt::format("{}", file.size()));
+    if (word(file, 4) != 2)
+        fail("version 2 of .glb", fmt::format("{}", word(file, 4)));
+    if (word(file, 8) > file.size())
+        fail(fmt::format("the {} bytes that the .glb file declares", word(file, 8)),
+             fmt::format("{}", file.size()));
+    file = file.first(std::max<std::size_t>(word(file, 8), 20));
+    constexpr std::uint32_t JsonChunk = 0x4E4F534Au, BinaryChunk = 0x004E4942u;
+    if (word(file, 16) != JsonChunk || word(file, 12) > file.size() - 20)
+        fail("a JSON chunk first in the .glb file",
+             fmt::format("{} bytes of type {:08x}", word(file, 12), word(file, 16)));
+    json_text_ = as_text(file.subspan(20, word(file, 12)));
+    file = file.subspan(20 + std::size_t{word(file, 12)});
+    if (file.size() < 8 || word(file, 4) != BinaryChunk)
+        return;
+    if (word(file, 0) > file.size() - 8)
+        fail(fmt::format("a binary chunk of {} bytes", word(file, 0)), fmt::format("{}", file.size() - 8));
+    chunk_ = file.subspan(8, word(file, 0));
+}
+
+void Document::check_extensions() const {
+    constexpr std::array<std::string_view, 5> Understood = {"KHR_materials_unlit", "KHR_texture_transform",
+                                                            "KHR_mesh_quantization", "KHR_lights_punctual",
+                                                            "KHR_materials_variants"};
+    for (const Json& name : child(root_, "extensionsRequired"))
+        if (!name.is_string() ||
+            std::find(Understood.begin(), Understood.end(), name.get<std::string>()) == Understood.end())
+            fail("extensions that are understood", described(name));
+}
+
+const Json& Document::element(const char* array, std::uint64_t index) const {
+    const Json& elements = child(root_, array);
+    if (elements.size() > 0 && !elements.is_array())
+        fail(fmt::format("\"{}\" as an array", array), "an object");
+    if (index >= elements.size())
+        fail(fmt::format("indices of \"{}\" below {}", array, elements.size()), fmt::format("{}", index));
+    return elements[index];
+}
+
+std::span<const std::byte> Document::buffer(std::uint64_t index) {
+    const Json& description = element("buffers", index);
+    const std::uint64_t num_bytes = whole(description, "byteLength");
+    const std::string uri = text(description, "uri");
+    std::span<const std::byte> bytes;
+    if (uri.empty()) {
+        if (index != 0 || !chunk_)
+            fail(fmt::format("a uri of buffer {}", index), "none");
+        bytes = *chunk_;
+    } else {
+        std::optional<std::vector<std::byte>>& loaded = buffers_[index];
+        if (!loaded)
+            loaded = fetch(uri);
+        if (!loaded)
+            fail(fmt::format("the file {} beside it", excerpt(uri)), "none");
+        bytes = *loaded;
+    }
+    if (bytes.size() < num_bytes)
+        fail(fmt::format("a buffer {} of {} bytes", index, num_bytes), fmt::format("{}", bytes.size()));
+    return bytes.first(num_bytes);
+}
+
+std::span<const std::byte> Document::view(std::uint64_t index) {
+    const Json& description = element("bufferViews", index);
+    const std::span<const std::byte> bytes = buffer(whole(description, "buffer"));
+    const std::uint64_t offset = whole(description, "byteOffset", 0);
+    const std::uint64_t length = whole(description, "byteLength");
+    if (offset > bytes.size() || length > bytes.size() - offset)
+        fail(fmt::format("buffer view {} inside its buffer of {} bytes", index, bytes.size()),
+             fmt::format("{} bytes at {}", length, offset));
+    return bytes.subspan(offset, length);
+}
+
+std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) const {
+    if (uri.starts_with("data:")) {
+        const std::size_t comma = uri.find(',');
+        if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+            fail("base64 in a data URI", excerpt(uri));
+        return base64(std::string_view(uri).substr(comma + 1));
+    }
+    const std::filesystem::path path = find_file(folder_, percent_decoded(uri));
+    if (path.empty())
+        return std::nullopt;
+    return files::read(path);
+}
+
+} // namespace relumine::mesh::gltf
