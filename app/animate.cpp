@@ -55,6 +55,8 @@ public:
           writer_(options.output, lit_) {}
 
     void run() {
+        if (pattern_)
+            options_.output.check_fits(lit_.scene());
         seconds_load_scene_ = watch_.lap();
         session_.poll();
         choose_frames();
@@ -62,7 +64,7 @@ public:
             cluster_frames();
         std::optional<relight::NpyFrames> vertices;
         if (!options_.vertices.empty())
-            vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().mesh.num_vertices());
+            vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().receivers.size());
         const auto progress = session_.progress("frames");
         cubemap::ReadAhead<PreparedFrame> ahead(todo_.size(),
                                                 [this](std::size_t i) { return prepare(todo_[i]); });

@@ -58,7 +58,7 @@ void AnimateOptions::add_to(CLI::App& command) {
         ->description("what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
                       "(numbers), .ply, .glb");
     command.add_option("--vertices", vertices,
-                       "all frames in one .npy [frames x vertices x 3]: radiance times albedo");
+                       "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
     command.add_option(
         "--measure", reference,
         "another --vertices file of the same frames: says how much this one flickers against it");
@@ -127,11 +127,12 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all = fmt::format(
-        "{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {}", RELUMINE_VERSION,
-        FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout, environment.face_resolution,
-        environment.fix, environment.rotate_degrees, method, bound, num_lights, seed, output.path,
-        output.albedo, output.exposure_ev, output.eye, output.target, output.fov_degrees, output.size);
+    std::string all =
+        fmt::format("{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {} {} {}", RELUMINE_VERSION,
+                    FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
+                    environment.face_resolution, environment.fix, environment.rotate_degrees, method, bound,
+                    num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye,
+                    output.target, output.fov_degrees, output.size, output.transparent, output.gutter);
     if (method == "clusters") { // every frame depends on all
         all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
         for (const cubemap::FrameFile& frame : sequence.files())

@@ -116,6 +116,7 @@ public:
           editor_(lit_.scene().transfer, lit_.shadow_rays()) {}
 
     void run() {
+        check_receivers();
         LoadedEnvironment environment = load_environment(options_.environment, session_);
         const relight::RelightTimes full = editor_.set_base(std::move(environment.map));
         seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
@@ -136,6 +137,15 @@ public:
     }
 
 private:
+    void check_receivers() const {
+        if (!options_.who.empty()) // a map, whatever the receivers are
+            return;
+        OutputOptions output = options_.output;
+        if (options_.lit_by.empty() && !layers_.frames.empty())
+            output.path = numbered(output.path, 0);
+        output.check_fits(lit_.scene());
+    }
+
     void write_output() {
         if (!options_.who.empty())
             save_who();
@@ -186,10 +196,10 @@ private:
         }
     }
 
-    /// The environment weighted by what it gives to the vertex nearest to the position.
+    /// The environment weighted by what it gives to the receiver nearest to the position.
     void save_who() const {
         const glm::vec3 position = parse_vec3("--who", options_.who);
-        const std::vector<glm::vec3>& positions = lit_.scene().mesh.positions;
+        const std::vector<glm::vec3>& positions = lit_.scene().receivers.positions;
         const auto nearest =
             std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
                 return glm::dot(a - position, a - position) < glm::dot(b - position, b - position);
@@ -197,8 +207,9 @@ private:
         const auto receiver = static_cast<std::uint32_t>(nearest - positions.begin());
         const cubemap::CubeMap map = relight::contribution_map(editor_.relighter(), {&receiver, 1});
         save_map(options_.output.path, map, options_.output.exposure_ev);
-        session_.say(fmt::format("{}: what lights vertex {} ({}, {}, {})", options_.output.path, receiver,
-                                 nearest->x, nearest->y, nearest->z));
+        session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
+                                 prt::receiver_name(lit_.scene().layout), receiver, nearest->x, nearest->y,
+                                 nearest->z));
     }
 
     /// The scene as a region of the environment lights it, with that region behind it.
@@ -280,7 +291,7 @@ void add_edit(CLI::App& program, Session& session) {
     command.add_option("--save-env", options->saved_environment,
                        "write the edited environment: cube .exr or .hdr");
     command.add_option("--who", options->who,
-                       "write what lights the vertex nearest to X,Y,Z instead: a lat-long .exr or .png");
+                       "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
     command
         .add_option("--lit-by", options->lit_by,
                     "write the scene as lit by a region of the environment alone: a layer's name, or "

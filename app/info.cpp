@@ -11,6 +11,7 @@
 #include "app/environment_options.h"
 #include "app/info_environment.h"
 #include "app/output_options.h"
+#include "app/receiver_options.h"
 #include "mesh/load.h"
 #include "prt/scene_file.h"
 
@@ -28,6 +29,25 @@ nlohmann::json array(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
+/// One line more where they are not the vertices.
+void say_receivers(const prt::Scene& scene, const Session& session) {
+    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout)) {
+        const prt::Camera& camera = pixels->camera;
+        session.say(fmt::format("receivers           {} of {}, {:.1f} % of its samples",
+                                scene.receivers.size(), prt::description(scene.layout),
+                                100.0 * static_cast<double>(scene.receivers.size()) /
+                                    static_cast<double>(pixels->num_samples())));
+        session.say(fmt::format("view                from ({}, {}, {}) to ({}, {}, {}), {} degrees",
+                                camera.eye.x, camera.eye.y, camera.eye.z, camera.target.x, camera.target.y,
+                                camera.target.z, camera.fov_degrees));
+    } else if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout)) {
+        session.say(fmt::format("receivers           {} of {}, {:.1f} % of the atlas", scene.receivers.size(),
+                                prt::description(scene.layout),
+                                100.0 * static_cast<double>(scene.receivers.size()) /
+                                    static_cast<double>(texels->num_texels())));
+    }
+}
+
 void describe_scene(const Options& options, const Session& session) {
     const prt::Scene scene = prt::load_scene(options.path);
     const prt::SceneSettings& settings = scene.settings;
@@ -36,6 +56,7 @@ void describe_scene(const Options& options, const Session& session) {
     session.say(fmt::format("scene               {} vertices, {} triangles from {} (xxHash64 {:016x})",
                             scene.mesh.num_vertices(), scene.mesh.num_triangles(), settings.source,
                             settings.source_hash));
+    say_receivers(scene, session);
     session.say(fmt::format("clusters            {}", scene.transfer.num_clusters()));
     session.say(settings.epsilon ? fmt::format("epsilon             {}", *settings.epsilon)
                                  : fmt::format("tolerance           {} 1/sr", settings.tolerance));
@@ -50,6 +71,7 @@ void describe_scene(const Options& options, const Session& session) {
     nlohmann::json result = {{"kind", "scene"},
                              {"vertices", scene.mesh.num_vertices()},
                              {"triangles", scene.mesh.num_triangles()},
+                             {"receivers", scene.receivers.size()},
                              {"clusters", scene.transfer.num_clusters()},
                              {"source", settings.source},
                              {"source_hash", fmt::format("{:016x}", settings.source_hash)},
@@ -62,6 +84,8 @@ void describe_scene(const Options& options, const Session& session) {
         result["epsilon"] = *settings.epsilon;
     else
         result["tolerance"] = settings.tolerance;
+    if (const nlohmann::json layout = layout_json(scene); !layout.empty())
+        result["layout"] = layout;
     session.report(result);
 }
 

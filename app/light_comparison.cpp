@@ -32,8 +32,7 @@ public:
     Comparison(const ComparisonOptions& options, const EnvironmentOptions& environment, Session& session)
         : options_(options), session_(session), lit_({.path = options.scene}),
           map_(cube_map_of(load_image(environment, session), environment)),
-          relighter_(lit_.scene().transfer, lit_.shadow_rays()),
-          receivers_(prt::vertex_receivers(lit_.scene().mesh)),
+          relighter_(lit_.scene().transfer, lit_.shadow_rays()), receivers_(lit_.scene().receivers),
           sample_(relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
         relighter_.set_environment(map_);
         exact_ = relight::exact_radiance(receivers_, sample_, lit_.rays(), map_,
@@ -72,7 +71,7 @@ private:
     LitScene lit_;
     cubemap::CubeMap map_;
     relight::Relighter relighter_;
-    prt::Receivers receivers_;
+    const prt::Receivers& receivers_;
     std::vector<std::uint32_t> sample_;
     std::vector<glm::dvec3> exact_;
 };

@@ -103,7 +103,7 @@ struct Lit {
 
     /// Relative L2 difference of what the lights give to all receivers, traced, from what the environment gives.
     [[nodiscard]] double error(std::span<const lights::DistantLight> list) const {
-        const prt::Receivers receivers = prt::vertex_receivers(scene.scene().mesh);
+        const prt::Receivers& receivers = scene.scene().receivers;
         std::vector<std::uint32_t> all(receivers.size());
         std::iota(all.begin(), all.end(), 0u);
         const std::vector<glm::vec3> under_lights =

@@ -34,6 +34,7 @@ prt::Scene load(const SceneOptions& options) {
             fmt::format("{}: expected a scene file with --clusters-only, got a mesh", options.path));
     prt::Scene scene;
     scene.mesh = mesh::load(options.path);
+    scene.receivers = prt::vertex_receivers(scene.mesh);
     scene.settings.bias = prt::automatic_bias(scene.mesh);
     return scene;
 }
@@ -51,7 +52,7 @@ relight::ShadowRays LitScene::shadow_rays() const {
         settings.epsilon ? *settings.epsilon * std::sqrt(static_cast<float>(scene_.transfer.num_receivers()))
                          : settings.tolerance;
     return {.blockers = &rays_,
-            .positions = scene_.mesh.positions,
+            .positions = scene_.receivers.positions,
             .bias = settings.bias,
             .tolerance = tolerance};
 }

@@ -19,6 +19,7 @@
 #include "mesh/save.h"
 #include "relight/array_file.h"
 #include "relight/picture.h"
+#include "relight/receiver_picture.h"
 
 namespace relumine::app {
 
@@ -61,20 +62,38 @@ std::optional<glm::vec3> parse_albedo(const std::string& text) {
 }
 
 /// Radiance times albedo: one factor for all, or the mesh's own colours.
-std::vector<glm::vec3> coloured(const std::string& albedo, const mesh::TriangleMesh& mesh,
+std::vector<glm::vec3> coloured(const std::string& albedo, const prt::Scene& scene,
                                 std::span<const glm::vec3> radiance) {
     std::vector<glm::vec3> result(radiance.begin(), radiance.end());
     const std::optional<glm::vec3> factor = parse_albedo(albedo);
     if (!factor) {
-        if (mesh.colors.empty())
+        if (scene.mesh.colors.empty())
             throw std::runtime_error("--albedo mesh: expected a mesh with vertex colours, got one without");
+        const std::vector<glm::vec3> colors = prt::colors_at(scene.mesh, scene.receivers);
         for (std::size_t i = 0; i < result.size(); ++i)
-            result[i] *= mesh.colors[i];
+            result[i] *= colors[i];
         return result;
     }
     for (glm::vec3& value : result)
         value *= *factor;
     return result;
+}
+
+bool is_picture(const std::string& extension) {
+    return extension == ".png" || extension == ".exr";
+}
+
+/// What the receivers show: the mesh from the camera of the options, their own view, or their lightmap.
+relight::Picture picture_of(const OutputOptions& options, const LitScene& lit,
+                            std::span<const glm::vec3> colors, const cubemap::CubeMap& environment) {
+    const prt::Scene& scene = lit.scene();
+    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout))
+        return options.transparent ? relight::compose_cut_out(*pixels, colors)
+                                   : relight::compose(*pixels, colors, environment);
+    if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
+        return relight::compose(*texels, colors, options.gutter);
+    return relight::draw(scene.mesh, lit.rays(), colors, environment, camera_of(options, scene.mesh),
+                         parse_size(options.size));
 }
 
 } // namespace
@@ -92,10 +111,16 @@ void OutputOptions::add_to(CLI::App& command) {
     command.add_option("--exposure", exposure_ev, "brighten pictures and colours by this many stops")
         ->check(number_between(-100.0, 100.0))
         ->capture_default_str();
-    command.add_option("--eye", eye, "camera position X,Y,Z (automatic)");
-    command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)");
-    command.add_option("--fov", fov_degrees, "vertical field of view in degrees")->capture_default_str();
-    command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str();
+    camera_options_ = {
+        command.add_option("--eye", eye, "camera position X,Y,Z (automatic)"),
+        command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)"),
+        command.add_option("--fov", fov_degrees, "vertical field of view in degrees")->capture_default_str(),
+        command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str()};
+    command.add_flag("--transparent", transparent,
+                     "scenes of pixels: no environment behind, but alpha (premultiplied in .exr)");
+    command.add_option("--gutter", gutter, "lightmaps: texels filled around the charts")
+        ->check(CLI::Range(0, 16384))
+        ->capture_default_str();
 }
 
 void OutputOptions::check(const std::vector<std::string>& inputs) const {
@@ -112,15 +137,32 @@ void OutputOptions::check(const std::vector<std::string>& inputs) const {
             static_cast<void>(parse_vec3(option, *text));
 }
 
+void OutputOptions::check_fits(const prt::Scene& scene) const {
+    if (transparent && !std::holds_alternative<prt::PixelLayout>(scene.layout))
+        throw std::runtime_error(
+            fmt::format("--transparent: expected a scene whose receivers are pixels, got {}",
+                        prt::description(scene.layout)));
+    if (std::holds_alternative<prt::VertexLayout>(scene.layout))
+        return;
+    const std::string extension = extension_of(path);
+    if (extension == ".ply" || extension == ".glb")
+        throw std::runtime_error(
+            fmt::format("{}: expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'", path,
+                        prt::description(scene.layout), extension));
+    for (const CLI::Option* option : camera_options_)
+        if (option->count() > 0)
+            throw std::runtime_error(
+                fmt::format("{}: expected no camera for a scene whose receivers are {}, got one",
+                            option->get_name(), prt::description(scene.layout)));
+}
+
 void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radiance,
                          const cubemap::CubeMap& environment) const {
     const prt::Scene& scene = lit.scene();
-    std::vector<glm::vec3> colors = coloured(albedo, scene.mesh, radiance);
+    std::vector<glm::vec3> colors = coloured(albedo, scene, radiance);
     const std::string extension = extension_of(path);
-    if (extension == ".png" || extension == ".exr") {
-        const relight::Picture picture = relight::draw(scene.mesh, lit.rays(), colors, environment,
-                                                       camera_of(*this, scene.mesh), parse_size(size));
-        relight::save_picture(path, picture, exposure_ev);
+    if (is_picture(extension)) {
+        relight::save_picture(path, picture_of(*this, lit, colors, environment), exposure_ev);
         return;
     }
     const auto scale = static_cast<float>(std::exp2(exposure_ev));
@@ -135,7 +177,8 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
 void FrameWriter::save(const std::string& path, std::span<const glm::vec3> radiance,
                        const cubemap::CubeMap& environment) {
     const std::string extension = extension_of(path);
-    if (extension != ".png" && extension != ".exr") {
+    const bool on_vertices = std::holds_alternative<prt::VertexLayout>(lit_.scene().layout);
+    if (!is_picture(extension) || !on_vertices) {
         OutputOptions options = options_;
         options.path = path;
         options.save(lit_, radiance, environment);
@@ -145,12 +188,12 @@ void FrameWriter::save(const std::string& path, std::span<const glm::vec3> radia
     if (!view_)
         view_ = std::make_unique<relight::PictureView>(mesh, lit_.rays(), camera_of(options_, mesh),
                                                        parse_size(options_.size));
-    relight::save_picture(path, view_->draw(coloured(options_.albedo, mesh, radiance), environment),
+    relight::save_picture(path, view_->draw(coloured(options_.albedo, lit_.scene(), radiance), environment),
                           options_.exposure_ev);
 }
 
 std::vector<glm::vec3> FrameWriter::values(std::span<const glm::vec3> radiance) const {
-    std::vector<glm::vec3> values = coloured(options_.albedo, lit_.scene().mesh, radiance);
+    std::vector<glm::vec3> values = coloured(options_.albedo, lit_.scene(), radiance);
     const auto scale = static_cast<float>(std::exp2(options_.exposure_ev));
     for (glm::vec3& value : values)
         value *= scale;

@@ -25,15 +25,24 @@ struct OutputOptions {
     std::string target; ///< empty: automatic
     float fov_degrees = 35.0f;
     std::string size = "1024x768";
+    bool transparent = false;  ///< pixel receivers: no environment behind
+    std::uint32_t gutter = 16; ///< texel receivers: texels around the charts
 
     void add_to(CLI::App& command);
 
     /// Refuses what cannot be written, or is one of the inputs, before any work is done.
     void check(const std::vector<std::string>& inputs) const;
 
-    /// Writes by extension: .png .exr pictures, .ply .glb meshes with vertex colours, .npy numbers.
+    /// Refuses outputs and options that the scene's receivers have no use for: meshes of pixels and texels, a camera where
+    /// there is none to choose. Throws std::runtime_error.
+    void check_fits(const prt::Scene& scene) const;
+
+    /// Writes by extension: .png .exr pictures (of texel receivers: their lightmap), .ply .glb meshes with vertex colours, .npy numbers.
     void save(const LitScene& lit, std::span<const glm::vec3> radiance,
               const cubemap::CubeMap& environment) const;
+
+private:
+    std::vector<const CLI::Option*> camera_options_; ///< --eye, --target, --fov, --size
 };
 
 /// Writes many frames of a scene that stands still: what the camera sees is found once.

@@ -10,6 +10,7 @@
 
 #include "app/commands.h"
 #include "app/output_options.h"
+#include "app/receiver_options.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
 #include "prt/ray_scene.h"
@@ -26,6 +27,7 @@ struct Options {
     std::optional<std::uint32_t> floor_vertices;
     float floor_scale = 4.0f;
     std::optional<float> bias;
+    ReceiverOptions receivers;
     prt::PrecomputeOptions precompute;
 };
 
@@ -35,6 +37,7 @@ void run(const Options& options, Session& session) {
     if (std::filesystem::path(options.output).extension() != ".prt")
         throw std::runtime_error(fmt::format("{}: expected a name that ends in .prt", options.output));
     check_output(options.output, {options.mesh});
+    options.receivers.check();
 
     prt::Scene scene;
     scene.mesh = mesh::load(options.mesh, options.normals == "smooth" ? mesh::NormalSource::Smooth
@@ -50,9 +53,12 @@ void run(const Options& options, Session& session) {
     precompute.stop = session.stop();
     precompute.on_progress = session.progress("precompute");
     prt::PrecomputeStatistics statistics;
+    nlohmann::json report = nlohmann::json::object();
     {
         const prt::RayScene rays(scene.mesh);
-        scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, precompute, &statistics);
+        options.receivers.apply(scene, rays, options.mesh, session, report);
+        session.poll();
+        scene.transfer = prt::precompute(scene.receivers, rays, precompute, &statistics);
     }
     session.end_progress();
 
@@ -66,23 +72,29 @@ void run(const Options& options, Session& session) {
                       .source_hash = prt::file_hash(options.mesh)};
     const std::uint64_t file_bytes = prt::save_scene(options.output, scene);
 
+    const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
+    const std::string others = on_vertices ? ""
+                                           : fmt::format(", {} receivers ({})", scene.receivers.size(),
+                                                         prt::description(scene.layout));
     session.say(
-        fmt::format("{}: {} vertices, {} triangles -> {} clusters in {:.1f} s ({:.1f} M rays/s), {:.1f} MB",
-                    options.output, num_vertices, num_triangles, statistics.num_clusters, statistics.seconds,
-                    static_cast<double>(statistics.num_rays) / statistics.seconds * 1e-6,
+        fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({:.1f} M rays/s), {:.1f} MB",
+                    options.output, num_vertices, num_triangles, others, statistics.num_clusters,
+                    statistics.seconds, static_cast<double>(statistics.num_rays) / statistics.seconds * 1e-6,
                     static_cast<double>(file_bytes) * 1e-6));
-    session.report({{"vertices", num_vertices},
-                    {"triangles", num_triangles},
-                    {"clusters", statistics.num_clusters},
-                    {"directions", statistics.num_directions},
-                    {"samples", statistics.num_samples},
-                    {"rays", statistics.num_rays},
-                    {"deepest_level", statistics.deepest_level},
-                    {"bias", precompute.bias},
-                    {"seconds", watch.total()},
-                    {"seconds_clustering", statistics.seconds},
-                    {"peak_bytes", peak_bytes()},
-                    {"file_bytes", file_bytes}});
+    report.update({{"vertices", num_vertices},
+                   {"receivers", scene.receivers.size()},
+                   {"triangles", num_triangles},
+                   {"clusters", statistics.num_clusters},
+                   {"directions", statistics.num_directions},
+                   {"samples", statistics.num_samples},
+                   {"rays", statistics.num_rays},
+                   {"deepest_level", statistics.deepest_level},
+                   {"bias", precompute.bias},
+                   {"seconds", watch.total()},
+                   {"seconds_clustering", statistics.seconds},
+                   {"peak_bytes", peak_bytes()},
+                   {"file_bytes", file_bytes}});
+    session.report(report);
 }
 
 } // namespace
@@ -130,6 +142,7 @@ void add_precompute(CLI::App& program, Session& session) {
         ->capture_default_str();
     command.add_option("--bias", options->bias,
                        "lift of the rays' origins off the surface, in the mesh's unit");
+    options->receivers.add_to(command);
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

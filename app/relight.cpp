@@ -32,6 +32,7 @@ void light_with_environment(const Options& options, Session& session) {
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file (`relumine precompute`) or --lights, got a mesh", options.scene.path));
     const prt::Scene& scene = lit.scene();
+    options.output.check_fits(scene);
     const double seconds_load_scene = watch.lap();
     session.poll();
 
@@ -72,14 +73,14 @@ std::vector<glm::vec3> radiance_under(const lights::LightList& list, const LitSc
         relighter.set_lights(list.lights);
         return {relighter.radiance().begin(), relighter.radiance().end()};
     }
-    return relight::radiance_under(list.lights, prt::vertex_receivers(lit.scene().mesh).normals,
-                                   lit.shadow_rays());
+    return relight::radiance_under(list.lights, lit.scene().receivers.normals, lit.shadow_rays());
 }
 
 void light_with_list(const Options& options, Session& session) {
     Stopwatch watch;
     const lights::LightList list = lights::load_lights(options.lights);
     const LitScene lit(options.scene);
+    options.output.check_fits(lit.scene());
     const double seconds_load_scene = watch.lap();
     session.poll();
     const std::vector<glm::vec3> radiance = radiance_under(list, lit);

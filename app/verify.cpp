@@ -30,7 +30,7 @@ void run(const Options& options, Session& session) {
     const std::vector<std::uint32_t> sample =
         relight::random_receivers(scene.transfer, options.num_samples, options.seed);
     const std::vector<glm::dvec3> exact =
-        relight::exact_radiance(prt::vertex_receivers(scene.mesh), sample, lit.rays(), environment.map,
+        relight::exact_radiance(scene.receivers, sample, lit.rays(), environment.map,
                                 {.bias = scene.settings.bias,
                                  .stop = session.stop(),
                                  .on_progress = session.progress("exact integration")});
@@ -38,20 +38,21 @@ void run(const Options& options, Session& session) {
     const relight::ErrorReport error = relight::compare(sample, exact, relit);
     const double seconds = watch.lap();
 
-    const glm::vec3& worst = scene.mesh.positions[error.worst_receiver];
+    const glm::vec3& worst = scene.receivers.positions[error.worst_receiver];
+    const std::string name = prt::receiver_name(scene.layout);
     session.say(fmt::format("{} receivers, R = {}, exact integration in {:.1f} s", sample.size(),
                             environment.map.resolution, seconds));
     session.say(
         fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} % of the mean radiance {:.4g}",
                     error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs, error.mean_radiance));
     session.say(
-        fmt::format("largest at vertex {} ({}, {}, {})", error.worst_receiver, worst.x, worst.y, worst.z));
+        fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x, worst.y, worst.z));
     session.report({{"relative_l2", error.relative_l2},
                     {"mean_abs", error.mean_abs},
                     {"max_abs", error.max_abs},
                     {"samples", sample.size()},
                     {"mean_radiance", error.mean_radiance},
-                    {"worst_vertex", error.worst_receiver},
+                    {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
                     {"worst_position", {worst.x, worst.y, worst.z}},
                     {"face_resolution", environment.map.resolution},
                     {"seconds", seconds}});

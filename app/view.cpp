@@ -12,6 +12,7 @@
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
+#include "app/receiver_options.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"
@@ -95,6 +96,7 @@ void run(const Options& options, Session& session) {
         view.script = std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
 
     const LitScene lit(options.scene);
+    require_vertices(lit.scene(), options.scene.path);
     session.poll();
     const auto load = [&](const std::filesystem::path& path) {
         EnvironmentOptions environment = options.environment;

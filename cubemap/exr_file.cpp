@@ -356,7 +356,7 @@ ImageSize exr_size(const std::filesystem::path& path) {
     return with_own_messages(name, [&] { return Decoder({}, name).size(path); });
 }
 
-std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
+std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const float> alpha) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     if (image.sampling == Sampling::Borders &&
@@ -371,6 +371,12 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
         buffer.insert(channel, Imf::Slice(Imf::FLOAT, base + offset, sizeof(glm::vec3),
                                           sizeof(glm::vec3) * image.width));
         offset += sizeof(float);
+    }
+    if (!alpha.empty()) {
+        header.channels().insert("A", Imf::Channel(Imf::FLOAT));
+        buffer.insert("A",
+                      Imf::Slice(Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(alpha.data())),
+                                 sizeof(float), sizeof(float) * image.width));
     }
     MemoryOutput stream;
     {

@@ -40,8 +40,10 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 [[nodiscard]] ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                                  const std::string& name);
 
-/// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders.
-[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image);
+/// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders, and a channel A where `alpha` is given,
+/// one for each pixel.
+[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
+                                                std::span<const float> alpha = {});
 /// RGBE, run-length encoded, rounded to nearest. Throws std::invalid_argument for radiance that RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -25,6 +26,17 @@ std::uint64_t spread_bits(std::uint64_t x) {
 
 Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
     return {.positions = mesh.positions, .normals = mesh.normals};
+}
+
+std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers) {
+    if (mesh.colors.empty())
+        throw std::invalid_argument("expected a mesh with vertex colours, got one without");
+    if (receivers.points.empty())
+        return mesh.colors;
+    std::vector<glm::vec3> colors(receivers.size());
+    std::transform(receivers.points.begin(), receivers.points.end(), colors.begin(),
+                   [&](const MeshPoint& point) { return value_at(mesh, mesh.colors, point); });
+    return colors;
 }
 
 std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {

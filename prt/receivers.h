@@ -8,6 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/mesh_point.h"
 #include "prt/surface.h"
 
 namespace relumine::prt {
@@ -19,12 +20,17 @@ struct Receivers {
     std::vector<glm::vec3> to_eye =
         {}; ///< [num_receivers], unit length; or empty: seen from anywhere, diffuse
     std::vector<Surface> surfaces = {}; ///< [num_receivers]; or empty: Lambert, albedo 1
+    std::vector<MeshPoint> points = {}; ///< [num_receivers] where on the mesh; or empty: its vertices
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
 
 /// One receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section 3.1].
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
+
+/// The mesh's colours at the receivers [num_receivers]: interpolated at their points, or those of the vertices. Throws
+/// std::invalid_argument for a mesh without colours.
+[[nodiscard]] std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers);
 
 /// An order that puts neighbours in space next to each other: place -> receiver index, [num_receivers]. Morton order of the
 /// positions on a 2^21 grid, ties by index; receivers with a zero normal come last. Deterministic.

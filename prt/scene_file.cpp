@@ -3,40 +3,27 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <stdexcept>
-#include <string_view>
-#include <type_traits>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 #include <xxhash.h>
 
 #include "files/output_file.h"
+#include "prt/receiver_sections.h"
 #include "prt/section_file.h"
+#include "prt/section_reader.h"
 
 namespace relumine::prt {
 
 namespace {
 
-template<typename Element>
-std::vector<std::byte> bytes_of(const std::vector<Element>& elements) {
-    static_assert(std::is_trivially_copyable_v<Element>);
-    std::vector<std::byte> bytes(elements.size() * sizeof(Element));
-    if (!elements.empty())
-        std::memcpy(bytes.data(), elements.data(), bytes.size());
+/// Split flags with their number in front.
+std::vector<std::byte> counted(const std::vector<bool>& flags) {
+    std::vector<std::byte> bytes = bytes_of(std::vector{static_cast<std::uint32_t>(flags.size())});
+    const std::vector<std::byte> bits = packed(flags);
+    bytes.insert(bytes.end(), bits.begin(), bits.end());
     return bytes;
-}
-
-/// Split flags, eight to a byte, lowest bit first; the number of flags in front.
-std::vector<std::byte> packed(const std::vector<bool>& flags) {
-    std::vector<std::uint8_t> bytes(sizeof(std::uint32_t) + (flags.size() + 7) / 8);
-    const auto num_flags = static_cast<std::uint32_t>(flags.size());
-    std::memcpy(bytes.data(), &num_flags, sizeof num_flags);
-    for (std::size_t i = 0; i < flags.size(); ++i)
-        bytes[sizeof num_flags + i / 8] |=
-            static_cast<std::uint8_t>(static_cast<unsigned>(flags[i]) << (i % 8));
-    return bytes_of(bytes);
 }
 
 std::vector<std::byte> settings_json(const SceneSettings& settings) {
@@ -54,93 +41,47 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
     return bytes_of(std::vector<char>(text.begin(), text.end()));
 }
 
-/// Takes sections apart; every message names the file and the section.
 class SceneReader {
 public:
     SceneReader(const std::filesystem::path& path, Sections&& sections)
-        : path_(path), sections_(std::move(sections)) {}
+        : reader_(path, std::move(sections)) {}
 
     Scene scene() const {
         Scene scene;
         scene.mesh = mesh();
         scene.settings = settings();
-        scene.transfer = transfer(scene.mesh);
+        scene.layout = read_layout(reader_);
+        scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
+        scene.transfer = transfer(scene.receivers);
         return scene;
     }
 
 private:
-    [[noreturn]] void fail(std::string_view section, std::string_view expected) const {
-        throw std::runtime_error(
-            fmt::format("{}: expected {}, got a damaged section '{}'", path_.string(), expected, section));
-    }
-
-    const std::vector<std::byte>& section(const std::string& name) const {
-        const auto found = sections_.find(name);
-        if (found == sections_.end())
-            throw std::runtime_error(
-                fmt::format("{}: expected a section '{}', got none", path_.string(), name));
-        return found->second;
-    }
-
-    template<typename Element>
-    std::vector<Element> elements(const std::string& name) const {
-        const std::vector<std::byte>& bytes = section(name);
-        if (bytes.size() % sizeof(Element) != 0)
-            fail(name, fmt::format("a multiple of {} bytes", sizeof(Element)));
-        std::vector<Element> result(bytes.size() / sizeof(Element));
-        if (!result.empty())
-            std::memcpy(result.data(), bytes.data(), bytes.size());
-        return result;
-    }
-
-    template<typename Element>
-    std::vector<Element> elements(const std::string& name, std::size_t count, bool optional = false) const {
-        if (optional && !sections_.contains(name))
-            return {};
-        std::vector<Element> result = elements<Element>(name);
-        if (result.size() != count)
-            fail(name, fmt::format("{} elements", count));
-        return result;
-    }
-
     mesh::TriangleMesh mesh() const {
         mesh::TriangleMesh mesh;
-        mesh.positions = elements<glm::vec3>("positions");
-        mesh.triangles = elements<mesh::Triangle>("triangles");
-        mesh.normals = elements<glm::vec3>("normals", mesh.num_vertices());
-        mesh.colors = elements<glm::vec3>("colors", mesh.num_vertices(), true);
-        mesh.uvs = elements<glm::vec2>("uvs", mesh.num_vertices(), true);
+        mesh.positions = reader_.elements<glm::vec3>("positions");
+        mesh.triangles = reader_.elements<mesh::Triangle>("triangles");
+        mesh.normals = reader_.elements<glm::vec3>("normals", mesh.num_vertices());
+        mesh.colors = reader_.elements<glm::vec3>("colors", mesh.num_vertices(), true);
+        mesh.uvs = reader_.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
         for (const mesh::Triangle& triangle : mesh.triangles)
             if (std::any_of(triangle.begin(), triangle.end(),
                             [&](auto i) { return i >= mesh.num_vertices(); }))
-                fail("triangles", "indices of vertices");
+                reader_.fail("triangles", "indices of vertices");
         const auto finite = [](const glm::vec3& p) {
             return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
         };
         if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), finite))
-            fail("positions", "finite positions");
+            reader_.fail("positions", "finite positions");
         if (!std::all_of(mesh.normals.begin(), mesh.normals.end(), finite))
-            fail("normals", "finite normals");
+            reader_.fail("normals", "finite normals");
         if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), finite))
-            fail("colors", "finite colours");
+            reader_.fail("colors", "finite colours");
         return mesh;
     }
 
-    // The JSON library casts numbers without a look at the range.
-    static std::uint32_t natural(const nlohmann::json& json) {
-        if (!json.is_number_unsigned() ||
-            json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
-            throw std::out_of_range("expected an integer of 32 bits");
-        return json.get<std::uint32_t>();
-    }
-    static float real(const nlohmann::json& json) {
-        if (!json.is_number() || !(std::abs(json.get<double>()) <= std::numeric_limits<float>::max()))
-            throw std::out_of_range("expected a number");
-        return json.get<float>();
-    }
-
     SceneSettings settings() const {
-        const std::vector<char> text = elements<char>("settings");
+        const std::vector<char> text = reader_.elements<char>("settings");
         SceneSettings settings;
         try {
             const nlohmann::json json = nlohmann::json::parse(text.begin(), text.end());
@@ -154,66 +95,72 @@ private:
             if (json.contains("epsilon"))
                 settings.epsilon = real(json.at("epsilon"));
         } catch (const std::exception&) {
-            fail("settings", "JSON with the settings");
+            reader_.fail("settings", "JSON with the settings");
         }
         return settings;
     }
 
     Quadtree quadtree() const {
-        const std::vector<std::uint8_t> bytes = elements<std::uint8_t>("quadtree");
+        const std::vector<std::uint8_t> bytes = reader_.elements<std::uint8_t>("quadtree");
         std::uint32_t num_flags = 0;
         if (bytes.size() < sizeof num_flags)
-            fail("quadtree", "split flags");
+            reader_.fail("quadtree", "split flags");
         std::memcpy(&num_flags, bytes.data(), sizeof num_flags);
         if (bytes.size() != sizeof num_flags + (std::size_t{num_flags} + 7) / 8)
-            fail("quadtree", "split flags");
+            reader_.fail("quadtree", "split flags");
         std::vector<bool> flags(num_flags);
         for (std::size_t i = 0; i < flags.size(); ++i)
             flags[i] = (bytes[sizeof num_flags + i / 8] >> (i % 8) & 1) != 0;
         try {
             return Quadtree(flags);
         } catch (const std::invalid_argument&) {
-            fail("quadtree", "split flags of six trees");
+            reader_.fail("quadtree", "split flags of six trees");
         }
     }
 
-    Transfer transfer(const mesh::TriangleMesh& mesh) const {
+    Transfer transfer(const Receivers& receivers) const {
         Transfer transfer;
-        const std::size_t num_receivers = mesh.num_vertices();
+        const std::size_t num_receivers = receivers.size();
         transfer.quadtree = quadtree();
-        transfer.order = elements<std::uint32_t>("order", num_receivers);
+        transfer.order = reader_.elements<std::uint32_t>("order", num_receivers);
         std::vector<bool> seen(num_receivers);
         for (const std::uint32_t receiver : transfer.order) {
             if (receiver >= num_receivers || seen[receiver])
-                fail("order", "every receiver once");
+                reader_.fail("order", "every receiver once");
             seen[receiver] = true;
-            transfer.normals.push_back(mesh.normals[receiver]);
+            transfer.normals.push_back(receivers.normals[receiver]);
         }
         transfer.counts.num_receivers = num_receivers;
         transfer.counts.num_leaves = transfer.quadtree.num_leaves();
-        transfer.counts.visible = elements<std::uint64_t>("visible");
-        transfer.counts.mixed = elements<std::uint64_t>("mixed");
-        transfer.counts.counts = elements<std::uint8_t>("counts");
+        transfer.counts.visible = reader_.elements<std::uint64_t>("visible");
+        transfer.counts.mixed = reader_.elements<std::uint64_t>("mixed");
+        transfer.counts.counts = reader_.elements<std::uint8_t>("counts");
         try {
             transfer.counts.index();
         } catch (const std::invalid_argument&) {
-            fail("counts", "counts that fit the mesh and the tree");
+            reader_.fail("counts", "counts that fit the receivers and the tree");
         }
         return transfer;
     }
 
-    const std::filesystem::path& path_;
-    Sections sections_;
+    SectionReader reader_;
 };
 
 } // namespace
 
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
-    if (scene.transfer.num_receivers() != scene.mesh.num_vertices() ||
+    const bool on_vertices = std::holds_alternative<VertexLayout>(scene.layout);
+    if (on_vertices && scene.receivers.size() != 0 && scene.receivers.size() != scene.mesh.num_vertices())
+        throw std::invalid_argument(fmt::format("{}: expected one receiver per vertex, got {} for {}",
+                                                path.string(), scene.receivers.size(),
+                                                scene.mesh.num_vertices()));
+    const std::size_t num_receivers = on_vertices ? scene.mesh.num_vertices() : scene.receivers.size();
+    if (scene.transfer.num_receivers() != num_receivers ||
         scene.mesh.normals.size() != scene.mesh.num_vertices())
         throw std::invalid_argument(fmt::format(
-            "{}: expected one receiver and one normal per vertex, got {} and {} for {}", path.string(),
-            scene.transfer.num_receivers(), scene.mesh.normals.size(), scene.mesh.num_vertices()));
+            "{}: expected the transfer of {} receivers and a normal for each of {} vertices, got {} and {}",
+            path.string(), num_receivers, scene.mesh.num_vertices(), scene.transfer.num_receivers(),
+            scene.mesh.normals.size()));
     const VisibleCounts& counts = scene.transfer.counts;
     Sections sections;
     sections["settings"] = settings_json(scene.settings);
@@ -224,8 +171,9 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
         sections["colors"] = bytes_of(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())
         sections["uvs"] = bytes_of(scene.mesh.uvs);
+    add_receiver_sections(sections, scene.receivers, scene.layout);
     sections["order"] = bytes_of(scene.transfer.order);
-    sections["quadtree"] = packed(scene.transfer.quadtree.split_flags());
+    sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
     sections["visible"] = bytes_of(counts.visible);
     sections["mixed"] = bytes_of(counts.mixed);
     sections["counts"] = bytes_of(counts.counts);

@@ -7,6 +7,8 @@
 #include <string>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/receiver_layout.h"
+#include "prt/receivers.h"
 #include "prt/transfer.h"
 
 namespace relumine::prt {
@@ -26,12 +28,14 @@ struct SceneSettings {
 /// All that relighting and drawing needs.
 struct Scene {
     mesh::TriangleMesh mesh;
-    Transfer transfer;
+    Transfer transfer; ///< of the receivers
     SceneSettings settings;
+    Receivers receivers = {};   ///< what is lit; load_scene() fills it in for vertices, too
+    ReceiverLayout layout = {}; ///< what they are
 };
 
 /// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws std::runtime_error naming the path,
-/// std::invalid_argument when the receivers are not the mesh's vertices.
+/// std::invalid_argument when mesh, receivers, layout and transfer do not belong together. Positions and normals of receivers on vertices are the mesh's.
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a scene and checks all of it: sizes against the file before anything is allocated, checksums, indices, the tree, the counts.

@@ -10,22 +10,20 @@
 
 #include "cubemap/cube_map.h"
 #include "mesh/triangle_mesh.h"
+#include "prt/camera.h"
 #include "prt/ray_scene.h"
 
 namespace relumine::relight {
 
-/// A pinhole camera, +Y up.
-struct Camera {
-    glm::vec3 eye{0.0f};
-    glm::vec3 target{0.0f};
-    float fov_degrees = 35.0f; ///< vertical
-};
+using prt::Camera;
 
 /// Linear radiance, [height * width] row by row from the top.
 struct Picture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     std::vector<glm::vec3> pixels = {};
+    std::vector<float> alpha =
+        {}; ///< [height * width], 0..1, multiplied into the pixels where it is not 0; or empty: opaque
 };
 
 struct PictureOptions {
@@ -71,7 +69,8 @@ private:
     std::vector<Sample> samples_; ///< [height * width * samples of a pixel], or none
 };
 
-/// Writes .png (times 2^exposure_ev, sRGB curve, clipped, 8 bit) or .exr (linear float, exposure applied too).
+/// Writes .png (times 2^exposure_ev, sRGB curve, clipped, 8 bit) or .exr (linear float, exposure applied too), with an alpha channel where there
+/// is alpha.
 /// Whole or not at all. Throws std::runtime_error naming the path, std::invalid_argument for another extension or a picture short of pixels.
 void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev = 0.0);
 

@@ -1,0 +1,197 @@
+#include "app/receiver_options.h"
+
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "prt/pixel_receivers.h"
+#include "prt/texel_receivers.h"
+#include "relight/picture.h"
+
+namespace relumine::app {
+
+namespace {
+
+nlohmann::json array(const glm::vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+} // namespace
+
+void ReceiverOptions::add_to(CLI::App& command) {
+    command
+        .add_option("--receivers", receivers_,
+                    "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples each) or texels:WxH "
+                    "(a lightmap on the mesh's uvs)")
+        ->capture_default_str();
+    command.add_option("--view", view_,
+                       "the camera of pixels: EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or "
+                       "auto");
+}
+
+ReceiverOptions::Wanted ReceiverOptions::wanted() const {
+    Wanted wanted;
+    if (receivers_ == "vertices")
+        return wanted;
+    const auto refuse = [&] {
+        throw CLI::ValidationError(
+            "--receivers",
+            fmt::format("expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got '{}'", receivers_));
+    };
+    std::istringstream text(receivers_);
+    std::string kind;
+    std::getline(text, kind, ':');
+    if (kind != "pixels" && kind != "texels")
+        refuse();
+    wanted.kind = kind == "pixels" ? Kind::Pixels : Kind::Texels;
+    // Unsigned numbers would take a minus sign.
+    std::int64_t width = 0, height = 0, samples = 1;
+    char x = 0, colon = ':', rest = 0;
+    if (!(text >> width >> x >> height) || x != 'x')
+        refuse();
+    if (wanted.kind == Kind::Pixels && text.peek() == ':' && !(text >> colon >> samples))
+        refuse();
+    if (text >> rest)
+        refuse();
+    const auto is_size = [](std::int64_t size) {
+        return size >= 1 && size <= prt::MaxPictureSize;
+    };
+    if (!is_size(width) || !is_size(height))
+        throw CLI::ValidationError("--receivers", fmt::format("expected a size of 1 to {} a side, got '{}'",
+                                                              prt::MaxPictureSize, receivers_));
+    if (samples < 1 || samples > prt::MaxSamplesPerAxis)
+        throw CLI::ValidationError("--receivers", fmt::format("expected 1 to {} samples a side, got '{}'",
+                                                              prt::MaxSamplesPerAxis, receivers_));
+    if (static_cast<std::size_t>(width * height * samples * samples) > prt::MaxLayoutPlaces)
+        throw CLI::ValidationError("--receivers", fmt::format("expected at most {} samples in all, got '{}'",
+                                                              prt::MaxLayoutPlaces, receivers_));
+    wanted.width = static_cast<std::uint32_t>(width);
+    wanted.height = static_cast<std::uint32_t>(height);
+    wanted.samples_per_axis = static_cast<std::uint32_t>(samples);
+    return wanted;
+}
+
+std::optional<prt::Camera> ReceiverOptions::camera() const {
+    if (view_ == "auto")
+        return std::nullopt;
+    std::vector<float> numbers;
+    std::istringstream text(view_);
+    for (std::string word; std::getline(text, word, ',');) {
+        float number = 0.0f;
+        if (!CLI::detail::lexical_cast(word, number))
+            numbers.clear();
+        else
+            numbers.push_back(number);
+    }
+    if (numbers.size() != 6 && numbers.size() != 7)
+        throw CLI::ValidationError("--view",
+                                   fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV], got '{}'", view_));
+    prt::Camera camera{.eye = {numbers[0], numbers[1], numbers[2]},
+                       .target = {numbers[3], numbers[4], numbers[5]}};
+    if (numbers.size() == 7)
+        camera.fov_degrees = numbers[6];
+    try {
+        static_cast<void>(prt::axes_of(camera, 1.0f));
+    } catch (const std::invalid_argument& error) {
+        throw CLI::ValidationError("--view", error.what());
+    }
+    return camera;
+}
+
+void ReceiverOptions::check() const {
+    const bool pixels = wanted().kind == Kind::Pixels;
+    if (pixels && view_.empty())
+        throw CLI::ValidationError("--receivers", "expected --view (a camera, or auto) with pixels");
+    if (!pixels && !view_.empty())
+        throw CLI::ValidationError("--view", "expected --receivers pixels:WxH with it");
+    if (pixels)
+        static_cast<void>(camera());
+}
+
+void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays, const std::string& mesh_name,
+                            const Session& session, nlohmann::json& report) const {
+    const Wanted wanted = this->wanted();
+    try {
+        if (wanted.kind == Kind::Pixels)
+            apply_pixels(wanted, scene, rays, session, report);
+        else if (wanted.kind == Kind::Texels)
+            apply_texels(wanted, scene, session, report);
+        else
+            scene.receivers = prt::vertex_receivers(scene.mesh);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", mesh_name, error.what()));
+    }
+}
+
+void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene, const prt::RayScene& rays,
+                                   const Session& session, nlohmann::json& report) const {
+    const std::optional<prt::Camera> own = camera();
+    prt::PixelReceivers pixels = prt::pixel_receivers(
+        scene.mesh, rays,
+        {.camera =
+             own ? *own
+                 : relight::automatic_camera(scene.mesh, {.width = wanted.width, .height = wanted.height}),
+         .width = wanted.width,
+         .height = wanted.height,
+         .samples_per_axis = wanted.samples_per_axis});
+    scene.receivers = std::move(pixels.receivers);
+    scene.layout = std::move(pixels.layout);
+    report["layout"] = layout_json(scene);
+    session.detail(
+        fmt::format("{}: {} samples hit the mesh", prt::description(scene.layout), scene.receivers.size()));
+}
+
+void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, const Session& session,
+                                   nlohmann::json& report) {
+    prt::TexelReceivers texels =
+        prt::texel_receivers(scene.mesh, {.width = wanted.width, .height = wanted.height});
+    const prt::AtlasReport& atlas = texels.report;
+    if (atlas.num_overlapping > 0)
+        session.say(fmt::format("warning: {} texels lie in several triangles, the first at column {}, row "
+                                "{}: charts overlap, the first triangle of the mesh wins",
+                                atlas.num_overlapping, atlas.first_overlap % wanted.width,
+                                atlas.first_overlap / wanted.width));
+    if (atlas.num_outside > 0)
+        session.say(fmt::format("warning: {} triangles have uvs outside of 0 to 1: cut off there",
+                                atlas.num_outside));
+    if (atlas.num_flat > 0)
+        session.detail(fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
+    scene.receivers = std::move(texels.receivers);
+    scene.layout = std::move(texels.layout);
+    report["layout"] = layout_json(scene);
+    report["texels_overlapping"] = atlas.num_overlapping;
+    report["texels_on_borders"] = atlas.num_borders;
+    report["triangles_outside"] = atlas.num_outside;
+    report["triangles_flat_in_uv"] = atlas.num_flat;
+    if (atlas.num_overlapping > 0)
+        report["first_overlap"] = {atlas.first_overlap % wanted.width, atlas.first_overlap / wanted.width};
+}
+
+nlohmann::json layout_json(const prt::Scene& scene) {
+    const auto num_receivers = static_cast<double>(scene.receivers.size());
+    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout))
+        return {{"kind", "pixels"},
+                {"width", pixels->width},
+                {"height", pixels->height},
+                {"samples_per_axis", pixels->samples_per_axis},
+                {"eye", array(pixels->camera.eye)},
+                {"target", array(pixels->camera.target)},
+                {"fov", pixels->camera.fov_degrees},
+                {"coverage", num_receivers / static_cast<double>(pixels->num_samples())}};
+    if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
+        return {{"kind", "texels"},
+                {"width", texels->width},
+                {"height", texels->height},
+                {"coverage", num_receivers / static_cast<double>(texels->num_texels())}};
+    return nlohmann::json::object();
+}
+
+void require_vertices(const prt::Scene& scene, const std::string& path) {
+    if (!std::holds_alternative<prt::VertexLayout>(scene.layout))
+        throw std::runtime_error(fmt::format("{}: expected a scene whose receivers are vertices, got {}",
+                                             path, prt::description(scene.layout)));
+}
+
+} // namespace relumine::app
