@@ -75,6 +75,10 @@ float narrowness_of(const Surface& surface) {
     return 0.0f;
 }
 
+std::uint32_t deepest_level(std::uint32_t face_resolution) {
+    return std::min(static_cast<std::uint32_t>(std::bit_width(face_resolution - 1)), MaxGlossyLevel);
+}
+
 class GlossyPrecompute {
 public:
     GlossyPrecompute(const Receivers& receivers, const Blockers& blockers, const Transfer& transfer,
@@ -120,8 +124,7 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
     const BlockToRefine to_refine = block_at(block, origins);
     EntriesOfBlock entries;
     RefinementLimits limits{.tolerance = options_.tolerance,
-                            .max_level =
-                                static_cast<std::uint32_t>(std::bit_width(options_.face_resolution - 1))};
+                            .max_level = deepest_level(options_.face_resolution)};
     for (const GlossyLobe lobe :
          {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
         if (!to_refine.surfaces.has(lobe))
@@ -182,6 +185,18 @@ void check(const Receivers& receivers, const Transfer& transfer, const GlossyOpt
 }
 
 } // namespace
+
+bool has_highlights(const Receivers& receivers) {
+    return !receivers.to_eye.empty() &&
+           std::any_of(receivers.surfaces.begin(), receivers.surfaces.end(),
+                       [](const Surface& surface) { return surface.highlight != Highlight::None; });
+}
+
+float narrowest_roughness(std::uint32_t face_resolution) {
+    // A cell in the middle of a face spans 2 / 2^level in the tangent, where it is widest.
+    const float cell = 2.0f / static_cast<float>(1u << deepest_level(face_resolution));
+    return std::sqrt(std::max(cell, ggx_alpha(0.0f)));
+}
 
 GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
                                  const Transfer& transfer, const GlossyOptions& options,

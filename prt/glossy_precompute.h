@@ -29,6 +29,13 @@ struct GlossyStatistics {
     double seconds = 0.0;
 };
 
+/// Whether any receiver has a highlight that an eye sees: whether there is a glossy part to compute.
+[[nodiscard]] bool has_highlights(const Receivers& receivers);
+
+/// glTF's roughness below which the finest cells (single texels, or of MaxGlossyLevel) cannot hold the lobe: its width, 2 alpha, is
+/// less than two cells. Highlights come out wider than they are.
+[[nodiscard]] float narrowest_roughness(std::uint32_t face_resolution);
+
 /// Cuts of all blocks, for receivers with to_eye and surfaces. Each block refines the cell with the largest error first, nine samples to a cell [JN,
 /// Section 4.1], T with the BRDF [JN, Eq. 3]. Where the transfer's counts say that a receiver sees all of a cluster or nothing, that is taken for its
 /// visibility; only in between rays are traced. Parallel over blocks (TBB); the same bits for any number of threads.

@@ -17,6 +17,9 @@ namespace relumine::prt {
 enum class GlossyLobe : std::uint8_t { Specular, SpecularGrazing, DiffuseGrazing };
 inline constexpr std::size_t NumGlossyLobes = 3;
 
+/// No cell is finer: 0.09 degrees, less than the narrowest highlight (ggx_alpha()), and what LightPyramid can hold.
+inline constexpr std::uint32_t MaxGlossyLevel = 10;
+
 /// One lobe of all receivers. Each block of 16 has its own cut through the quadtree of cells, fine where its highlights and shadows
 /// need it and coarse elsewhere: a few hundred cells that cover the directions which reach it.
 /// Differs from [JN], where all receivers share one set of clusters: a highlight one degree wide that every receiver has

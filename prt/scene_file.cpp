@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "files/output_file.h"
+#include "prt/glossy_sections.h"
 #include "prt/receiver_sections.h"
 #include "prt/section_file.h"
 #include "prt/section_reader.h"
@@ -36,6 +37,13 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
                            {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
     if (settings.epsilon)
         json["epsilon"] = *settings.epsilon;
+    if (settings.glossy_tolerance)
+        json["glossy_tolerance"] = *settings.glossy_tolerance;
+    if (settings.view) {
+        const Camera& view = *settings.view;
+        json["view"] = {view.eye.x,    view.eye.y,    view.eye.z,      view.target.x,
+                        view.target.y, view.target.z, view.fov_degrees};
+    }
     // A file name need not be UTF-8; JSON must be.
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
     return bytes_of(std::vector<char>(text.begin(), text.end()));
@@ -94,6 +102,16 @@ private:
             settings.source_hash = std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
             if (json.contains("epsilon"))
                 settings.epsilon = real(json.at("epsilon"));
+            if (json.contains("glossy_tolerance"))
+                settings.glossy_tolerance = real(json.at("glossy_tolerance"));
+            if (json.contains("view")) {
+                const nlohmann::json& view = json.at("view");
+                const auto at = [&](std::size_t i) {
+                    return real(view.at(i));
+                };
+                settings.view = Camera{
+                    .eye = {at(0), at(1), at(2)}, .target = {at(3), at(4), at(5)}, .fov_degrees = at(6)};
+            }
         } catch (const std::exception&) {
             reader_.fail("settings", "JSON with the settings");
         }
@@ -140,6 +158,12 @@ private:
         } catch (const std::invalid_argument&) {
             reader_.fail("counts", "counts that fit the receivers and the tree");
         }
+        if (has_glossy(reader_)) {
+            if (receivers.to_eye.empty() || receivers.surfaces.empty())
+                reader_.fail("g_specular_b", "directions to the eye and surfaces with highlights");
+            transfer.glossy = read_glossy(reader_, transfer.counts.num_blocks());
+        }
+        set_surfaces(transfer, receivers);
         return transfer;
     }
 
@@ -177,6 +201,8 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
     sections["visible"] = bytes_of(counts.visible);
     sections["mixed"] = bytes_of(counts.mixed);
     sections["counts"] = bytes_of(counts.counts);
+    if (scene.transfer.glossy)
+        add_glossy_sections(sections, *scene.transfer.glossy);
     return write_sections(path, sections);
 }
 

@@ -23,6 +23,8 @@ struct SceneSettings {
     std::uint32_t floor_vertices = 0; ///< n of an n x n floor that was added, 0 for none
     std::string source = {};          ///< file name of the mesh, without folders
     std::uint64_t source_hash = 0;    ///< xxHash64 of the mesh file's bytes, 0 when it came from no file
+    std::optional<float> glossy_tolerance = {}; ///< GlossyOptions::tolerance, where there is a glossy part
+    std::optional<Camera> view = {};            ///< the eye that highlights of vertices are for
 };
 
 /// All that relighting and drawing needs.

@@ -9,6 +9,7 @@
 
 #include "prt/glossy_transfer.h"
 #include "prt/quadtree.h"
+#include "prt/receivers.h"
 #include "prt/surface.h"
 #include "prt/visible_counts.h"
 
@@ -27,5 +28,8 @@ struct Transfer {
     [[nodiscard]] std::size_t num_receivers() const { return order.size(); }
     [[nodiscard]] std::size_t num_clusters() const { return quadtree.num_leaves(); }
 };
+
+/// Copies the receivers' surfaces, and for a glossy part their directions to the eye, into the transfer.
+void set_surfaces(Transfer& transfer, const Receivers& receivers);
 
 } // namespace relumine::prt
