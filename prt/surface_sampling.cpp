@@ -38,7 +38,8 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const
         base *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
     if (material.times_vertex_color && !mesh.colors.empty()) {
         const mesh::Triangle& t = mesh.triangles[triangle];
-        base *= interpolate<glm::vec3>({mesh.colors[t[0]], mesh.colors[t[1]], mesh.colors[t[2]]}, barycentric);
+        base *=
+            interpolate<glm::vec3>({mesh.colors[t[0]], mesh.colors[t[1]], mesh.colors[t[2]]}, barycentric);
         base = glm::clamp(base, 0.0f, 1.0f);
     }
     if (material.model == mesh::MaterialModel::Phong) {
