@@ -2,6 +2,7 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -89,6 +90,47 @@ void describe_scene(const Options& options, const Session& session) {
     session.report(result);
 }
 
+/// Model and numbers of a material, as the file has them.
+std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
+        if (!slot)
+            return std::string();
+        const mesh::Texture& image = mesh.textures[slot->texture];
+        return fmt::format(" x {} ({} x {})", image.name, image.width, image.height);
+    };
+    const glm::vec3& base = material.base_color;
+    if (material.model == mesh::MaterialModel::MetallicRoughness)
+        return fmt::format("metallic-roughness, base {} {} {}{}, metallic {}, roughness {}{}", base.r, base.g,
+                           base.b, texture(material.base_color_texture), material.metallic,
+                           material.roughness, texture(material.metallic_roughness_texture));
+    const std::string diffuse =
+        fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
+    if (material.specular == glm::vec3(0.0f))
+        return fmt::format("Lambert, {}", diffuse);
+    return fmt::format("Blinn-Phong, {}, Ks {} {} {}, Ns {}", diffuse, material.specular.r,
+                       material.specular.g, material.specular.b, material.exponent);
+}
+
+nlohmann::json json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
+        return slot ? nlohmann::json(mesh.textures[slot->texture].name) : nlohmann::json();
+    };
+    const bool is_phong = material.model == mesh::MaterialModel::Phong;
+    nlohmann::json result = {{"name", material.name},
+                             {"model", is_phong ? "phong" : "metallic-roughness"},
+                             {"base_color", array(material.base_color)},
+                             {"base_color_texture", texture(material.base_color_texture)}};
+    if (is_phong) {
+        result["specular"] = array(material.specular);
+        result["exponent"] = material.exponent;
+    } else {
+        result["metallic"] = material.metallic;
+        result["roughness"] = material.roughness;
+        result["metallic_roughness_texture"] = texture(material.metallic_roughness_texture);
+    }
+    return result;
+}
+
 void describe_mesh(const Options& options, const Session& session) {
     const mesh::TriangleMesh mesh = mesh::load(options.path);
     const mesh::Bounds box = mesh::bounds(mesh);
@@ -99,7 +141,18 @@ void describe_mesh(const Options& options, const Session& session) {
                             box.min.z, box.max.x, box.max.y, box.max.z));
     session.say(fmt::format("without a face      {} vertices", num_loose));
     session.say(fmt::format("colours, uvs        {}, {}", mesh.colors.empty() ? "no" : "yes",
-                            mesh.uvs.empty() ? "no" : "yes"));
+                            !mesh.uvs.empty()          ? "yes"
+                            : !mesh.corner_uvs.empty() ? "per corner"
+                                                       : "no"));
+    nlohmann::json materials = nlohmann::json::array();
+    for (const mesh::Material& material : mesh.materials) {
+        session.say(fmt::format("material            {}: {}", material.name, description(mesh, material)));
+        materials.push_back(json_of(mesh, material));
+    }
+    for (const std::string& group : mesh.groups)
+        session.say(fmt::format("group               {}", group));
+    for (const std::string& name : mesh.missing)
+        session.say(fmt::format("not found           {}", name));
     session.report({{"kind", "mesh"},
                     {"vertices", mesh.num_vertices()},
                     {"triangles", mesh.num_triangles()},
@@ -107,7 +160,10 @@ void describe_mesh(const Options& options, const Session& session) {
                     {"max", array(box.max)},
                     {"vertices_without_face", num_loose},
                     {"colors", !mesh.colors.empty()},
-                    {"uvs", !mesh.uvs.empty()}});
+                    {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
+                    {"materials", materials},
+                    {"groups", mesh.groups},
+                    {"missing", mesh.missing}});
 }
 
 void run(const Options& options, const Session& session) {
@@ -130,7 +186,8 @@ void run(const Options& options, const Session& session) {
 void add_info(CLI::App& program, Session& session) {
     CLI::App& command = *program.add_subcommand("info", "what a file is: a scene, an environment or a mesh");
     auto options = std::make_shared<Options>();
-    command.add_option("FILE", options->path, ".prt, .exr, .hdr, .obj, .ply, .off or .stl")->required();
+    command.add_option("FILE", options->path, ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
+        ->required();
     command.add_option("--layout", options->layout, "layout of an environment, where the file does not tell")
         ->check(CLI::IsMember(layout_names()));
     command.add_option("--picture", options->picture,

@@ -60,10 +60,10 @@ std::vector<std::byte> base64(std::string_view text) {
     while (text.ends_with('='))
         text.remove_suffix(1);
     constexpr std::string_view Alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::array<std::int8_t, 256> values{};
+    std::array<int, 256> values{};
     values.fill(-1);
     for (std::size_t i = 0; i < Alphabet.size(); ++i)
-        values[static_cast<unsigned char>(Alphabet[i])] = static_cast<std::int8_t>(i);
+        values[static_cast<unsigned char>(Alphabet[i])] = static_cast<int>(i);
     for (const char c : text) {
         const int value = values[static_cast<unsigned char>(c)];
         if (value < 0)
@@ -215,7 +215,7 @@ void Document::check_extensions() const {
 
 const Json& Document::element(const char* array, std::uint64_t index) const {
     const Json& elements = child(root_, array);
-    if (elements.size() > 0 && !elements.is_array())
+    if (!elements.empty() && !elements.is_array())
         fail(fmt::format("\"{}\" as an array", array), "an object");
     if (index >= elements.size())
         fail(fmt::format("indices of \"{}\" below {}", array, elements.size()), fmt::format("{}", index));

@@ -34,7 +34,7 @@ enum class MaterialModel : std::uint8_t {
 
 /// One material. Colours are linear RGB.
 struct Material {
-    std::string name;
+    std::string name = {};
     MaterialModel model = MaterialModel::Phong;
     glm::vec3 base_color{1.0f};                         ///< Phong: Kd; 0..1
     float metallic = 0.0f;                              ///< 0..1

@@ -22,6 +22,30 @@ TEST_F(Info, Mesh) {
     EXPECT_NE(succeed({"info", "mesh.obj"}).out.find("6 vertices, 8 triangles"), std::string::npos);
 }
 
+TEST_F(Info, MaterialsOfAMesh) {
+    write("a.mtl", "newmtl shiny\nKd 0.5\nKs 0.25\nNs 50\nmap_Kd gone.png\nnewmtl metal\nPr 0.25\nPm 1\n");
+    write("parts.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lid\nusemtl shiny\nf 1 2 3\n");
+    const nlohmann::json info = succeed({"info", "parts.obj", "--json"}).json();
+    ASSERT_EQ(info["materials"].size(), 2u);
+    EXPECT_EQ(info["materials"][0]["name"], "shiny");
+    EXPECT_EQ(info["materials"][0]["model"], "phong");
+    EXPECT_EQ(info["materials"][0]["exponent"], 50.0);
+    EXPECT_EQ(info["materials"][1]["model"], "metallic-roughness");
+    EXPECT_EQ(info["materials"][1]["roughness"], 0.25);
+    EXPECT_EQ(info["groups"], nlohmann::json{"lid"});
+    EXPECT_EQ(info["missing"], nlohmann::json{"gone.png"});
+    const Result told = succeed({"info", "parts.obj"});
+    for (const char* part : {"shiny: Blinn-Phong, Kd 0.5 0.5 0.5, Ks 0.25 0.25 0.25, Ns 50",
+                             "metal: metallic-roughness, base 1 1 1, metallic 1, roughness 0.25",
+                             "group               lid", "not found           gone.png"})
+        EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
+    write("a.mtl", "newmtl shiny\nKd 2\n");
+    fail({"info", "parts.obj"}, {"parts.obj: a.mtl: expected a number of 0 to 1 in line 2, got '2'"});
+    write("a.gltf", "{\"asset\": {\"version\": \"2.0\"}");
+    fail({"info", "a.gltf"}, {"a.gltf: expected glTF's JSON, got a syntax error"});
+    EXPECT_TRUE(succeed({"info", "mesh.obj", "--json"}).json()["materials"].empty());
+}
+
 TEST_F(Info, ExtensionsInCapitals) {
     write("MESH.OBJ", octahedron_obj());
     write("ENV.HDR", white_hdr());

@@ -16,9 +16,27 @@ struct Sample {
 };
 
 std::string small_obj() {
-    return "o a\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 .5 .5 .5\nv .5 .5 1 1 1 1\nvt 0 0\nvt "
+    return "o a\nusemtl m\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 .5 .5 .5\nv .5 .5 1 1 1 "
+           "1\nvt 0 0\nvt "
            "1 1\nvn 0 0 1\n"
            "f 1/1/1 2/2/1 3/1/1 4/2/1\nf -1//1 1//1 \\\n2//1\n";
+}
+
+std::string small_gltf() {
+    // A triangle of three positions, bytes as indices, a material and a texture that is not there.
+    return R"({"asset":{"version":"2.0"},"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0,"scale":[1,2,1]}],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1,"material":0}]}],)"
+           R"("materials":[{"pbrMetallicRoughness":{"roughnessFactor":0.5,"baseColorTexture":{"index":0}}}],)"
+           R"("textures":[{"source":0}],"images":[{"uri":"x"}],)"
+           R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},)"
+           R"({"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}],)"
+           R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],)"
+           R"("buffers":[{"byteLength":39,"uri":"data:;base64,)"
+           R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAEC"}]})";
+}
+
+TriangleMesh gltf(std::string_view text, NormalSource normals) {
+    return to_mesh(read_gltf(bytes_of(text), {}), normals);
 }
 
 std::string small_off() {
@@ -44,6 +62,7 @@ std::vector<Sample> samples() {
     };
     return {
         {"obj", small_obj(), obj, small_obj().find("f 1") + 1},
+        {"gltf", small_gltf(), gltf, without_tail(small_gltf(), 1)},
         {"off", small_off(), off, without_tail(small_off(), 3)},
         {"ply_ascii", small_ply("ascii"), ply, without_tail(small_ply("ascii"), 5)},
         {"ply_little", small_ply("binary_little_endian"), ply,

@@ -21,7 +21,7 @@ TEST_F(LoadTest, NamesTheFileInEveryError) {
     expect_refusal([this] { return load(write("broken.obj", "v 0 0\n")); },
                    "broken.obj: expected 3, 4, 6 or 7 numbers");
     expect_refusal([this] { return load(write("box.fbx", "")); },
-                   "box.fbx: expected a mesh file (.obj, .off, .ply or .stl), got '.fbx'");
+                   "box.fbx: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '.fbx'");
     expect_refusal([this] { return load(write("box", "")); }, "got ''");
     try {
         static_cast<void>(load(folder_ / "missing.ply"));

@@ -1,0 +1,156 @@
+// Materials, groups and textures of OBJ files.
+#include <cmath>
+
+#include "mesh/floor.h"
+#include "tests/mesh/mesh_files.h"
+#include "tests/mesh/texture_files.h"
+
+namespace relumine::mesh {
+namespace {
+
+using testing::ElementsAre;
+
+class MtlTest : public MeshFileTest {
+protected:
+    [[nodiscard]] TriangleMesh with_mtl(const std::string& mtl, const std::string& statements = "") const {
+        static_cast<void>(write("a.mtl", mtl));
+        return load(write("mesh.obj",
+                          "mtllib a.mtl\n" + statements + "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"));
+    }
+};
+
+TEST_F(MtlTest, MaterialsAsWritten) {
+    static_cast<void>(write("a.mtl",
+                            "# Blender\nnewmtl red wall\nKd 0.5 0.25 0.125\nKs 0 0 0\nNs 10\nillum 2\n\n"
+                            "newmtl shiny\nKa 1 1 1\nKd 0.25\nKs 0.5 0.5 0.75\nNs 96.5\nd 0.5\n"
+                            "newmtl metal\nKd 1 0.75 0.5\nPr 0.25\nPm 1\n"));
+    const TriangleMesh mesh = load(write("mesh.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                                                     "usemtl shiny\nf 1 2 3 4\nusemtl red wall\nf 1 2 3\n"
+                                                     "usemtl shiny\nf 2 3 4\nusemtl metal\nf 1 3 4\n"));
+    ASSERT_EQ(mesh.materials.size(), 3u);
+    EXPECT_EQ(mesh.materials[0],
+              (Material{.name = "red wall", .base_color = {0.5f, 0.25f, 0.125f}, .exponent = 10.0f}));
+    EXPECT_EQ(mesh.materials[1], (Material{.name = "shiny",
+                                           .base_color = glm::vec3(0.25f),
+                                           .specular = {0.5f, 0.5f, 0.75f},
+                                           .exponent = 96.5f}));
+    EXPECT_EQ(mesh.materials[2], (Material{.name = "metal",
+                                           .model = MaterialModel::MetallicRoughness,
+                                           .base_color = {1.0f, 0.75f, 0.5f},
+                                           .metallic = 1.0f,
+                                           .roughness = 0.25f}));
+    EXPECT_THAT(mesh.triangle_materials, ElementsAre(1, 1, 0, 1, 2));
+    EXPECT_THAT(mesh.missing, ElementsAre());
+    EXPECT_TRUE(mesh.groups.empty());
+    EXPECT_TRUE(mesh.triangle_groups.empty());
+}
+
+TEST_F(MtlTest, FacesWithoutAMaterialAndUnknownNames) {
+    static_cast<void>(write("a.mtl", "newmtl known\nKd 0.5\n"));
+    const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    const TriangleMesh mesh = load(
+        write("mesh.obj",
+              vertices + "f 1 2 3\nf 2 3 1\nusemtl known\nf 1 2 3\nusemtl other\nf 1 2 3\nmtllib a.mtl\n"));
+    EXPECT_THAT(mesh.triangle_materials, ElementsAre(2, 2, 0, 1));
+    EXPECT_EQ(mesh.materials[1], (Material{.name = "other"}));
+    EXPECT_EQ(mesh.materials[2], (Material{.name = "default"}));
+    EXPECT_THAT(mesh.missing, ElementsAre("material other"));
+
+    const TriangleMesh alone =
+        load(write("alone.obj", "mtllib gone.mtl\n" + vertices + "usemtl a\nf 1 2 3\n"));
+    EXPECT_THAT(alone.missing, ElementsAre("gone.mtl"));
+    EXPECT_EQ(alone.materials, (std::vector<Material>{{.name = "a"}}));
+    EXPECT_TRUE(load(write("none.obj", vertices + "f 1 2 3\n")).materials.empty());
+    EXPECT_TRUE(load(write("none.obj", vertices + "f 1 2 3\n")).triangle_materials.empty());
+}
+
+TEST_F(MtlTest, GroupsAndObjects) {
+    const TriangleMesh mesh =
+        obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\no body of it\nf 1 2 3 4\ng lid\nf 1 2 3\n"
+            "o body of it\nf 2 3 4\ng\nf 1 2 3\n");
+    EXPECT_THAT(mesh.groups, ElementsAre("body of it", "lid", "default"));
+    EXPECT_THAT(mesh.triangle_groups, ElementsAre(2, 0, 0, 1, 0, 2));
+}
+
+/// A seam: vertices with several uvs. Concave polygons are cut elsewhere than fans, and keep each corner's uv.
+TEST_F(MtlTest, UvsPerCorner) {
+    const TriangleMesh mesh = obj("v 0 0 0\nv 2 0 0\nv 0.5 0.5 0\nv 0 2 0\nv 5 0 0\n"
+                                  "vt 0 0\nvt 2 0\nvt 0.5 0.5\nvt 0 2\nvt 9 9\n"
+                                  "f 1/1 2/2 3/3 4/4\nf 2/5 5/1 3/3\nf 1 2 3\n");
+    EXPECT_TRUE(mesh.uvs.empty());
+    ASSERT_EQ(mesh.corner_uvs.size(), 4u);
+    for (std::size_t t = 0; t < 2; ++t)
+        for (std::size_t i = 0; i < 3; ++i)
+            EXPECT_EQ(mesh.corner_uvs[t][i], glm::vec2(mesh.positions[mesh.triangles[t][i]]))
+                << t << ' ' << i;
+    EXPECT_EQ(mesh.corner_uvs[2][0], glm::vec2(9, 9));
+    EXPECT_EQ(mesh.corner_uvs[3][0], glm::vec2(0, 0));
+    EXPECT_TRUE(obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt nan 0\nf 1/1 2/2 3/1\nf 1/2 2/1 3/1\n")
+                    .corner_uvs.empty());
+}
+
+TEST_F(MtlTest, TexturesWithTheirOptions) {
+    std::filesystem::create_directory(folder_ / "maps");
+    static_cast<void>(write("maps/a picture.png", four_colors()));
+    const TriangleMesh mesh = with_mtl("newmtl m\nmap_Kd -s 2 3 1 -o 0.5 -clamp on -mm 0 1 maps\\a "
+                                       "picture.png\nnewmtl n\nmap_Kd maps/a picture.png\n");
+    ASSERT_EQ(mesh.textures.size(), 1u) << "one file, read once";
+    EXPECT_EQ(mesh.textures[0].texels, (std::vector<Rgb8>{Blue, Gray, Red, Green}))
+        << "v counts from the bottom";
+    const TextureSlot& slot = *mesh.materials[0].base_color_texture;
+    EXPECT_EQ(slot, (TextureSlot{.is_srgb = true,
+                                 .wrap = {Wrap::Clamp, Wrap::Clamp},
+                                 .uv_from_mesh_uv = glm::mat2(2, 0, 0, 3),
+                                 .uv_offset = {0.5f, 0.0f}}));
+    EXPECT_EQ(*mesh.materials[1].base_color_texture, (TextureSlot{.is_srgb = true}));
+    EXPECT_EQ(sample(mesh.textures[0], *mesh.materials[1].base_color_texture, {0.25f, 0.75f}),
+              glm::vec3(1, 0, 0));
+
+    const TriangleMesh without = with_mtl("newmtl m\nmap_Kd gone.png\n");
+    EXPECT_THAT(without.missing, ElementsAre("gone.png"));
+    EXPECT_FALSE(without.materials[0].base_color_texture);
+}
+
+TEST_F(MtlTest, TheFloorHasItsOwn) {
+    TriangleMesh mesh =
+        with_mtl("newmtl m\nKd 0.5\n", "o thing\nvt 0 0\nvt 1 1\nf 1/1 2/1 3/1\nf 1/2 2/2 3/2\n");
+    append_floor(mesh, 3);
+    EXPECT_EQ(mesh.materials.back(), (Material{.name = "floor"}));
+    EXPECT_THAT(mesh.groups, ElementsAre("thing", "floor"));
+    ASSERT_EQ(mesh.num_triangles(), 3u + 8u);
+    EXPECT_EQ(mesh.triangle_materials.size(), mesh.num_triangles());
+    EXPECT_EQ(mesh.triangle_materials.back(), mesh.materials.size() - 1);
+    EXPECT_EQ(mesh.triangle_groups.size(), mesh.num_triangles());
+    EXPECT_EQ(mesh.triangle_groups[2], 0u);
+    EXPECT_EQ(mesh.triangle_groups[3], 1u);
+    EXPECT_EQ(mesh.corner_uvs.size(), mesh.num_triangles());
+
+    TriangleMesh plain = obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    append_floor(plain, 2);
+    EXPECT_TRUE(plain.materials.empty());
+    EXPECT_THAT(plain.groups, ElementsAre("mesh", "floor"));
+    EXPECT_THAT(plain.triangle_groups, ElementsAre(0, 1, 1));
+}
+
+TEST_F(MtlTest, RefusesWhatItWouldMisread) {
+    const auto refused = [this](const std::string& mtl, const std::string& part) {
+        expect_refusal([&] { return with_mtl(mtl); }, part);
+    };
+    refused("Kd 1 1 1\n", "mesh.obj: a.mtl: expected newmtl before the first value in line 1");
+    refused("newmtl m\nKd 1 1\n", "1 or 3 numbers of Kd in line 2, got 2");
+    refused("newmtl m\nKd 1 x 1\n", "a number in line 2, got 'x'");
+    refused("newmtl m\nKd spectral file.rfl\n", "line 2");
+    refused("newmtl m\nKs 1 1 1.5\n", "a number of 0 to 1 in line 2, got '1.5'");
+    refused("newmtl m\nKd nan\n", "'nan'");
+    refused("newmtl m\nNs -1\n", "'-1'");
+    refused("newmtl m\nNs\n", "1 number of Ns");
+    refused("newmtl m\nPr 2\n", "'2'");
+    refused("newmtl m\nmap_Kd\n", "file name of a texture");
+    refused("newmtl m\nmap_Kd -o\n", "arguments of -o");
+    static_cast<void>(write("broken.png", four_colors().substr(0, 40)));
+    refused("newmtl m\nmap_Kd broken.png\n", "a.mtl: broken.png: expected");
+    refused(std::string("newmtl m\0\n", 10), "NUL");
+}
+
+} // namespace
+} // namespace relumine::mesh
