@@ -38,8 +38,12 @@ relight::PictureOptions parse_size(const std::string& text) {
     return options;
 }
 
-relight::Camera camera_of(const OutputOptions& options, const mesh::TriangleMesh& mesh) {
-    relight::Camera camera = relight::automatic_camera(mesh, parse_size(options.size), options.fov_degrees);
+/// The options', or else the view that the scene's highlights are for, or one that shows the mesh.
+relight::Camera camera_of(const OutputOptions& options, const prt::Scene& scene) {
+    relight::Camera camera =
+        scene.settings.view
+            ? *scene.settings.view
+            : relight::automatic_camera(scene.mesh, parse_size(options.size), options.fov_degrees);
     if (!options.target.empty()) {
         const glm::vec3 target = parse_vec3("--target", options.target);
         camera.eye += target - camera.target;
@@ -92,7 +96,7 @@ relight::Picture picture_of(const OutputOptions& options, const LitScene& lit,
                                    : relight::compose(*pixels, colors, environment);
     if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
         return relight::compose(*texels, colors, options.gutter);
-    return relight::draw(scene.mesh, lit.rays(), colors, environment, camera_of(options, scene.mesh),
+    return relight::draw(scene.mesh, lit.rays(), colors, environment, camera_of(options, scene),
                          parse_size(options.size));
 }
 
@@ -186,7 +190,7 @@ void FrameWriter::save(const std::string& path, std::span<const glm::vec3> radia
     }
     const mesh::TriangleMesh& mesh = lit_.scene().mesh;
     if (!view_)
-        view_ = std::make_unique<relight::PictureView>(mesh, lit_.rays(), camera_of(options_, mesh),
+        view_ = std::make_unique<relight::PictureView>(mesh, lit_.rays(), camera_of(options_, lit_.scene()),
                                                        parse_size(options_.size));
     relight::save_picture(path, view_->draw(coloured(options_.albedo, lit_.scene(), radiance), environment),
                           options_.exposure_ev);

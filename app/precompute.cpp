@@ -11,6 +11,7 @@
 #include "app/commands.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
+#include "app/surface_options.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
 #include "prt/ray_scene.h"
@@ -28,6 +29,7 @@ struct Options {
     float floor_scale = 4.0f;
     std::optional<float> bias;
     ReceiverOptions receivers;
+    SurfaceOptions surfaces;
     prt::PrecomputeOptions precompute;
 };
 
@@ -38,6 +40,7 @@ void run(const Options& options, Session& session) {
         throw std::runtime_error(fmt::format("{}: expected a name that ends in .prt", options.output));
     check_output(options.output, {options.mesh});
     options.receivers.check();
+    options.surfaces.check();
 
     prt::Scene scene;
     scene.mesh = mesh::load(options.mesh, options.normals == "smooth" ? mesh::NormalSource::Smooth
@@ -57,10 +60,12 @@ void run(const Options& options, Session& session) {
     {
         const prt::RayScene rays(scene.mesh);
         options.receivers.apply(scene, rays, options.mesh, session, report);
+        options.surfaces.apply(scene, session);
         session.poll();
         scene.transfer = prt::precompute(scene.receivers, rays, precompute, &statistics);
+        session.end_progress();
+        options.surfaces.precompute_highlights(scene, rays, precompute, session, report);
     }
-    session.end_progress();
 
     scene.settings = {.tolerance = precompute.tolerance,
                       .epsilon = precompute.epsilon,
@@ -69,7 +74,9 @@ void run(const Options& options, Session& session) {
                       .bias = precompute.bias,
                       .floor_vertices = options.floor_vertices.value_or(0),
                       .source = std::filesystem::path(options.mesh).filename().string(),
-                      .source_hash = prt::file_hash(options.mesh)};
+                      .source_hash = prt::file_hash(options.mesh),
+                      .glossy_tolerance = scene.settings.glossy_tolerance,
+                      .view = scene.settings.view};
     const std::uint64_t file_bytes = prt::save_scene(options.output, scene);
 
     const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
@@ -143,6 +150,7 @@ void add_precompute(CLI::App& program, Session& session) {
     command.add_option("--bias", options->bias,
                        "lift of the rays' origins off the surface, in the mesh's unit");
     options->receivers.add_to(command);
+    options->surfaces.add_to(command);
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "prt/pixel_receivers.h"
 #include "prt/texel_receivers.h"
@@ -27,8 +28,8 @@ void ReceiverOptions::add_to(CLI::App& command) {
                     "(a lightmap on the mesh's uvs)")
         ->capture_default_str();
     command.add_option("--view", view_,
-                       "the camera of pixels: EX,EY,EZ,TX,TY,TZ[,FOV] (eye, target, vertical degrees: 35) or "
-                       "auto");
+                       "the camera of pixels, and the eye that highlights are for: EX,EY,EZ,TX,TY,TZ[,FOV] "
+                       "(eye, target, vertical degrees: 35) or auto");
 }
 
 ReceiverOptions::Wanted ReceiverOptions::wanted() const {
@@ -104,9 +105,7 @@ void ReceiverOptions::check() const {
     const bool pixels = wanted().kind == Kind::Pixels;
     if (pixels && view_.empty())
         throw CLI::ValidationError("--receivers", "expected --view (a camera, or auto) with pixels");
-    if (!pixels && !view_.empty())
-        throw CLI::ValidationError("--view", "expected --receivers pixels:WxH with it");
-    if (pixels)
+    if (!view_.empty())
         static_cast<void>(camera());
 }
 
@@ -120,8 +119,21 @@ void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays, const 
             apply_texels(wanted, scene, session, report);
         else
             scene.receivers = prt::vertex_receivers(scene.mesh);
+        if (wanted.kind != Kind::Pixels && !view_.empty())
+            apply_eye(scene);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", mesh_name, error.what()));
+    }
+}
+
+/// Receivers that are no pixels of the view but seen from it.
+void ReceiverOptions::apply_eye(prt::Scene& scene) const {
+    const std::optional<prt::Camera> own = camera();
+    scene.settings.view = own ? *own : relight::automatic_camera(scene.mesh);
+    for (const glm::vec3& position : scene.receivers.positions) {
+        const glm::vec3 to_eye = scene.settings.view->eye - position;
+        const float distance = glm::length(to_eye);
+        scene.receivers.to_eye.push_back(distance > 0.0f ? to_eye / distance : glm::vec3(0.0f, 1.0f, 0.0f));
     }
 }
 

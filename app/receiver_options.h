@@ -34,6 +34,7 @@ private:
     };
     [[nodiscard]] Wanted wanted() const;
     [[nodiscard]] std::optional<prt::Camera> camera() const; ///< none: automatic
+    void apply_eye(prt::Scene& scene) const;
     void apply_pixels(const Wanted& wanted, prt::Scene& scene, const prt::RayScene& rays,
                       const Session& session, nlohmann::json& report) const;
     static void apply_texels(const Wanted& wanted, prt::Scene& scene, const Session& session,

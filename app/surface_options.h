@@ -1,0 +1,39 @@
+// What the surfaces of a precomputed scene are made of, and their highlights.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "app/session.h"
+#include "prt/glossy_precompute.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+
+namespace relumine::app {
+
+/// --material and --glossy-tolerance.
+class SurfaceOptions {
+public:
+    void add_to(CLI::App& command);
+
+    /// Refuses wrong usage before any work is done.
+    void check() const;
+
+    /// Gives the scene's receivers their surfaces: the mesh's materials, changed by the options. None where there are neither.
+    void apply(prt::Scene& scene, const Session& session) const;
+
+    /// Computes the glossy part of the scene's transfer, where its receivers have highlights and an eye. `precompute` is what the diffuse
+    /// part was computed with.
+    void precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
+                               const prt::PrecomputeOptions& precompute, Session& session,
+                               nlohmann::json& report) const;
+
+private:
+    std::vector<std::string> materials_;
+    float glossy_tolerance_ = prt::GlossyOptions{}.tolerance;
+};
+
+} // namespace relumine::app
