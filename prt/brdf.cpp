@@ -66,7 +66,8 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, con
         return lobes;
     }
     const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);
-    const float c = std::pow(1.0f - v_h, 5.0f);
+    const float squared = (1.0f - v_h) * (1.0f - v_h);
+    const float c = squared * squared * (1.0f - v_h);
     lobes.specular = ggx(ggx_alpha(surface.shape), sin2, n_w, n_v);
     lobes.diffuse_grazing = c * lobes.diffuse;
     lobes.specular_grazing = c * lobes.specular;

@@ -133,6 +133,16 @@ void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe, std::span<con
         }
 }
 
+void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
+                    std::array<BlockSurfaces::Floats, NumGlossyLobes>& values) {
+    for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
+        const DirectionTerms terms(surfaces, direction, lane);
+        hn::StoreU(terms.specular(), Tag(), values[0].data() + lane);
+        hn::StoreU(terms.specular_grazing(), Tag(), values[1].data() + lane);
+        hn::StoreU(terms.diffuse_grazing(), Tag(), values[2].data() + lane);
+    }
+}
+
 } // namespace relumine::prt::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -140,6 +150,7 @@ HWY_AFTER_NAMESPACE();
 namespace relumine::prt {
 
 HWY_EXPORT(evaluate_lobe);
+HWY_EXPORT(evaluate_lobes);
 
 void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,
                         const glm::vec3& eye_of_lane) {
@@ -166,6 +177,11 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
 void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe, std::span<const glm::vec3> directions,
                    std::span<BlockSurfaces::Floats> values) {
     HWY_DYNAMIC_DISPATCH(evaluate_lobe)(surfaces, lobe, directions, values);
+}
+
+void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
+                    std::array<BlockSurfaces::Floats, NumGlossyLobes>& values) {
+    HWY_DYNAMIC_DISPATCH(evaluate_lobes)(surfaces, direction, values);
 }
 
 } // namespace relumine::prt

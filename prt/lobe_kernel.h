@@ -35,4 +35,8 @@ struct alignas(64) BlockSurfaces {
 void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe, std::span<const glm::vec3> directions,
                    std::span<BlockSurfaces::Floats> values);
 
+/// All lobes for one direction, by GlossyLobe.
+void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
+                    std::array<BlockSurfaces::Floats, NumGlossyLobes>& values);
+
 } // namespace relumine::prt

@@ -1,5 +1,6 @@
 #include "relight/light_packets.h"
 
+#include <algorithm>
 #include <bit>
 #include <numbers>
 #include <numeric>
@@ -36,52 +37,63 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
     for (std::size_t k = lane; k < (lane == 0 ? prt::PacketSize : lane + 1); ++k)
         packet.directions.set(k, direction);
     packet.irradiance[lane] = irradiance;
+    packet.strength[lane] = {glm::length(irradiance.red), glm::length(irradiance.green),
+                             glm::length(irradiance.blue)};
 }
 
-template<typename Visit>
-void LightPackets::for_visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
-                               const Visit& visit) const {
-    const glm::vec3 origin = prt::ray_origin(position, normal, rays.bias);
-    for (const Packet& packet : packets_) {
-        std::uint32_t above = 0;
-        for (std::uint32_t i = 0; i < packet.directions.num_directions; ++i) {
-            const float cosine = normal.x * packet.directions.x[i] + normal.y * packet.directions.y[i] +
-                                 normal.z * packet.directions.z[i];
-            above |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
-        }
-        if (above == 0)
-            continue;
-        std::uint32_t visible = above & ~rays.blockers->occluded(origin, packet.directions, above);
-        for (; visible != 0; visible &= visible - 1)
-            visit(packet, static_cast<std::size_t>(std::countr_zero(visible)));
+/// Which of the packet's lights reach the receiver.
+std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position, const glm::vec3& normal,
+                                    const ShadowRays& rays) {
+    std::uint32_t above = 0;
+    for (std::uint32_t i = 0; i < packet.directions.num_directions; ++i) {
+        const float cosine = normal.x * packet.directions.x[i] + normal.y * packet.directions.y[i] +
+                             normal.z * packet.directions.z[i];
+        above |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
     }
+    if (above == 0)
+        return 0;
+    const glm::vec3 origin = prt::ray_origin(position, normal, rays.bias);
+    return above & ~rays.blockers->occluded(origin, packet.directions, above);
 }
 
 glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& normal,
                                   const ShadowRays& rays) const {
     glm::dvec3 irradiance(0.0);
-    for_visible(position, normal, rays, [&](const Packet& packet, std::size_t lane) {
-        irradiance += packet.irradiance[lane].on(normal);
-    });
+    for (const Packet& packet : packets_)
+        for (std::uint32_t lights = visible(packet, position, normal, rays); lights != 0;
+             lights &= lights - 1)
+            irradiance += packet.irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(normal);
     return irradiance / std::numbers::pi;
 }
 
-prt::Lobes<glm::dvec3> LightPackets::lobes(const glm::vec3& position, const glm::vec3& normal,
-                                           const glm::vec3& to_eye, const prt::Surface& surface,
-                                           const ShadowRays& rays) const {
-    prt::Lobes<glm::dvec3> sums;
-    for_visible(position, normal, rays, [&](const Packet& packet, std::size_t lane) {
-        const prt::DirectionPacket& d = packet.directions;
-        const VectorIrradiance& e = packet.irradiance[lane];
-        const prt::Lobes<float> lobes =
-            prt::evaluate_lobes(surface, normal, to_eye, {d.x[lane], d.y[lane], d.z[lane]});
-        const glm::dvec3 light(glm::length(e.red), glm::length(e.green), glm::length(e.blue));
-        sums.diffuse += e.on(normal) / std::numbers::pi;
-        sums.diffuse_grazing += light * static_cast<double>(lobes.diffuse_grazing);
-        sums.specular += light * static_cast<double>(lobes.specular);
-        sums.specular_grazing += light * static_cast<double>(lobes.specular_grazing);
-    });
-    return sums;
+void LightPackets::light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
+                               std::span<const glm::vec3> normals, const ShadowRays& rays,
+                               std::span<prt::Lobes<glm::dvec3>> sums) const {
+    std::fill(sums.begin(), sums.end(), prt::Lobes<glm::dvec3>());
+    for (const Packet& packet : packets_) {
+        // By light, as the lobes are evaluated for a block at a time.
+        std::array<std::uint32_t, prt::PacketSize> reached{};
+        for (std::size_t i = 0; i < sums.size(); ++i)
+            for (std::uint32_t lights = visible(packet, positions[i], normals[i], rays); lights != 0;
+                 lights &= lights - 1)
+                reached[static_cast<std::size_t>(std::countr_zero(lights))] |= 1u << i;
+        for (std::size_t light = 0; light < packet.directions.num_directions; ++light) {
+            if (reached[light] == 0)
+                continue;
+            const prt::DirectionPacket& d = packet.directions;
+            std::array<prt::BlockSurfaces::Floats, prt::NumGlossyLobes> lobes;
+            prt::evaluate_lobes(surfaces, {d.x[light], d.y[light], d.z[light]}, lobes);
+            const glm::dvec3& strength = packet.strength[light];
+            for (std::uint32_t receivers = reached[light]; receivers != 0; receivers &= receivers - 1) {
+                const auto i = static_cast<std::size_t>(std::countr_zero(receivers));
+                prt::Lobes<glm::dvec3>& sum = sums[i];
+                sum.diffuse += packet.irradiance[light].on(normals[i]) / std::numbers::pi;
+                sum.specular += strength * static_cast<double>(lobes[0][i]);
+                sum.specular_grazing += strength * static_cast<double>(lobes[1][i]);
+                sum.diffuse_grazing += strength * static_cast<double>(lobes[2][i]);
+            }
+        }
+    }
 }
 
 VectorIrradiance vector_irradiance(const lights::DistantLight& light) {

@@ -11,6 +11,7 @@
 #include "lights/light_list.h"
 #include "prt/blockers.h"
 #include "prt/brdf.h"
+#include "prt/lobe_kernel.h"
 #include "prt/receivers.h"
 #include "relight/cluster_lights.h"
 #include "relight/sharp_lights.h"
@@ -36,22 +37,22 @@ public:
     [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
                                       const ShadowRays& rays) const;
 
-    /// The same for a surface seen from `to_eye`, colours not put in: radiance through each lobe. A light smaller than a cell is a point.
-    [[nodiscard]] prt::Lobes<glm::dvec3> lobes(const glm::vec3& position, const glm::vec3& normal,
-                                               const glm::vec3& to_eye, const prt::Surface& surface,
-                                               const ShadowRays& rays) const;
+    /// The same for a block of up to 16 receivers with highlights, colours not put in: radiance through each lobe. A light is a
+    /// point. `positions`, `normals` and `sums` have one element per receiver.
+    void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
+                     std::span<const glm::vec3> normals, const ShadowRays& rays,
+                     std::span<prt::Lobes<glm::dvec3>> sums) const;
 
 private:
-    /// Calls visit(packet, lane) for each light that reaches the receiver.
-    template<typename Visit>
-    void for_visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
-                     const Visit& visit) const;
     void add(const glm::dvec3& direction, const VectorIrradiance& irradiance);
 
     struct Packet {
         prt::DirectionPacket directions;
         std::array<VectorIrradiance, prt::PacketSize> irradiance{};
+        std::array<glm::dvec3, prt::PacketSize> strength{}; ///< length of each channel's vector
     };
+    static std::uint32_t visible(const Packet& packet, const glm::vec3& position, const glm::vec3& normal,
+                                 const ShadowRays& rays);
     std::vector<Packet> packets_;
 };
 

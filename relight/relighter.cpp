@@ -22,8 +22,8 @@ namespace relumine::relight {
 
 namespace {
 
-/// Receivers of one task that traces sharp lights: about 50 microseconds of work, well above the cost of starting a task.
-constexpr std::size_t ReceiversPerTask = 64;
+/// Blocks of one task that traces sharp lights: about 50 microseconds of work, well above the cost of starting a task.
+constexpr std::size_t BlocksPerTask = 4;
 
 /// How far from 1 the length of a light's direction may be, as in files of lights.
 constexpr double UnitTolerance = 1e-3;
@@ -239,21 +239,35 @@ void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
 }
 
 void Relighter::trace_sharp_lights() {
+    if (traced_.empty())
+        return;
     const LightPackets packets(sharp_lights_);
-    const auto trace = [&](std::size_t place) {
-        const glm::vec3& position = rays_.positions[transfer_.order[place]];
-        const glm::vec3& normal = transfer_.normals[place];
-        if (transfer_.glossy)
-            traced_[place] = packets.lobes(position, normal, transfer_.glossy->to_eye[place],
-                                           transfer_.surfaces[place], rays_);
-        else
-            traced_[place].diffuse = packets.radiance(position, normal, rays_);
-    };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, traced_.size(), ReceiversPerTask),
-                      [&](const auto& places) {
-                          for (std::size_t place = places.begin(); place < places.end(); ++place)
-                              trace(place);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, transfer_.counts.num_blocks(), BlocksPerTask),
+                      [&](const auto& blocks) {
+                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block)
+                              trace_block(packets, block);
                       });
+}
+
+void Relighter::trace_block(const LightPackets& packets, std::size_t block) {
+    const std::size_t begin = block * prt::BlockSize;
+    const std::size_t size = std::min(prt::BlockSize, traced_.size() - begin);
+    if (!transfer_.glossy) {
+        for (std::size_t place = begin; place < begin + size; ++place)
+            traced_[place].diffuse =
+                packets.radiance(rays_.positions[transfer_.order[place]], transfer_.normals[place], rays_);
+        return;
+    }
+    prt::BlockSurfaces surfaces;
+    std::array<glm::vec3, prt::BlockSize> positions;
+    for (std::size_t i = 0; i < size; ++i) {
+        positions[i] = rays_.positions[transfer_.order[begin + i]];
+        surfaces.set(i, transfer_.surfaces[begin + i], transfer_.normals[begin + i],
+                     transfer_.glossy->to_eye[begin + i]);
+    }
+    packets.light_block(surfaces, std::span(positions).first(size),
+                        std::span(transfer_.normals).subspan(begin, size), rays_,
+                        std::span(traced_).subspan(begin, size));
 }
 
 void Relighter::check(const TexelRectangle& rectangle) const {

@@ -108,6 +108,7 @@ private:
     void set_cluster_lights(std::span<const std::uint32_t> clusters);
     void take(BinnedEnvironment binned);
     void trace_sharp_lights();
+    void trace_block(const LightPackets& packets, std::size_t block);
     bool update_sharp_lights();
     bool replace_sharp_lights(std::vector<SharpLight> lights);
     std::size_t update_changed(bool sharp_changed);
