@@ -205,8 +205,10 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
             result.report.first_overlap = static_cast<std::uint32_t>(i);
     }
     if (result.layout.texels.empty())
-        throw std::invalid_argument(
-            fmt::format("expected uvs that touch a texel of {} x {}, got none", size.width, size.height));
+        throw std::invalid_argument(fmt::format(
+            "expected uvs that touch a texel of {} x {}, got {} triangles without an area in uv and {} "
+            "that reach beyond 0 to 1, of {}",
+            size.width, size.height, atlas.num_flat(), atlas.num_outside(), mesh.num_triangles()));
     Receivers& receivers = result.receivers;
     receivers.positions.resize(receivers.points.size());
     receivers.normals.resize(receivers.points.size());

@@ -70,7 +70,7 @@ TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
 
 TEST_F(Receivers, AllCommandsTakePixels) {
     make_pixels();
-    write("frame.0001.hdr", white_hdr());
+    write("frame.0001.hdr", lamp_hdr(32));
     write("frame.0002.hdr", lamp_hdr(64));
     succeed({"animate", "px.prt", "frame.%04d.hdr", "-o", "lit.%04d.png", "--vertices", "all.npy"});
     EXPECT_EQ(png_size(read("lit.0002.png")), (Size{24, 16}));
@@ -108,10 +108,11 @@ TEST_F(Receivers, TexelsBecomeALightmap) {
 }
 
 TEST_F(Receivers, OverlappingChartsAreAWarning) {
+    // The centres of the four on the diagonal are inside no triangle, but on edges.
     write("twice.ply", square_ply(true));
     const Result made = succeed(
         {"precompute", "twice.ply", "-o", "tx.prt", "--face-resolution", "8", "--receivers", "texels:4x4"});
-    EXPECT_NE(made.out.find("warning: 16 texels lie in several triangles, the first at column 0, row 0"),
+    EXPECT_NE(made.out.find("warning: 12 texels lie in several triangles, the first at column 1, row 0"),
               std::string::npos)
         << made.out;
 }

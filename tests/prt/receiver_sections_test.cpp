@@ -110,7 +110,7 @@ protected:
 
 TEST_F(ReceiverSectionsTest, PixelsComeBack) {
     Scene scene = pixel_scene();
-    ASSERT_NE(scene.receivers.size() % 8, 0u); // not all is whole bytes
+    ASSERT_NE(std::get<PixelLayout>(scene.layout).num_samples() % 8, 0u); // not all is whole bytes
     expect_round_trip(scene);
     add_surfaces(scene);
     expect_round_trip(scene);
@@ -188,7 +188,13 @@ TEST_F(ReceiverSectionsTest, MissingAndShortSections) {
         refused(good, quoted, [&](Sections& s) { s.at(name).clear(); });
         refused(good, quoted, [&](Sections& s) { s.at(name).resize(s.at(name).size() + 48); });
     }
-    refused(good, "'order'", [](Sections& s) { s.erase("layout"); }); // as if they were the vertices
+    // As if they were the vertices.
+    refused(good, "'r_to_eye'", [](Sections& s) { s.erase("layout"); });
+    refused(good, "", [](Sections& s) {
+        s.erase("layout");
+        s.erase("r_to_eye");
+        s.erase("r_albedo");
+    });
 }
 
 TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
