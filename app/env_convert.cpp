@@ -126,11 +126,7 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
                                                                         options.face_resolution));
         return checked(cubemap::natural_size(layout, options.face_resolution), layout);
     }
-    if (layout == image.layout)
-        return {image.width, image.height};
-    const bool same_faces = cubemap::has_faces(layout) && cubemap::has_faces(image.layout);
-    return cubemap::natural_size(layout, same_faces ? cubemap::natural_resolution(image)
-                                                    : cubemap::conversion_resolution(image));
+    return cubemap::conversion_size(image, layout);
 }
 
 cubemap::Layout target_layout(const Options& options, const cubemap::EnvironmentImage& image,
