@@ -2,8 +2,8 @@
 // fills a part of one pixel, from each layout to each other, through the size that `env convert` chooses and through an equal one.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -118,6 +118,7 @@ struct Errors {
 struct Settings {
     std::uint32_t resolution = 0; ///< on the way; 0: what conversion_resolution() says
     double darkest = 0.01;
+    std::string from; ///< one layout only
 };
 
 ImageShape shape_of(Layout layout, const ImageSize& size) {
@@ -154,6 +155,7 @@ int main(int argc, char** argv) {
             "--darkest", settings.darkest,
             "normals with less than this part of the largest irradiance count only against the largest")
         ->capture_default_str();
+    program.add_option("--from", settings.from, "this layout only, as the table names it");
     CLI11_PARSE(program, argc, argv);
     try {
         fmt::print("{} places of the sun:\n\n", NumSuns);
@@ -161,10 +163,9 @@ int main(int argc, char** argv) {
             fmt::print("- {}\n", sun.place);
         fmt::print("\n| from | through | power | own | largest | worst sun | equal size: own | largest |\n"
                    "|---|---|---|---|---|---|---|---|\n");
-        Errors worst;
         for (const Layout layout : Layouts) {
             for (const Layout other : Layouts) {
-                if (layout == other)
+                if (layout == other || (!settings.from.empty() && settings.from != name(layout)))
                     continue;
                 const Errors roomy = there_and_back(layout, other, settings.resolution, settings.darkest);
                 const Errors equal = there_and_back(layout, other, SourceResolution, settings.darkest);
