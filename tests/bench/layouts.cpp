@@ -118,7 +118,7 @@ struct Errors {
 struct Settings {
     std::uint32_t resolution = 0; ///< on the way; 0: what conversion_resolution() says
     double darkest = 0.01;
-    std::string from; ///< one layout only
+    std::string from, through; ///< one layout only
 };
 
 ImageShape shape_of(Layout layout, const ImageSize& size) {
@@ -156,6 +156,7 @@ int main(int argc, char** argv) {
             "normals with less than this part of the largest irradiance count only against the largest")
         ->capture_default_str();
     program.add_option("--from", settings.from, "this layout only, as the table names it");
+    program.add_option("--through", settings.through, "this layout on the way only");
     CLI11_PARSE(program, argc, argv);
     try {
         fmt::print("{} places of the sun:\n\n", NumSuns);
@@ -165,7 +166,8 @@ int main(int argc, char** argv) {
                    "|---|---|---|---|---|---|---|---|\n");
         for (const Layout layout : Layouts) {
             for (const Layout other : Layouts) {
-                if (layout == other || (!settings.from.empty() && settings.from != name(layout)))
+                if (layout == other || (!settings.from.empty() && settings.from != name(layout)) ||
+                    (!settings.through.empty() && settings.through != name(other)))
                     continue;
                 const Errors roomy = there_and_back(layout, other, settings.resolution, settings.darkest);
                 const Errors equal = there_and_back(layout, other, SourceResolution, settings.darkest);
