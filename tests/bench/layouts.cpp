@@ -116,7 +116,7 @@ struct Errors {
 };
 
 struct Settings {
-    std::uint32_t resolution = 0; ///< on the way; 0: what conversion_resolution() says
+    std::uint32_t resolution = 0; ///< on the way; 0: what conversion_size() says
     double darkest = 0.01;
     std::string from, through; ///< one layout only
 };
