@@ -246,7 +246,8 @@ void add_convert(CLI::App& group, Session& session) {
         ->check(CLI::IsMember(names))
         ->capture_default_str();
     command.add_option("--size", options->size,
-                       "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face)");
+                       "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
+                       "octahedral 640; cube to cube as it is)");
     command.add_option("--face-resolution", options->face_resolution,
                        "the same as a cube face: a lat-long gets 4R x 2R pixels");
     command

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -164,8 +165,10 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
 
 using Pixels = std::vector<glm::vec3>;
 
-/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth` (Richardson 1972, Lucy 1974). Every round keeps the
-/// image's total power exactly, nothing becomes negative, and a constant stays as it is.
+/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth` (Richardson 1972, Lucy 1974). Every round
+/// keeps the image's total power exactly, nothing becomes negative, and a constant stays as it is.
+/// Differs from them: rounds start further along the way of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which
+/// takes a fraction of the rounds. What is returned is the end of a round, so the power is exact all the same.
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds, Pixels& grown) {
     // The product never leaves zero, where the interpolation may have missed a part of a wide pixel.
@@ -176,8 +179,11 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
                 grown[i][channel] = means[i][channel];
         }
     }
+    Pixels start = grown;
+    double last_difference = std::numeric_limits<double>::infinity(), earlier_difference = last_difference;
+    int run = 0; // rounds since the way was straight from the start
     for (int round = 0; round < num_rounds; ++round) {
-        Pixels ratio = back(grown);
+        Pixels ratio = back(start);
         double difference = 0.0, sum = 0.0;
         for (std::size_t i = 0; i < ratio.size(); ++i) {
             for (int channel = 0; channel < 3; ++channel) {
@@ -187,12 +193,28 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
                 ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
             }
         }
-        constexpr double Enough = 1e-5;
-        if (round > 0 && difference <= Enough * sum)
-            return;
         const Pixels factor = forth(ratio);
-        for (std::size_t i = 0; i < grown.size(); ++i)
-            grown[i] *= factor[i];
+        // Gone too far: the way starts anew.
+        run = difference > last_difference ? 0 : run + 1;
+        last_difference = difference;
+        // Wedges narrower than the target's pixels are never told apart: then the difference stops falling.
+        constexpr int Patience =
+            20; // rounds, to fall by a fiftieth: restarts make it wave for some ten rounds
+        constexpr double Enough = 1e-5, Falling = 0.98;
+        bool is_last = difference <= Enough * sum;
+        if (round % Patience == 0) {
+            is_last = is_last || difference > Falling * earlier_difference;
+            earlier_difference = difference;
+        }
+        const float further = run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
+        constexpr float Least = 0.25f; // of a pixel: the next round multiplies, so it must not come near zero
+        for (std::size_t i = 0; i < grown.size(); ++i) {
+            const glm::vec3 end = start[i] * factor[i];
+            start[i] = glm::max(end + further * (end - grown[i]), Least * end);
+            grown[i] = end;
+        }
+        if (is_last)
+            return;
     }
 }
 
@@ -257,7 +279,8 @@ ImageSize conversion_size(const EnvironmentImage& image, Layout target) {
         return natural_size(target, natural);
     // The rim pixels of a disc are long wedges that meet in a point: it takes finer pixels to tell them apart.
     const bool is_disc = image.layout == Layout::AngularMap || image.layout == Layout::MirrorBall;
-    const std::uint32_t roomy = is_disc ? 512 : 256;
+    // An octahedral map's are longish where the rim of an angular map points.
+    const std::uint32_t roomy = !is_disc ? 256 : target == Layout::Octahedral ? 640 : 512;
     return natural_size(target, std::max(natural, roomy));
 }
 

@@ -31,7 +31,7 @@ struct Reorientation {
                                        const Reorientation& reorientation = {});
 
 /// The size of a converted image whose size nobody asked for: as fine as the image, but at least as fine as 6 x 256 x 256, and where the
-/// image is a disc, as 6 x 512 x 512. In smaller maps a pixel is so wide that a sun in it would move when the sphere is cut up differently; with that much room it comes back where it was.
+/// image is a disc, as 6 x 512 x 512 (to octahedral maps: 640). In smaller maps a pixel is so wide that a sun in it would move when the sphere is cut up differently; with that much room it comes back where it was.
 /// Copies keep their size.
 [[nodiscard]] ImageSize conversion_size(const EnvironmentImage& image, Layout target);
 

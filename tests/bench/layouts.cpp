@@ -146,8 +146,8 @@ std::string percent(double value) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{
-        "Measures what environments lose on the way to another layout and back; Markdown on stdout"};
+    CLI::App program{"Measures what environments lose on the way to another layout and back: Markdown on "
+                     "stdout, in some minutes"};
     program.add_option("--face-resolution", settings.resolution,
                        "natural resolution on the way (what `env convert` chooses)");
     program
