@@ -126,11 +126,7 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
                                                                         options.face_resolution));
         return checked(cubemap::natural_size(layout, options.face_resolution), layout);
     }
-    if (layout == image.layout)
-        return {image.width, image.height};
-    const bool same_faces = cubemap::has_faces(layout) && cubemap::has_faces(image.layout);
-    return cubemap::natural_size(layout, same_faces ? cubemap::natural_resolution(image)
-                                                    : cubemap::conversion_resolution(image));
+    return cubemap::conversion_size(image, layout);
 }
 
 cubemap::Layout target_layout(const Options& options, const cubemap::EnvironmentImage& image,
@@ -250,7 +246,8 @@ void add_convert(CLI::App& group, Session& session) {
         ->check(CLI::IsMember(names))
         ->capture_default_str();
     command.add_option("--size", options->size,
-                       "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face)");
+                       "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
+                       "octahedral 640; cube to cube as it is)");
     command.add_option("--face-resolution", options->face_resolution,
                        "the same as a cube face: a lat-long gets 4R x 2R pixels");
     command

@@ -2,20 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
+#include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
-#include "cubemap/projection.h"
+#include "cubemap/pixel_links.h"
+#include "cubemap/pixel_points.h"
 #include "cubemap/resample.h"
 #include "cubemap/resample_lat_long.h"
-#include "cubemap/resample_projection.h"
 
 namespace relumine::cubemap {
 
@@ -101,45 +102,26 @@ std::uint32_t resolution_between(const ImageShape& source, const ImageShape& tar
                     std::max({Finest, natural_resolution(source), natural_resolution(target)}));
 }
 
-/// Averaging from one shape to another and back; finds the overlaps of a Projection once.
+/// Averaging from one shape to another and back.
 class Path {
 public:
-    Path(const ImageShape& source, const ImageShape& target, const Reorientation& reorientation, bool keep)
-        : source_{source, {}}, target_{target, {}}, forth_(reorientation), back_(reorientation.inverse()) {
-        if (!keep)
-            return;
-        for (End* end : {&source_, &target_}) {
-            if (projection(end->shape.layout) != nullptr)
-                end->overlaps = std::make_unique<detail::ProjectionOverlaps>(
-                    end->shape, resolution_between(source, target));
-        }
-    }
+    Path(const ImageShape& source, const ImageShape& target, const Reorientation& reorientation)
+        : source_(source), target_(target), reorientation_(reorientation) {}
     /// Each target pixel is the mean over its patch.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
-        return averaged(image, source_, target_, forth_);
+        return averaged(image, source_, target_, reorientation_);
     }
     [[nodiscard]] EnvironmentImage back(const EnvironmentImage& image) const {
-        return averaged(image, target_, source_, back_);
+        return averaged(image, target_, source_, reorientation_.inverse());
     }
 
 private:
-    struct End {
-        ImageShape shape;
-        std::unique_ptr<detail::ProjectionOverlaps> overlaps;
-    };
-
-    [[nodiscard]] static EnvironmentImage averaged(const EnvironmentImage& image, const End& from,
-                                                   const End& to, const Reorientation& reorientation) {
-        if (from.shape.layout == Layout::LatLong && has_faces(to.shape.layout) && is_quarter(reorientation))
-            return faces_from_lat_long(image, to.shape, reorientation);
-        const std::uint32_t resolution = resolution_between(from.shape, to.shape);
-        const CubeMap map = reoriented(
-            from.overlaps ? from.overlaps->to_cube(image) : resample(image, resolution), reorientation);
-        if (!to.overlaps)
-            return to_image(map, to.shape.layout, to.shape.width, to.shape.height, to.shape.sampling);
-        EnvironmentImage result = empty_image(to.shape);
-        to.overlaps->fill(map, result);
-        return result;
+    [[nodiscard]] static EnvironmentImage averaged(const EnvironmentImage& image, const ImageShape& from,
+                                                   const ImageShape& to, const Reorientation& reorientation) {
+        if (from.layout == Layout::LatLong && has_faces(to.layout) && is_quarter(reorientation))
+            return faces_from_lat_long(image, to, reorientation);
+        const CubeMap map = reoriented(resample(image, resolution_between(from, to)), reorientation);
+        return to_image(map, to.layout, to.width, to.height, to.sampling);
     }
 
     /// Straight into the cube's cells, wherever their samples lie.
@@ -159,52 +141,109 @@ private:
         return result;
     }
 
-    End source_, target_;
-    Reorientation forth_, back_;
+    ImageShape source_, target_;
+    Reorientation reorientation_;
 };
 
-/// Bilinear over the sphere, then averaged over the target's pixels: a smooth start that keeps energy only roughly.
+/// Bilinear over the sphere, at four points of each pixel: a smooth start that keeps energy only roughly.
 EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& target,
                               const Reorientation& reorientation) {
     // A lat-long's pixels are narrower than the texels of its natural resolution in the middle of a face.
     const std::uint32_t natural = natural_resolution(shape_of(image));
     const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
-    const CubeMap source = reoriented(resample(image, coarse), reorientation);
-    const std::uint32_t fine =
-        has_faces(target.layout) ? exact_resolution(target) : 2 * natural_resolution(target);
-    CubeMap map(fine);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, fine), [&](const auto& rows) {
-        for (const Face face : AllFaces) {
-            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-                for (std::uint32_t x = 0; x < fine; ++x)
-                    map.at(face, x, y) = sample(source, glm::vec3(texel_direction(face, x, y, fine)));
-            }
-        }
+    const CubeMap source = resample(image, coarse);
+    const glm::dmat3 source_from_target = glm::transpose(reorientation.target_from_source());
+    EnvironmentImage result = empty_image(target);
+    for_each_pixel_points(target, [&](std::size_t pixel, std::span<const glm::dvec3> directions) {
+        glm::vec3 sum(0.0f);
+        for (const glm::dvec3& direction : directions)
+            sum += sample(source, glm::vec3(source_from_target * direction));
+        result.pixels[pixel] = sum / static_cast<float>(directions.size());
     });
-    return to_image(map, target.layout, target.width, target.height, target.sampling);
+    return result;
 }
 
-/// Multiplies `grown` by what `path.back(grown)` lacks of the image, spread over the patches (Richardson 1972, Lucy 1974). Every round keeps the
-/// image's total power exactly, nothing becomes negative, and a constant stays as it is.
-void correct(const EnvironmentImage& image, const Path& path, int num_rounds, EnvironmentImage& grown) {
+using Pixels = std::vector<glm::vec3>;
+
+/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth` (Richardson 1972, Lucy 1974). Every round
+/// keeps the image's total power exactly, nothing becomes negative, and a constant stays as it is.
+/// Differs from them: rounds start further along the way of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which
+/// takes a fraction of the rounds. What is returned is the end of a round, so the power is exact all the same.
+template<typename Forth, typename Back>
+void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds, Pixels& grown) {
+    // The product never leaves zero, where the interpolation may have missed a part of a wide pixel.
+    const Pixels means = forth(image);
+    for (std::size_t i = 0; i < grown.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            if (grown[i][channel] <= 0.0f)
+                grown[i][channel] = means[i][channel];
+        }
+    }
+    Pixels start = grown;
+    double last_difference = std::numeric_limits<double>::infinity(), earlier_difference = last_difference;
+    int run = 0; // rounds since the way was straight from the start
     for (int round = 0; round < num_rounds; ++round) {
-        EnvironmentImage ratio = path.back(grown);
+        Pixels ratio = back(start);
         double difference = 0.0, sum = 0.0;
-        for (std::size_t i = 0; i < ratio.pixels.size(); ++i) {
+        for (std::size_t i = 0; i < ratio.size(); ++i) {
             for (int channel = 0; channel < 3; ++channel) {
-                const float have = ratio.pixels[i][channel], want = image.pixels[i][channel];
+                const float have = ratio[i][channel], want = image[i][channel];
                 difference += std::abs(static_cast<double>(have) - want);
                 sum += want;
-                ratio.pixels[i][channel] = have > 0.0f ? want / have : 1.0f;
+                ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
             }
         }
-        constexpr double Enough = 1e-5;
-        if (round > 0 && difference <= Enough * sum)
+        const Pixels factor = forth(ratio);
+        // Gone too far: the way starts anew.
+        run = difference > last_difference ? 0 : run + 1;
+        last_difference = difference;
+        // Wedges narrower than the target's pixels are never told apart: then the difference stops falling.
+        constexpr int Patience =
+            20; // rounds, to fall by a fiftieth: restarts make it wave for some ten rounds
+        constexpr double Enough = 1e-5, Falling = 0.98;
+        bool is_last = difference <= Enough * sum;
+        if (round % Patience == 0) {
+            is_last = is_last || difference > Falling * earlier_difference;
+            earlier_difference = difference;
+        }
+        const float further = run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
+        constexpr float Least = 0.25f; // of a pixel: the next round multiplies, so it must not come near zero
+        for (std::size_t i = 0; i < grown.size(); ++i) {
+            const glm::vec3 end = start[i] * factor[i];
+            start[i] = glm::max(end + further * (end - grown[i]), Least * end);
+            grown[i] = end;
+        }
+        if (is_last)
             return;
-        const EnvironmentImage factor = path.forth(ratio);
-        for (std::size_t i = 0; i < grown.pixels.size(); ++i)
-            grown.pixels[i] *= factor.pixels[i];
     }
+}
+
+EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
+                       const Reorientation& reorientation) {
+    const ImageShape source = shape_of(image);
+    EnvironmentImage result = interpolated(image, target, reorientation);
+    // In pictures this large no sun is lost in a pixel any more, and the links would take gigabytes.
+    constexpr std::size_t Large = std::size_t{1} << 22;
+    if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
+        const Path path(source, target, reorientation);
+        const auto over = [](const ImageShape& shape, const Pixels& pixels) {
+            EnvironmentImage picture = empty_image(shape);
+            picture.pixels = pixels;
+            return picture;
+        };
+        correct(
+            image.pixels, [&](const Pixels& pixels) { return path.forth(over(source, pixels)).pixels; },
+            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; }, 2, result.pixels);
+        return result;
+    }
+    const PixelLinks links(source, target, reorientation.target_from_source(),
+                           resolution_between(source, target),
+                           has_faces(source.layout) ? PixelLinks::Axes::Source : PixelLinks::Axes::Target);
+    constexpr int MostRounds = 200; // a sun in a disc's rim takes most of them
+    correct(
+        image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
+        [&](const Pixels& pixels) { return links.to_source(pixels); }, MostRounds, result.pixels);
+    return result;
 }
 
 } // namespace
@@ -226,20 +265,23 @@ EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target
         return std::move(*copy);
     // At about the same size there is nothing to make smooth, and hardly room for corrections.
     const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(shape_of(image));
-    // Rounds cost as much as two conversions each. In pictures this large no sun is lost in a pixel any more.
-    constexpr std::size_t Large = std::size_t{1} << 21;
-    const bool is_large = std::max(image.pixels.size(), std::size_t{target.width} * target.height) > Large;
-    const Path path(shape_of(image), target, reorientation, grows && !is_large);
-    EnvironmentImage result = grows ? interpolated(image, target, reorientation) : path.forth(image);
-    if (grows)
-        correct(image, path, is_large ? 2 : 10, result);
+    EnvironmentImage result = grows ? grown(image, target, reorientation)
+                                    : Path(shape_of(image), target, reorientation).forth(image);
     result.assumptions = "converted";
     return result;
 }
 
-std::uint32_t conversion_resolution(const EnvironmentImage& image) {
-    constexpr std::uint32_t Roomy = 256;
-    return std::max(natural_resolution(shape_of(image)), Roomy);
+ImageSize conversion_size(const EnvironmentImage& image, Layout target) {
+    const std::uint32_t natural = natural_resolution(shape_of(image));
+    if (target == image.layout)
+        return {image.width, image.height};
+    if (has_faces(target) && has_faces(image.layout))
+        return natural_size(target, natural);
+    // The rim pixels of a disc are long wedges that meet in a point: it takes finer pixels to tell them apart.
+    const bool is_disc = image.layout == Layout::AngularMap || image.layout == Layout::MirrorBall;
+    // An octahedral map's are longish where the rim of an angular map points.
+    const std::uint32_t roomy = !is_disc ? 256 : target == Layout::Octahedral ? 640 : 512;
+    return natural_size(target, std::max(natural, roomy));
 }
 
 } // namespace relumine::cubemap

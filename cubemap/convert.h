@@ -30,8 +30,9 @@ struct Reorientation {
 [[nodiscard]] EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
                                        const Reorientation& reorientation = {});
 
-/// The natural resolution of a converted image whose size nobody asked for: the image's own, but at least 256. In smaller maps a pixel is
-/// so wide that a sun in it would move when the sphere is cut up differently; with that much room it comes back where it was.
-[[nodiscard]] std::uint32_t conversion_resolution(const EnvironmentImage& image);
+/// The size of a converted image whose size nobody asked for: as fine as the image, but at least as fine as 6 x 256 x 256, and where the
+/// image is a disc, as 6 x 512 x 512 (to octahedral maps: 640). In smaller maps a pixel is so wide that a sun in it would move when the sphere is cut up differently; with that much room it comes back where it was.
+/// Copies keep their size.
+[[nodiscard]] ImageSize conversion_size(const EnvironmentImage& image, Layout target);
 
 } // namespace relumine::cubemap

@@ -68,7 +68,7 @@ bool PatchPieces::is_small(const Rectangle& rectangle) const {
         return false;
     const glm::dvec3 middle = projection_.direction(0.5 * (rectangle.low + rectangle.high));
     return std::all_of(corners_.begin(), corners_.end(), [&](const Corner& corner) {
-        return glm::distance(projection_.direction(corner.point), middle) <= LargestAngle;
+        return glm::distance(corner.direction, middle) <= LargestAngle;
     });
 }
 
@@ -77,10 +77,9 @@ void PatchPieces::make_outline() {
     for (std::size_t i = 0; i < corners_.size(); ++i) {
         const Corner& from = corners_[i];
         const Corner& to = corners_[(i + 1) % corners_.size()];
-        const glm::dvec3 direction = projection_.direction(from.point);
-        outline_.push_back(direction);
+        outline_.push_back(from.direction);
         if (!from.along_rim)
-            add_edge(from.point, direction, to.point, projection_.direction(to.point), 0);
+            add_edge(from.point, from.direction, to.point, to.direction, 0);
     }
     if (is_mirrored_)
         std::reverse(outline_.begin(), outline_.end());

@@ -44,9 +44,10 @@ private:
     struct Corner {
         glm::dvec2 point;
         bool along_rim;
+        glm::dvec3 direction = glm::dvec3(0.0);
     };
 
-    /// The corners of the rectangle's part that shows something, into corners_. False where there is none.
+    /// The corners of the rectangle's part that shows something, into corners_ without their directions. False where there is none.
     bool clip(const Rectangle& rectangle);
     /// True if the piece of corners_ is small enough for one polygon.
     [[nodiscard]] bool is_small(const Rectangle& rectangle) const;
@@ -58,6 +59,8 @@ private:
     void visit_part(const Rectangle& part, int depth, const Visit& visit) {
         if (!clip(part))
             return;
+        for (Corner& corner : corners_)
+            corner.direction = projection_.direction(corner.point);
         if (depth < DeepestPart && !is_small(part)) {
             const glm::dvec2 middle = 0.5 * (part.low + part.high);
             visit_part({part.low, middle}, depth + 1, visit);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -10,6 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cubemap/image_layout.h"
+#include "cubemap/lat_long_patch.h"
 #include "cubemap/resample_lat_long.h"
 #include "cubemap/resample_projection.h"
 #include "cubemap/spherical_overlap.h"
@@ -91,53 +91,23 @@ void check(const EnvironmentImage& image) {
                                                 image.pixels.size()));
 }
 
-/// A map's lat-long picture: every pixel gathers the texels under its patch, whose parallels are replaced by short arcs
-/// of great circles.
+/// A map's lat-long picture: every pixel gathers the texels under its patch.
 void fill_lat_long(const CubeMap& map, EnvironmentImage& image) {
-    constexpr double Pi = std::numbers::pi;
-    // An arc of angle d in place of a parallel moves less than d^2 / 12 of a pixel's area: 1e-6 at this number per turn.
-    constexpr double ArcsPerTurn = 1536.0;
-    // Patches beyond this are taken in parts, which keeps them well within a half-sphere.
-    constexpr double LargestPart = Pi / 8.0;
-
-    const std::vector<double> columns = cell_borders(image.width, image.sampling);
-    const std::vector<double> rows = cell_borders(image.height, image.sampling);
-    const auto point = [](double longitude, double polar) {
-        return glm::dvec3(std::sin(polar) * std::sin(longitude), std::cos(polar),
-                          std::sin(polar) * std::cos(longitude));
-    };
+    const ImageShape shape{image.layout, image.sampling, image.width, image.height};
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& range) {
-        TexelOverlaps overlap(map.resolution);
-        std::vector<glm::dvec3> outline;
+        LatLongPatches patches(shape);
+        TexelOverlaps overlaps(map.resolution);
         for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
-            const double top = Pi * rows[y], bottom = Pi * rows[y + 1];
-            const int parts_down = static_cast<int>(std::ceil((bottom - top) / LargestPart));
             for (std::uint32_t x = 0; x < image.width; ++x) {
-                const double left = 2.0 * Pi * (0.5 - columns[x]), right = 2.0 * Pi * (0.5 - columns[x + 1]);
-                const int parts_across = static_cast<int>(std::ceil((left - right) / LargestPart));
-                const int arcs =
-                    static_cast<int>(std::ceil((left - right) / parts_across / (2.0 * Pi) * ArcsPerTurn));
                 glm::dvec3 sum(0.0);
                 double weights = 0.0;
-                for (int part = 0; part < parts_down * parts_across; ++part) {
-                    const int i = part % parts_across, j = part / parts_across;
-                    const auto longitude = [&](int arc) {
-                        return left + (right - left) * (i + static_cast<double>(arc) / arcs) / parts_across;
-                    };
-                    const auto polar = [&](int k) {
-                        return top + (bottom - top) * k / parts_down;
-                    };
-                    outline.clear();
-                    for (int arc = 0; arc <= arcs; ++arc)
-                        outline.push_back(point(longitude(arc), polar(j)));
-                    for (int arc = arcs; arc >= 0; --arc)
-                        outline.push_back(point(longitude(arc), polar(j + 1)));
-                    overlap.find(outline,
-                                 [&](Face face, std::uint32_t column, std::uint32_t row, double weight) {
-                                     sum += glm::dvec3(map.at(face, column, row)) * weight;
-                                     weights += weight;
-                                 });
-                }
+                patches.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+                    overlaps.find(corners,
+                                  [&](Face face, std::uint32_t column, std::uint32_t row, double weight) {
+                                      sum += glm::dvec3(map.at(face, column, row)) * weight;
+                                      weights += weight;
+                                  });
+                });
                 image.pixels[static_cast<std::size_t>(y) * image.width + x] = sum / weights;
             }
         }

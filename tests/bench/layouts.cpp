@@ -1,0 +1,185 @@
+// What a conversion of an environment to another layout and back costs: the sky at natural resolution 16 (a lat-long of 64 x 32) with a sun that
+// fills a part of one pixel, from each layout to each other, through the size that `env convert` chooses and through an equal one.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "cubemap/convert.h"
+#include "cubemap/resample.h"
+
+using namespace relumine::cubemap;
+
+namespace {
+
+constexpr double Pi = std::numbers::pi;
+constexpr std::uint32_t SourceResolution = 16;
+constexpr double SunRadius = 0.265 * Pi / 180.0;
+constexpr double SunRadiance = 1e5;
+
+/// The crosses and the strip are the cube's pixels elsewhere: bit by bit the same.
+constexpr std::array<Layout, 5> Layouts = {Layout::LatLong, Layout::Cube, Layout::AngularMap,
+                                           Layout::MirrorBall, Layout::Octahedral};
+
+/// Three at a time, one in each channel: nothing in a conversion mixes them.
+constexpr std::size_t NumSuns = 6;
+struct Sun {
+    const char* place;
+    glm::dvec3 direction;
+};
+const std::array<Sun, NumSuns> Suns = {{
+    {"near the pole of a lat-long and an octahedral map's middle", {0.1, 0.99, 0.05}},
+    {"near the other pole and an octahedral map's corners", {-0.03, -1.0, 0.06}},
+    {"at the rim of an angular map, 2 degrees from +Z", {0.03, 0.02, 1.0}},
+    {"at the rim of a mirror ball, 2 degrees from -Z", {0.03, 0.02, -1.0}},
+    {"6 degrees from -Z", {-0.08, 0.07, -1.0}},
+    {"on an edge of a cube and an octahedral map's crease", {1.0, 0.01, 0.99}},
+}};
+
+/// A smooth sky, and in each channel a sun of its own.
+CubeMap sky(std::size_t first_sun) {
+    constexpr std::uint32_t R = 256;
+    CubeMap map(R);
+    for (const Face face : AllFaces) {
+        for (std::uint32_t y = 0; y < R; ++y) {
+            for (std::uint32_t x = 0; x < R; ++x) {
+                const glm::dvec3 w = texel_direction(face, x, y, R);
+                map.at(face, x, y) =
+                    glm::vec3(static_cast<float>(1.0 + 0.6 * w.y + 0.3 * std::sin(7.0 * w.x)));
+            }
+        }
+    }
+    for (int channel = 0; channel < 3; ++channel) {
+        const FacePoint point =
+            face_point(glm::normalize(Suns[first_sun + static_cast<std::size_t>(channel)].direction));
+        const auto x = static_cast<std::uint32_t>(point.s * R), y = static_cast<std::uint32_t>(point.t * R);
+        constexpr double Width = 1.0 / R;
+        const double texel = solid_angle(x * Width, y * Width, (x + 1) * Width, (y + 1) * Width);
+        map.at(point.face, x, y)[channel] +=
+            static_cast<float>(SunRadiance * 2.0 * Pi * (1.0 - std::cos(SunRadius)) / texel);
+    }
+    return map;
+}
+
+constexpr int NumNormals = 32;
+std::vector<glm::dvec3> normals() {
+    std::vector<glm::dvec3> found;
+    for (int i = 0; i < NumNormals; ++i) {
+        const double y = 1.0 - (2 * i + 1) / static_cast<double>(NumNormals), angle = i * 2.39996322972865332,
+                     across = std::sqrt(1.0 - y * y);
+        found.emplace_back(across * std::cos(angle), y, across * std::sin(angle));
+    }
+    return found;
+}
+
+/// Total power and then the irradiance of every normal.
+std::vector<glm::dvec3> measured(const EnvironmentImage& image) {
+    const CubeMap map = resample(image, 128);
+    std::vector<glm::dvec3> values = {total_power(map)};
+    for (const glm::dvec3& normal : normals())
+        values.push_back(irradiance(map, normal));
+    return values;
+}
+
+/// Largest errors, relative.
+struct Errors {
+    double power = 0.0;
+    double own =
+        0.0; ///< irradiance, relative to the same normal's where that is not much darker than the brightest
+    double largest = 0.0; ///< irradiance, relative to the largest
+    std::size_t sun = 0;  ///< where `own` occurred
+
+    void add(const std::vector<glm::dvec3>& before, const std::vector<glm::dvec3>& after,
+             std::size_t first_sun, double darkest) {
+        for (int channel = 0; channel < 3; ++channel) {
+            power = std::max(power, std::abs(after[0][channel] / before[0][channel] - 1.0));
+            double brightest = 0.0;
+            for (std::size_t i = 1; i < before.size(); ++i)
+                brightest = std::max(brightest, before[i][channel]);
+            for (std::size_t i = 1; i < before.size(); ++i) {
+                const double error = std::abs(after[i][channel] - before[i][channel]);
+                largest = std::max(largest, error / brightest);
+                if (before[i][channel] < darkest * brightest || error <= own * before[i][channel])
+                    continue;
+                own = error / before[i][channel];
+                sun = first_sun + static_cast<std::size_t>(channel);
+            }
+        }
+    }
+};
+
+struct Settings {
+    std::uint32_t resolution = 0; ///< on the way; 0: what conversion_size() says
+    double darkest = 0.01;
+    std::string from, through; ///< one layout only
+};
+
+ImageShape shape_of(Layout layout, const ImageSize& size) {
+    return {layout, Sampling::TexelCentres, size.width, size.height};
+}
+
+Errors there_and_back(Layout layout, Layout other, std::uint32_t resolution, double darkest) {
+    const ImageShape shape = shape_of(layout, natural_size(layout, SourceResolution));
+    Errors errors;
+    for (std::size_t sun = 0; sun < NumSuns; sun += 3) {
+        const EnvironmentImage image = to_image(sky(sun), layout, shape.width, shape.height);
+        const ImageSize size =
+            resolution == 0 ? conversion_size(image, other) : natural_size(other, resolution);
+        const EnvironmentImage back = convert(convert(image, shape_of(other, size)), shape);
+        errors.add(measured(image), measured(back), sun, darkest);
+    }
+    return errors;
+}
+
+std::string percent(double value) {
+    return fmt::format("{:.2g} %", 100.0 * value);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    CLI::App program{"Measures what environments lose on the way to another layout and back: Markdown on "
+                     "stdout, in some minutes"};
+    program.add_option("--face-resolution", settings.resolution,
+                       "natural resolution on the way (what `env convert` chooses)");
+    program
+        .add_option(
+            "--darkest", settings.darkest,
+            "normals with less than this part of the largest irradiance count only against the largest")
+        ->capture_default_str();
+    program.add_option("--from", settings.from, "this layout only, as the table names it");
+    program.add_option("--through", settings.through, "this layout on the way only");
+    CLI11_PARSE(program, argc, argv);
+    try {
+        fmt::print("{} places of the sun:\n\n", NumSuns);
+        for (const Sun& sun : Suns)
+            fmt::print("- {}\n", sun.place);
+        fmt::print("\n| from | through | power | own | largest | worst sun | equal size: own | largest |\n"
+                   "|---|---|---|---|---|---|---|---|\n");
+        for (const Layout layout : Layouts) {
+            for (const Layout other : Layouts) {
+                if (layout == other || (!settings.from.empty() && settings.from != name(layout)) ||
+                    (!settings.through.empty() && settings.through != name(other)))
+                    continue;
+                const Errors roomy = there_and_back(layout, other, settings.resolution, settings.darkest);
+                const Errors equal = there_and_back(layout, other, SourceResolution, settings.darkest);
+                fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", name(layout), name(other),
+                           percent(roomy.power), percent(roomy.own), percent(roomy.largest),
+                           Suns.at(roomy.sun).place, percent(equal.own), percent(equal.largest));
+                std::fflush(stdout);
+            }
+        }
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "layouts: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
