@@ -146,9 +146,8 @@ std::vector<lights::DistantLight> moved(const Relighter& relighter, std::vector<
     pursuit.take(unmoved);
     for (int pass = 0; pass < RefiningPasses && pursuit.exchange(); ++pass) {
     }
-    directions.clear();
-    for (const LightPursuit::Light& light : pursuit.lights())
-        directions.push_back(nearby[light.candidate]);
+    std::transform(pursuit.lights().begin(), pursuit.lights().end(), directions.begin(),
+                   [&](const LightPursuit::Light& light) { return nearby[light.candidate]; });
     return list_of(pursuit.lights(), nearby);
 }
 
@@ -189,6 +188,7 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     add_squared_errors(relighter, list_of(chosen, candidates), errors);
     const Wanted all_over(relighter, errors, RefiningFactor * options.num_receivers);
     std::vector<glm::dvec3> directions;
+    directions.reserve(chosen.size());
     for (const LightPursuit::Light& light : chosen)
         directions.push_back(candidates[light.candidate]);
     if (count > MaxExchanged)
