@@ -1,5 +1,7 @@
 #include "app/light_comparison.h"
 
+#include <cmath>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -16,14 +18,18 @@ namespace relumine::app {
 
 namespace {
 
+// One list of random lights says little about the method: another seed's error is half or twice as large.
+constexpr std::size_t SeedsOfRandomMethods = 8;
+
 /// One method at one number of lights.
 struct Row {
     std::string method;
-    std::size_t num_lights = 0; ///< asked for
-    std::size_t num_found = 0;  ///< transfer_lights() may need fewer
-    double relative_l2 = 0.0;
-    double seconds_choose = 0.0;
-    double seconds_light = 0.0; ///< of the samples
+    std::size_t num_lights = 0;  ///< asked for
+    std::size_t num_seeds = 1;   ///< lists that were measured
+    std::size_t num_found = 0;   ///< transfer_lights() may need fewer
+    double relative_l2 = 0.0;    ///< root mean square over the seeds
+    double seconds_choose = 0.0; ///< mean over the seeds
+    double seconds_light = 0.0;  ///< of the samples
 };
 
 /// The scene, its environment and the truth about some receivers.
@@ -43,22 +49,23 @@ public:
     }
 
     [[nodiscard]] Row row(const std::string& method, std::size_t count) {
-        session_.poll();
-        Row row{.method = method, .num_lights = count};
-        Stopwatch watch;
-        const std::vector<lights::DistantLight> list =
-            method == TransferMethod
-                ? lights_for_scene(relighter_, count, session_)
-                : lights::place_lights(*lights::method_named(method), map_, count, options_.seed);
-        row.seconds_choose = watch.lap();
-        row.num_found = list.size();
-        const std::vector<glm::dvec3> radiance =
-            relight::radiance_under(list, receivers_.normals, sample_, lit_.shadow_rays());
-        row.seconds_light = watch.lap();
-        std::vector<glm::vec3> relit(receivers_.size(), glm::vec3(0.0f));
-        for (std::size_t i = 0; i < sample_.size(); ++i)
-            relit[sample_[i]] = glm::vec3(radiance[i]);
-        row.relative_l2 = relight::compare(sample_, exact_, relit).relative_l2;
+        const bool is_random = method == lights::name(lights::Method::Importance);
+        Row row{.method = method, .num_lights = count, .num_seeds = is_random ? SeedsOfRandomMethods : 1};
+        double squares = 0.0;
+        for (std::size_t i = 0; i < row.num_seeds; ++i) {
+            session_.poll();
+            Stopwatch watch;
+            const std::vector<lights::DistantLight> list =
+                method == TransferMethod
+                    ? lights_for_scene(relighter_, count, session_)
+                    : lights::place_lights(*lights::method_named(method), map_, count, options_.seed + i);
+            row.seconds_choose += watch.lap() / static_cast<double>(row.num_seeds);
+            row.num_found = list.size();
+            const double error = relative_l2(list);
+            row.seconds_light += watch.lap() / static_cast<double>(row.num_seeds);
+            squares += error * error;
+        }
+        row.relative_l2 = std::sqrt(squares / static_cast<double>(row.num_seeds));
         return row;
     }
 
@@ -66,6 +73,15 @@ public:
     [[nodiscard]] std::uint32_t resolution() const { return map_.resolution; }
 
 private:
+    [[nodiscard]] double relative_l2(std::span<const lights::DistantLight> list) const {
+        const std::vector<glm::dvec3> radiance =
+            relight::radiance_under(list, receivers_.normals, sample_, lit_.shadow_rays());
+        std::vector<glm::vec3> relit(receivers_.size(), glm::vec3(0.0f));
+        for (std::size_t i = 0; i < sample_.size(); ++i)
+            relit[sample_[i]] = glm::vec3(radiance[i]);
+        return relight::compare(sample_, exact_, relit).relative_l2;
+    }
+
     const ComparisonOptions& options_;
     Session& session_;
     LitScene lit_;
@@ -135,6 +151,7 @@ void compare_methods(const ComparisonOptions& options, const EnvironmentOptions&
                                     1e3 * row.seconds_light));
             report.push_back({{"method", row.method},
                               {"lights", row.num_lights},
+                              {"seeds", row.num_seeds},
                               {"lights_found", row.num_found},
                               {"relative_l2", row.relative_l2},
                               {"seconds_choose", row.seconds_choose},

@@ -27,11 +27,10 @@ public:
                   row[x] = luminance(grid.radiance(x, y)) * grid.moments(x, y);
           }) {}
 
-    /// E^2 d = E sqrt(E variance)
-    [[nodiscard]] double expected_error(const PixelRectangle& region) const {
+    /// E^1.5 d = E sqrt(variance)
+    [[nodiscard]] double weight(const PixelRectangle& region) const {
         const glm::dvec4 moments = table_.sum(region);
-        const double energy = std::max(moments.w, 0.0);
-        return energy * std::sqrt(energy * variance(moments));
+        return std::max(moments.w, 0.0) * std::sqrt(variance(moments));
     }
 
     [[nodiscard]] Halves cut(const PixelRectangle& region) const {
@@ -66,8 +65,7 @@ std::vector<PixelRectangle> variance_cut(const LatLongGrid& grid, std::size_t nu
     const MomentTable table(grid);
     std::vector<PixelRectangle> regions = {grid.whole()};
     cut_heaviest(
-        grid, regions, num_regions,
-        [&](const PixelRectangle& region) { return table.expected_error(region); },
+        grid, regions, num_regions, [&](const PixelRectangle& region) { return table.weight(region); },
         [&](const PixelRectangle& region) { return table.cut(region); });
     return regions;
 }

@@ -23,9 +23,10 @@ namespace relumine::lights {
 /// is smallest:
 /// - Distances on the sphere: in the image the poles are far from themselves.
 /// - The smallest sum: a light at the centroid leaves an error of second order, which is the variance, and the lights' errors add up.
-/// - One region at a time, so any number of regions. The next is that of the largest E^2 d, with the energy E = M0 and the mean distance
-///   d = sqrt(variance / E): a shadow's border falls into the region about as often as d says, and then its light is wrong by
-///   about E. (Always the largest variance, E d^2, spends lights on wide faint regions.)
+/// - One region at a time, so any number of regions. The next is that of the largest E sqrt(variance) = E^1.5 d, with the energy E = M0
+///   and the mean distance d = sqrt(variance / E). A shadow's border falls into the region about as often as d says, and then its
+///   light is wrong by about E: the mean square is E^2 d, the mean E d, and this lies between them. (E^2 d itself is as good on most maps and
+///   leaves too much in wide regions on some. Always the largest variance, E d^2, spends lights on wide faint regions.)
 /// O(pixels) for the table (32 bytes per pixel), then O(width + height) per region.
 [[nodiscard]] std::vector<PixelRectangle> variance_cut(const LatLongGrid& grid, std::size_t num_regions);
 

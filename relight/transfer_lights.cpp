@@ -5,14 +5,18 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "cubemap/luminance.h"
+#include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "relight/light_pursuit.h"
+#include "relight/scaled_receivers.h"
 #include "relight/transfer_matrix.h"
 
 namespace relumine::relight {
@@ -24,12 +28,15 @@ constexpr std::uint32_t CandidateLevel = 5;
 
 // A cell with a larger share of the power is cut further, so that a sun or a lamp can be given several lights.
 constexpr double LargestShare = 1.0 / 1024.0;
-// Steps in degrees by which a light may move from its candidate's direction: those are 2.8 degrees apart.
-constexpr std::array RefiningSteps = {1.2, 0.6, 0.3};
+// Steps in degrees by which a light may move from its candidate's direction: those are 2.8 degrees apart. Twice, as the others have moved, too.
+constexpr std::array RefiningSteps = {1.4, 0.8, 0.4, 0.2, 1.0, 0.5, 0.25};
+constexpr int RefiningPasses = 2;
+// Lights fitted to the receivers they were chosen with light those better than others: as many more take part in the steps.
+constexpr std::size_t RefiningFactor = 2;
 
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
-constexpr int ExchangePasses = 5;
+constexpr int ExchangePasses = 2;
 
 /// Unit directions where lights could be, neighbours together: the centres of light of cells of CandidateLevel, and of smaller ones where there
 /// is more light.
@@ -82,18 +89,66 @@ void append_around(const glm::dvec3& direction, double degrees, std::vector<glm:
                     glm::normalize(direction + static_cast<double>(x) * right + static_cast<double>(y) * up));
 }
 
-/// Evenly spread places of receivers that have a normal.
-std::vector<std::size_t> places_of(const prt::Transfer& transfer, std::size_t count) {
-    std::vector<std::size_t> lit;
-    for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
-        if (transfer.normals[place] != glm::vec3(0.0f))
-            lit.push_back(place);
-    if (lit.size() <= count)
-        return lit;
-    std::vector<std::size_t> places;
-    for (std::size_t i = 0; i < count; ++i)
-        places.push_back(lit[i * lit.size() / count]);
-    return places;
+/// Some receivers and what they shall get, scaled alike.
+struct Wanted {
+    Wanted(const Relighter& relighter, std::span<const double> expected_errors, std::size_t count)
+        : receivers(choose_receivers(relighter.transfer(), expected_errors, count)) {
+        radiance.reserve(receivers.places.size());
+        for (std::size_t i = 0; i < receivers.places.size(); ++i)
+            radiance.push_back(receivers.scales[i] *
+                               relighter.radiance()[relighter.transfer().order[receivers.places[i]]]);
+    }
+    ScaledReceivers receivers;
+    std::vector<glm::vec3> radiance;
+};
+
+/// By place, how large a part of the squared error of lights that do not know the scene is there: at the borders of shadows and where there are many.
+std::vector<double> errors_of_cuts(const Relighter& relighter, std::size_t count) {
+    const cubemap::EnvironmentImage image = lights::lat_long_of(relighter.environment());
+    std::vector<double> errors(relighter.transfer().num_receivers());
+    for (const lights::Method method : {lights::Method::VarianceCut, lights::Method::MedianCut})
+        add_squared_errors(relighter,
+                           lights::place(method, image, std::min(count, image.pixels.size())).lights, errors);
+    return errors;
+}
+
+std::vector<lights::DistantLight> list_of(std::span<const LightPursuit::Light> lights,
+                                          std::span<const glm::dvec3> directions) {
+    std::vector<lights::DistantLight> list;
+    for (const LightPursuit::Light& light : lights)
+        if (light.irradiance != glm::dvec3(0.0))
+            list.push_back({.direction = directions[light.candidate], .irradiance = light.irradiance});
+    return list;
+}
+
+/// Lights in these directions.
+std::vector<lights::DistantLight> fitted(const Relighter& relighter, std::span<const glm::dvec3> directions,
+                                         const Wanted& wanted) {
+    const TransferMatrix matrix(relighter, directions, wanted.receivers);
+    LightPursuit pursuit(matrix, wanted.radiance);
+    std::vector<std::size_t> all(directions.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    pursuit.take(all);
+    return list_of(pursuit.lights(), directions);
+}
+
+/// Lights in these directions once each has moved by a step, where it pays; and the directions with them.
+std::vector<lights::DistantLight> moved(const Relighter& relighter, std::vector<glm::dvec3>& directions,
+                                        double step, const Wanted& wanted) {
+    std::vector<glm::dvec3> nearby;
+    std::vector<std::size_t> unmoved;
+    for (const glm::dvec3& direction : directions) {
+        unmoved.push_back(nearby.size());
+        append_around(direction, step, nearby);
+    }
+    const TransferMatrix matrix(relighter, nearby, wanted.receivers);
+    LightPursuit pursuit(matrix, wanted.radiance);
+    pursuit.take(unmoved);
+    for (int pass = 0; pass < RefiningPasses && pursuit.exchange(); ++pass) {
+    }
+    std::transform(pursuit.lights().begin(), pursuit.lights().end(), directions.begin(),
+                   [&](const LightPursuit::Light& light) { return nearby[light.candidate]; });
+    return list_of(pursuit.lights(), nearby);
 }
 
 } // namespace
@@ -105,14 +160,12 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
     if (count == 0)
         throw std::invalid_argument("expected at least one light");
     std::vector<glm::dvec3> candidates = Candidates(relighter.environment()).directions();
-    const prt::Transfer& transfer = relighter.transfer();
-    const std::vector<std::size_t> places = places_of(transfer, options.num_receivers);
-    if (candidates.empty() || places.empty())
+    if (candidates.empty())
         return {};
-    std::vector<glm::vec3> radiance;
-    radiance.reserve(places.size());
-    for (const std::size_t place : places)
-        radiance.push_back(relighter.radiance()[transfer.order[place]]);
+    std::vector<double> errors = errors_of_cuts(relighter, count);
+    const Wanted wanted(relighter, errors, options.num_receivers);
+    if (wanted.receivers.places.empty())
+        return {};
     const auto poll = [&](double progress) {
         if (options.stop.stop_requested())
             throw prt::Cancelled();
@@ -122,8 +175,8 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
 
     std::vector<LightPursuit::Light> chosen;
     {
-        const TransferMatrix matrix(relighter, candidates, places);
-        LightPursuit pursuit(matrix, radiance);
+        const TransferMatrix matrix(relighter, candidates, wanted.receivers);
+        LightPursuit pursuit(matrix, wanted.radiance);
         count = std::min(count, candidates.size());
         while (pursuit.lights().size() < count && pursuit.take_best())
             poll(0.5 * static_cast<double>(pursuit.lights().size()) / static_cast<double>(count));
@@ -131,27 +184,20 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
             poll(0.5);
         chosen.assign(pursuit.lights().begin(), pursuit.lights().end());
     }
-    // Then each may move by less than the candidates' distance.
-    for (const double step : RefiningSteps) {
-        poll(0.75);
-        std::vector<glm::dvec3> nearby;
-        std::vector<std::size_t> unmoved;
-        for (const LightPursuit::Light& light : chosen) {
-            unmoved.push_back(nearby.size());
-            append_around(candidates[light.candidate], step, nearby);
-        }
-        const TransferMatrix matrix(relighter, nearby, places);
-        LightPursuit pursuit(matrix, radiance);
-        pursuit.take(unmoved);
-        for (int pass = 0; pass < ExchangePasses && count <= MaxExchanged && pursuit.exchange(); ++pass)
-            poll(0.75);
-        chosen.assign(pursuit.lights().begin(), pursuit.lights().end());
-        candidates = std::move(nearby);
-    }
-    std::vector<lights::DistantLight> result;
+    // More receivers, as there are far fewer directions now, and more of them where this list is wrong.
+    add_squared_errors(relighter, list_of(chosen, candidates), errors);
+    const Wanted all_over(relighter, errors, RefiningFactor * options.num_receivers);
+    std::vector<glm::dvec3> directions;
+    directions.reserve(chosen.size());
     for (const LightPursuit::Light& light : chosen)
-        if (light.irradiance != glm::dvec3(0.0))
-            result.push_back({.direction = candidates[light.candidate], .irradiance = light.irradiance});
+        directions.push_back(candidates[light.candidate]);
+    if (count > MaxExchanged)
+        return fitted(relighter, directions, all_over);
+    std::vector<lights::DistantLight> result;
+    for (std::size_t i = 0; i < RefiningSteps.size(); ++i) {
+        poll(0.6 + 0.4 * static_cast<double>(i) / static_cast<double>(RefiningSteps.size()));
+        result = moved(relighter, directions, RefiningSteps[i], all_over);
+    }
     return result;
 }
 

@@ -12,7 +12,7 @@
 namespace relumine::relight {
 
 struct TransferLightOptions {
-    std::size_t num_receivers = 12000; ///< that the lights are fitted to, spread evenly over the scene
+    std::size_t num_receivers = 12000; ///< that the lights are chosen with; they are moved with twice as many
     std::stop_token stop = {};         ///< polled after each light; prt::Cancelled is thrown
     std::function<void(double)> on_progress = {}; ///< fraction in [0, 1]
 };
@@ -22,8 +22,10 @@ struct TransferLightOptions {
 /// With t_j(x) = V(x, w_j) max(n.w_j, 0)/pi the transfer from a direction w_j to the chosen receivers, traced, it minimises over directions and
 /// irradiances E_j >= 0 the squared error of sum E_j t_j against the relighter's radiance: orthogonal least squares (Chen, Billings and
 /// Luo 1989) takes one direction after the other, always the one that lowers the error most once all irradiances have been fitted anew (Lawson
-/// and Hanson 1974); then single lights are exchanged, and moved by small steps, while it pays. Where there is much light, directions are
-/// looked for more densely. The lights' total power is whatever fits the scene: light that no receiver sees is left out.
+/// and Hanson 1974); then single lights are exchanged, and moved by small steps, where it pays. Where there is much light, directions are
+/// looked for more densely. Most of the squared error is at few receivers, at shadows' borders and in creases, so those that the lists of
+/// median cut and variance minimisation light badly are chosen more often and count less (relight/scaled_receivers.h): lights fitted
+/// to evenly chosen ones fit them, and not the others. The lights' total power is whatever fits the scene: light that no receiver sees is left out.
 /// Fewer lights come back where more would not help. Deterministic, for any number of threads.
 /// Time and memory: docs/light-lists.md. Throws std::invalid_argument without environment or shadow rays, or for count 0.
 [[nodiscard]] std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, std::size_t count,

@@ -12,9 +12,9 @@
 namespace relumine::relight {
 
 TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::dvec3> directions,
-                               std::span<const std::size_t> places)
-    : num_directions_(directions.size()), num_receivers_(places.size()),
-      elements_(directions.size() * places.size()) {
+                               const ScaledReceivers& receivers)
+    : num_directions_(directions.size()), num_receivers_(receivers.places.size()),
+      elements_(num_directions_ * num_receivers_) {
     const ShadowRays& rays = relighter.shadow_rays();
     const prt::Transfer& transfer = relighter.transfer();
     tbb::parallel_for(
@@ -25,17 +25,19 @@ TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::
             for (std::size_t lane = 0; lane < prt::PacketSize; ++lane)
                 packet.set(lane, directions[std::min(begin + lane, end - 1)]);
             packet.num_directions = static_cast<std::uint32_t>(end - begin);
-            for (std::size_t i = 0; i < places.size(); ++i) {
-                const glm::vec3& normal = transfer.normals[places[i]];
+            for (std::size_t i = 0; i < num_receivers_; ++i) {
+                const std::size_t place = receivers.places[i];
+                const glm::vec3& normal = transfer.normals[place];
                 const glm::vec3 origin =
-                    prt::ray_origin(rays.positions[transfer.order[places[i]]], normal, rays.bias);
+                    prt::ray_origin(rays.positions[transfer.order[place]], normal, rays.bias);
+                const float scale = receivers.scales[i] * std::numbers::inv_pi_v<float>;
                 const auto all = static_cast<std::uint32_t>((1u << (end - begin)) - 1);
                 const std::uint32_t occluded = rays.blockers->occluded(origin, packet, all);
                 for (std::size_t j = begin; j < end; ++j) {
                     const float cosine = glm::dot(
                         normal, glm::vec3(packet.x[j - begin], packet.y[j - begin], packet.z[j - begin]));
                     if (cosine > 0.0f && (occluded >> (j - begin) & 1u) == 0)
-                        elements_[j * num_receivers_ + i] = cosine * std::numbers::inv_pi_v<float>;
+                        elements_[j * num_receivers_ + i] = cosine * scale;
                 }
             }
         });

@@ -8,15 +8,17 @@
 #include <glm/vec3.hpp>
 
 #include "relight/relighter.h"
+#include "relight/scaled_receivers.h"
 
 namespace relumine::relight {
 
-/// t_j(x) = V(x, w_j) max(n.w_j, 0)/pi of directions w_j to receivers, traced, [directions][receivers], 1/sr. 4 bytes per element.
+/// t_j(x) = V(x, w_j) max(n.w_j, 0)/pi of directions w_j to receivers, traced, each receiver's times a scale of its own,
+/// [directions][receivers], 1/sr. 4 bytes per element.
 class TransferMatrix {
 public:
-    /// `places`: receivers of the relighter's scene, which needs shadow rays. Fastest when neighbouring directions lie close together.
+    /// `receivers` of the relighter's scene, which needs shadow rays. Fastest when neighbouring directions lie close together.
     TransferMatrix(const Relighter& relighter, std::span<const glm::dvec3> directions,
-                   std::span<const std::size_t> places);
+                   const ScaledReceivers& receivers);
 
     [[nodiscard]] std::size_t num_directions() const { return num_directions_; }
 

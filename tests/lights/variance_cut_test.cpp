@@ -48,8 +48,7 @@ public:
             double largest = -1.0;
             for (std::size_t i = 0; i < all.size(); ++i) {
                 const Sums s = sums(all[i]);
-                const double error =
-                    s.energy > 0.0 ? s.energy * s.energy * std::sqrt(s.variance / s.energy) : 0.0;
+                const double error = s.energy * std::sqrt(std::max(s.variance, 0.0));
                 if (all[i].width() * all[i].height() > 1 && error > largest) {
                     largest = error;
                     next = i;
