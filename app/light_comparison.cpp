@@ -40,6 +40,7 @@ public:
           map_(cube_map_of(load_image(environment, session), environment)),
           relighter_(lit_.scene().transfer, lit_.shadow_rays()), receivers_(lit_.scene().receivers),
           sample_(relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
+        require_diffuse(lit_.scene(), options.scene);
         relighter_.set_environment(map_);
         exact_ = relight::exact_radiance(receivers_, sample_, lit_.rays(), map_,
                                          {.bias = lit_.scene().settings.bias,

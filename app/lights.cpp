@@ -16,6 +16,7 @@
 #include "app/light_comparison.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
+#include "app/receiver_options.h"
 #include "lights/light_export.h"
 #include "lights/place_lights.h"
 #include "lights/region_picture.h"
@@ -98,6 +99,7 @@ struct Lit {
 
     Lit(const std::string& path, const cubemap::CubeMap& environment)
         : scene({.path = path}), relighter(scene.scene().transfer, scene.shadow_rays()) {
+        require_diffuse(scene.scene(), path);
         relighter.set_environment(environment);
     }
 

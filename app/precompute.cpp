@@ -110,7 +110,7 @@ void add_precompute(CLI::App& program, Session& session) {
     CLI::App& command =
         *program.add_subcommand("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<Options>();
-    command.add_option("MESH", options->mesh, "mesh: .obj, .ply, .off or .stl")->required();
+    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")->required();
     command.add_option("-o,--output", options->output, "the scene file to write, .prt")->required();
     command
         .add_option_function<std::vector<std::string>>(

@@ -50,4 +50,7 @@ private:
 /// Throws std::runtime_error "path: expected a scene whose receivers are vertices, got ..." for other layouts.
 void require_vertices(const prt::Scene& scene, const std::string& path);
 
+/// Throws std::runtime_error "path: expected a scene without materials ..." for receivers with surfaces.
+void require_diffuse(const prt::Scene& scene, const std::string& path);
+
 } // namespace relumine::app

@@ -142,7 +142,7 @@ TEST_F(Receivers, ReceiversThatCannotBe) {
         return arguments;
     };
     misuse(precompute("mesh.obj", "pixels:8x8"), "--view");
-    misuse(precompute("mesh.obj", "vertices", "auto"), "--receivers");
+    misuse(precompute("mesh.obj", "vertices", "left"), "--view");
     for (const char* receivers :
          {"pixels", "pixels:8", "pixels:8x", "pixels:8x8:", "pixels:8x8:2:2", "pixels:8x8x8", "pixels:-8x8",
           "pixels:0x8", "pixels:8x99999", "pixels:8x8:0", "pixels:8x8:99", "pixels:16384x16384:8", "faces",

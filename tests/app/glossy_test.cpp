@@ -1,0 +1,84 @@
+// Scenes with highlights, from the mesh to the picture.
+#include <string>
+
+#include "tests/app/command.h"
+#include "tests/app/formats.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+class Glossy : public AppTest {
+protected:
+    Glossy() {
+        write("mesh.obj", octahedron_obj());
+        write("white.hdr", white_hdr());
+    }
+    [[nodiscard]] nlohmann::json make(const std::string& scene, const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", scene,    "--face-resolution",
+                                              "64",         "--floor",  "9",  "--json", "--tolerance",
+                                              "0.03"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return succeed(arguments).json();
+    }
+};
+
+TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
+    const nlohmann::json made =
+        make("s.prt", {"--material", "ggx:roughness=0.4,albedo=0.3,f0=0.5", "--view", "auto"});
+    EXPECT_GT(made["glossy"]["cells"], 100);
+    EXPECT_LT(succeed({"verify", "s.prt", "white.hdr", "--json"}).json()["relative_l2"], 0.02);
+    succeed({"relight", "s.prt", "white.hdr", "-o", "lit.png", "--size", "32x24"});
+    EXPECT_EQ(png_size(read("lit.png")), (Size{32, 24}));
+    // An eye is needed.
+    succeed({"relight", "s.prt", "white.hdr", "-o", "lit.npy"});
+    make("d.prt", {"--material", "lambert:albedo=0.3"});
+    succeed({"relight", "d.prt", "white.hdr", "-o", "dull.npy"});
+    const auto shiny = npy_values(read("lit.npy"));
+    const auto dull = npy_values(read("dull.npy"));
+    ASSERT_EQ(shiny.size(), dull.size());
+    EXPECT_GT(shiny[0][0], dull[0][0]);
+}
+
+TEST_F(Glossy, PixelsTexelsEditsAndFramesTakeThem) {
+    make("s.prt",
+         {"--material", "blinn:exponent=20,kd=0.3,ks=0.5", "--view", "auto", "--receivers", "pixels:24x16"});
+    succeed({"relight", "s.prt", "white.hdr", "-o", "lit.exr"});
+    EXPECT_EQ(exr_size(read("lit.exr")), (Size{24, 16}));
+    EXPECT_LT(succeed({"verify", "s.prt", "white.hdr", "--json"}).json()["relative_l2"], 0.03);
+    write("layers.json", R"({"layers": [{"name": "lamp", "type": "disc", "direction": [0, 1, 0.2],
+        "radius_degrees": 10, "effect": "emit", "radiance": [5, 4, 3]}]})");
+    succeed({"edit", "s.prt", "white.hdr", "layers.json", "-o", "edited.png"});
+    write("f.0001.hdr", white_hdr());
+    write("f.0002.hdr", white_hdr());
+    succeed({"animate", "s.prt", "f.%04d.hdr", "-o", "out.%04d.png", "-q"});
+    EXPECT_EQ(png_size(read("out.0002.png")), (Size{24, 16}));
+}
+
+TEST_F(Glossy, AnAlbedoScalesTheLight) {
+    make("plain.prt", {});
+    make("half.prt", {"--material", "lambert:albedo=0.5"});
+    succeed({"relight", "plain.prt", "white.hdr", "-o", "plain.npy"});
+    succeed({"relight", "half.prt", "white.hdr", "-o", "half.npy"});
+    const auto plain = npy_values(read("plain.npy"));
+    const auto half = npy_values(read("half.npy"));
+    for (std::size_t i = 0; i < plain.size(); ++i)
+        EXPECT_NEAR(half[i][1], 0.5f * plain[i][1], 1e-6f);
+}
+
+TEST_F(Glossy, LimitsAreSaid) {
+    const std::string sharp = "ggx:roughness=0.05,f0=0.5";
+    const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution", "16",
+                                   "--material", sharp, "--view", "auto"});
+    EXPECT_NE(warned.out.find("smoother than roughness"), std::string::npos) << warned.out;
+    const Result no_view =
+        succeed({"precompute", "mesh.obj", "-o", "d.prt", "--face-resolution", "16", "--material", sharp});
+    EXPECT_NE(no_view.out.find("--view"), std::string::npos) << no_view.out;
+    fail({"lights", "white.hdr", "-n", "4", "--method", "transfer", "--scene", "s.prt", "-o", "l.json"},
+         {"s.prt", "highlights"});
+    misuse({"precompute", "mesh.obj", "-o", "n.prt", "--material", "glass"}, "--material");
+    misuse({"precompute", "mesh.obj", "-o", "n.prt", "--glossy-tolerance", "0"}, "--glossy-tolerance");
+}
+
+} // namespace
+} // namespace relumine::app
