@@ -200,7 +200,8 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         // Wedges narrower than the target's pixels are never told apart: then the difference stops falling.
         constexpr int Patience =
             20; // rounds, to fall by a fiftieth: restarts make it wave for some ten rounds
-        constexpr double Enough = 1e-5, Falling = 0.98;
+        // A tenth of what irradiance may lose; more rounds make specks of the pixels around poles and rims.
+        constexpr double Enough = 1e-4, Falling = 0.98;
         bool is_last = difference <= Enough * sum;
         if (round % Patience == 0) {
             is_last = is_last || difference > Falling * earlier_difference;
