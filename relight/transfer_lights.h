@@ -12,7 +12,7 @@
 namespace relumine::relight {
 
 struct TransferLightOptions {
-    std::size_t num_receivers = 12000; ///< that the lights are chosen with; they are moved with twice as many
+    std::size_t num_receivers = 16000; ///< that the lights are chosen with; they are moved with twice as many
     std::stop_token stop = {};         ///< polled after each light; prt::Cancelled is thrown
     std::function<void(double)> on_progress = {}; ///< fraction in [0, 1]
 };
