@@ -14,6 +14,7 @@
 #include "app/surface_options.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
+#include "prt/beam_scene.h"
 #include "prt/ray_scene.h"
 #include "prt/scene_file.h"
 
@@ -25,6 +26,7 @@ struct Options {
     std::string mesh;
     std::string output;
     std::string normals = "file";
+    std::string engine = "beam";
     std::optional<std::uint32_t> floor_vertices;
     float floor_scale = 4.0f;
     std::optional<float> bias;
@@ -62,7 +64,11 @@ void run(const Options& options, Session& session) {
         options.receivers.apply(scene, rays, options.mesh, session, report);
         options.surfaces.apply(scene, session);
         session.poll();
-        scene.transfer = prt::precompute(scene.receivers, rays, precompute, &statistics);
+        std::optional<prt::BeamScene> beams;
+        if (options.engine == "beam")
+            beams.emplace(scene.mesh, rays);
+        const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
+        scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
         session.end_progress();
         options.surfaces.precompute_highlights(scene, rays, precompute, session, report);
     }
@@ -149,6 +155,12 @@ void add_precompute(CLI::App& program, Session& session) {
         ->capture_default_str();
     command.add_option("--bias", options->bias,
                        "lift of the rays' origins off the surface, in the mesh's unit");
+    command
+        .add_option("--engine", options->engine,
+                    "how visibility is traced: whole beams of rays, or each ray with Embree; the results are "
+                    "the same")
+        ->check(CLI::IsMember({"beam", "embree"}))
+        ->capture_default_str();
     options->receivers.add_to(command);
     options->surfaces.add_to(command);
     session.add_common_options(command);

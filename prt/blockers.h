@@ -1,9 +1,10 @@
-// "Is this ray blocked?": the one question that the visibility algorithms ask, sixteen rays at a time.
+// "Is this ray blocked?": the one question that the visibility algorithms ask, for packets of rays.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <glm/vec3.hpp>
 
@@ -26,6 +27,32 @@ struct alignas(64) DirectionPacket {
     }
 };
 
+/// Up to 64 directions inside one narrow cone; direction j is lane j % 16 of packet j / 16. Lanes that are not used repeat the
+/// patch's first direction.
+struct DirectionPatch {
+    static constexpr std::size_t NumPackets = 4;
+    static constexpr std::size_t Size = NumPackets * PacketSize;
+
+    std::array<DirectionPacket, NumPackets> packets{};
+    std::uint32_t num_directions = 0;
+
+    [[nodiscard]] bool full() const { return num_directions == Size; }
+    [[nodiscard]] glm::vec3 direction(std::size_t j) const {
+        const DirectionPacket& packet = packets[j / PacketSize];
+        return {packet.x[j % PacketSize], packet.y[j % PacketSize], packet.z[j % PacketSize]};
+    }
+    /// One more direction; not when full.
+    void add(const glm::vec3& direction);
+};
+
+/// Receivers that lie close together.
+struct ReceiverBlock {
+    static constexpr std::size_t MaxSize = 128;
+
+    std::span<const glm::vec3> origins; ///< [at most MaxSize] where their rays start
+    glm::vec3 mean_normal{0.0f};        ///< a hint: roughly where they face, any length
+};
+
 /// What stands between receivers and lights. RayScene answers for meshes; tests answer with closed forms.
 class Blockers {
 public:
@@ -36,6 +63,11 @@ public:
     /// Fastest when the directions lie close together. Called from many threads at once.
     [[nodiscard]] virtual std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                                  std::uint32_t active) const = 0;
+
+    /// Bit j of rays[i], which asks for the ray from the block's receiver i in the patch's direction j, is cleared where that ray is
+    /// blocked. Same answers as occluded(), which is what it asks here. Called from many threads at once.
+    virtual void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+                               std::span<std::uint64_t> rays) const;
 
 protected:
     Blockers(const Blockers&) = default;

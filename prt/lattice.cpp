@@ -38,10 +38,12 @@ std::array<LatticePoint, SamplesPerCell> lattice_points(const Cell& cell) {
     return points;
 }
 
+glm::dvec3 place_on_cube(LatticePoint point) {
+    return {unpacked(point), unpacked(point >> BitsPerCoordinate), unpacked(point >> 2 * BitsPerCoordinate)};
+}
+
 glm::vec3 direction(LatticePoint point) {
-    const glm::dvec3 on_cube(unpacked(point), unpacked(point >> BitsPerCoordinate),
-                             unpacked(point >> 2 * BitsPerCoordinate));
-    return glm::normalize(on_cube);
+    return glm::normalize(place_on_cube(point));
 }
 
 } // namespace relumine::prt

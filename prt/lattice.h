@@ -27,6 +27,9 @@ using LatticePoint = std::uint64_t;
 /// The nine samples of a cell.
 [[nodiscard]] std::array<LatticePoint, SamplesPerCell> lattice_points(const Cell& cell);
 
+/// Its place on the surface of the cube [-1, 1]^3.
+[[nodiscard]] glm::dvec3 place_on_cube(LatticePoint point);
+
 /// Unit direction of a sample point.
 [[nodiscard]] glm::vec3 direction(LatticePoint point);
 

@@ -219,7 +219,9 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
         planes_->keep_only(points);
         const double level_area = 1.0 - settled;
         progress_.start_level(settled, settled + 0.5 * level_area);
-        planes_->trace(points, [this](double part) { progress_.report(part); });
+        // A patch is at most four cells wide, which is as far as the new points of four splits of siblings reach.
+        const double patch_width = 4 * 2.0 * cells.front().size();
+        planes_->trace(points, patch_width, [this](double part) { progress_.report(part); });
 
         // Test every cell on its own.
         std::vector<Decision> decisions(cells.size());

@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <limits>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <tbb/blocked_range2d.h>
 #include <tbb/parallel_for.h>
+
+#include "prt/bit_matrix.h"
+#include "prt/horizon.h"
 
 namespace relumine::prt {
 
@@ -15,43 +21,69 @@ namespace {
 /// Receivers of one task: eight words of 64, so that tasks write whole cache lines of each plane. Their rays through one patch
 /// start close together and meet the same blockers.
 constexpr std::size_t WordsPerTask = 8;
+constexpr std::size_t WordsPerBlock = ReceiverBlock::MaxSize / WordSize;
 
 /// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Splitting the directions, too, keeps all
 /// threads busy when the receivers are few.
-constexpr std::size_t PatchesPerTask = 128;
+constexpr std::size_t PatchesPerTask = 32;
+
+/// Side of the smallest axis-aligned cube around points.
+class Extent {
+public:
+    void include(const glm::dvec3& point) {
+        low_ = glm::min(low_, point);
+        high_ = glm::max(high_, point);
+    }
+    [[nodiscard]] double side() const {
+        const glm::dvec3 size = high_ - low_;
+        return std::max({size.x, size.y, size.z});
+    }
+
+private:
+    glm::dvec3 low_{std::numeric_limits<double>::infinity()};
+    glm::dvec3 high_{-std::numeric_limits<double>::infinity()};
+};
 
 } // namespace
 
 struct VisibilityPlanes::Patch {
-    DirectionPacket packet;
-    std::array<std::uint64_t*, PacketSize> planes{};
+    DirectionPatch directions;
+    std::array<std::uint64_t*, DirectionPatch::Size> planes{};
 };
 
 VisibilityPlanes::VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
                                    const Blockers& blockers)
     : origins_(origins), normals_(normals), blockers_(blockers) {}
 
-void VisibilityPlanes::trace(std::span<const LatticePoint> points,
-                             const std::function<void(double)>& on_progress) {
-    const std::size_t num_words = normals_.num_words();
+std::vector<VisibilityPlanes::Patch> VisibilityPlanes::new_patches(std::span<const LatticePoint> points,
+                                                                   double patch_width) {
     std::vector<Patch> patches;
+    Extent extent;
     for (const LatticePoint point : points) {
         const auto [entry, is_new] = planes_.try_emplace(point);
         if (!is_new)
             continue;
-        entry->second.resize(num_words);
-        if (patches.empty() || patches.back().packet.num_directions == PacketSize)
+        entry->second.resize(normals_.num_words());
+        Extent with_point = extent;
+        with_point.include(place_on_cube(point));
+        if (patches.empty() || patches.back().directions.full() || with_point.side() > patch_width) {
             patches.emplace_back();
+            with_point = {};
+            with_point.include(place_on_cube(point));
+        }
+        extent = with_point;
         Patch& patch = patches.back();
-        const std::uint32_t lane = patch.packet.num_directions++;
-        const glm::vec3 w = direction(point);
-        // Unused lanes repeat the packet's first direction, so that they never are wild numbers.
-        for (std::size_t i = lane == 0 ? 0 : lane; i < (lane == 0 ? PacketSize : lane + 1); ++i)
-            patch.packet.set(i, w);
-        patch.planes[lane] = entry->second.data();
+        patch.planes[patch.directions.num_directions] = entry->second.data();
+        patch.directions.add(direction(point));
         ++num_directions_;
     }
+    return patches;
+}
 
+void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_width,
+                             const std::function<void(double)>& on_progress) {
+    const std::size_t num_words = normals_.num_words();
+    const std::vector<Patch> patches = new_patches(points, patch_width);
     const std::size_t num_rows = (num_words + WordsPerTask - 1) / WordsPerTask;
     const std::size_t num_columns = (patches.size() + PatchesPerTask - 1) / PatchesPerTask;
     std::atomic<std::size_t> num_done = 0;
@@ -60,9 +92,9 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points,
         const std::size_t end = std::min(begin + WordsPerTask, num_words);
         const std::size_t last_patch = std::min((column + 1) * PatchesPerTask, patches.size());
         std::uint64_t num_rays = 0;
-        for (std::size_t patch = column * PatchesPerTask; patch < last_patch; ++patch)
-            for (std::size_t word = begin; word < end; ++word)
-                trace_word(word, patches[patch], num_rays);
+        for (std::size_t word = begin; word < end; word += WordsPerBlock)
+            for (std::size_t patch = column * PatchesPerTask; patch < last_patch; ++patch)
+                num_rays += trace_block(word, patches[patch]);
         num_rays_ += num_rays;
         on_progress(static_cast<double>(++num_done) / static_cast<double>(num_rows * num_columns));
     };
@@ -75,28 +107,30 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points,
                       });
 }
 
-void VisibilityPlanes::trace_word(std::size_t word, const Patch& patch, std::uint64_t& num_rays) const {
-    std::array<std::uint64_t, PacketSize> words{};
-    const std::size_t begin = word * WordSize;
-    const std::size_t end = std::min(begin + WordSize, origins_.size());
-    const std::uint32_t used = (1u << patch.packet.num_directions) - 1;
-    for (std::size_t i = begin; i < end; ++i) {
-        std::uint32_t above = 0;
-        for (std::uint32_t lane = 0; lane < PacketSize; ++lane) {
-            const float cosine = normals_.x[i] * patch.packet.x[lane] + normals_.y[i] * patch.packet.y[lane] +
-                                 normals_.z[i] * patch.packet.z[lane];
-            above |= static_cast<std::uint32_t>(cosine > 0.0f) << lane;
-        }
-        above &= used;
-        if (above == 0)
+std::uint64_t VisibilityPlanes::trace_block(std::size_t first_word, const Patch& patch) const {
+    const std::size_t first = first_word * WordSize;
+    const std::size_t size = std::min(origins_.size() - first, ReceiverBlock::MaxSize);
+    std::array<std::uint64_t, ReceiverBlock::MaxSize> rays{}; // a word per receiver, bits are directions
+    const std::span<std::uint64_t> of_block(rays.data(), size);
+    directions_above_horizon(normals_, first, patch.directions, of_block);
+    std::uint64_t num_rays = 0;
+    glm::vec3 mean_normal(0.0f);
+    for (std::size_t i = 0; i < size; ++i) {
+        if (of_block[i] == 0)
             continue;
-        num_rays += static_cast<std::uint64_t>(std::popcount(above));
-        const std::uint32_t lit = above & ~blockers_.occluded(origins_[i], patch.packet, above);
-        for (std::uint32_t bits = lit; bits != 0; bits &= bits - 1)
-            words[static_cast<std::size_t>(std::countr_zero(bits))] |= std::uint64_t{1} << (i - begin);
+        num_rays += static_cast<std::uint64_t>(std::popcount(of_block[i]));
+        mean_normal += glm::vec3(normals_.x[first + i], normals_.y[first + i], normals_.z[first + i]);
     }
-    for (std::size_t lane = 0; lane < patch.packet.num_directions; ++lane)
-        patch.planes[lane][word] = words[lane];
+    if (num_rays != 0)
+        blockers_.clear_blocked({origins_.subspan(first, size), mean_normal}, patch.directions, of_block);
+
+    for (std::size_t word = 0; word < WordsPerBlock && first_word + word < normals_.num_words(); ++word) {
+        const std::span<std::uint64_t, WordSize> square(rays.data() + word * WordSize, WordSize);
+        transpose(square); // a word per direction, bits are receivers
+        for (std::size_t j = 0; j < patch.directions.num_directions; ++j)
+            patch.planes[j][first_word + word] = square[j];
+    }
+    return num_rays;
 }
 
 void VisibilityPlanes::keep_only(std::span<const LatticePoint> points) {

@@ -24,10 +24,12 @@ public:
     VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
                      const Blockers& blockers);
 
-    /// Traces those of the points that are not known yet. Points that lie close together should stand close together.
+    /// Traces those of the points that are not known yet. Points that lie close together should stand close together: neighbours in
+    /// the list whose places on the cube [-1, 1]^3 fit into a box of side `patch_width` share a patch of directions.
     /// `on_progress` is called from the working threads, many times a second, with the part of the rays that is done (not
     /// in order); it may throw to cancel.
-    void trace(std::span<const LatticePoint> points, const std::function<void(double)>& on_progress);
+    void trace(std::span<const LatticePoint> points, double patch_width,
+               const std::function<void(double)>& on_progress);
 
     /// Forgets all points but those given.
     void keep_only(std::span<const LatticePoint> points);
@@ -39,9 +41,10 @@ public:
     [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }
 
 private:
-    struct Patch; ///< up to 16 new directions and their planes
+    struct Patch; ///< up to 64 new directions and their planes
 
-    void trace_word(std::size_t word, const Patch& patch, std::uint64_t& num_rays) const;
+    std::vector<Patch> new_patches(std::span<const LatticePoint> points, double patch_width);
+    std::uint64_t trace_block(std::size_t first_word, const Patch& patch) const;
 
     std::span<const glm::vec3> origins_;
     const NormalArrays& normals_;

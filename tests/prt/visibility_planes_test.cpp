@@ -51,7 +51,7 @@ TEST(VisibilityPlanes, BitsSayAboveTheHorizonAndNotBlocked) {
         const NormalArrays normals(setting.normals);
         VisibilityPlanes planes(setting.origins, normals, blockers);
         const std::vector<LatticePoint> points = points_of(1);
-        planes.trace(points, [](double) {});
+        planes.trace(points, 2.0, [](double) {});
         for (const LatticePoint point : points) {
             DirectionPacket packet;
             packet.num_directions = 1;
@@ -77,9 +77,9 @@ TEST(VisibilityPlanes, TracesEveryDirectionOnce) {
     const scenes::CountingBlockers counting(nothing);
     VisibilityPlanes planes(setting.origins, normals, counting);
     const std::vector<LatticePoint> first = points_of(1);
-    planes.trace(first, [](double) {});
-    planes.trace(first, [](double) {});
-    planes.trace(points_of(2), [](double) {}); // holds all of the first
+    planes.trace(first, 2.0, [](double) {});
+    planes.trace(first, 2.0, [](double) {});
+    planes.trace(points_of(2), 2.0, [](double) {}); // holds all of the first
     EXPECT_EQ(planes.num_directions(), 6u * 8 * 8 + 2);
     EXPECT_TRUE(std::all_of(counting.rays().begin(), counting.rays().end(),
                             [](const auto& entry) { return entry.second == 1; }));
@@ -104,14 +104,14 @@ TEST(VisibilityPlanes, ReportsItsProgressUpToOne) {
         const std::scoped_lock lock(mutex);
         parts.push_back(part);
     };
-    planes.trace(points_of(5), note);
+    planes.trace(points_of(5), 0.25, note);
     std::sort(parts.begin(), parts.end());
     ASSERT_GT(parts.size(), 3u);
     EXPECT_GT(parts.front(), 0.0);
     EXPECT_EQ(std::adjacent_find(parts.begin(), parts.end()), parts.end());
     EXPECT_EQ(parts.back(), 1.0);
     parts.clear();
-    planes.trace(points_of(5), note); // all known
+    planes.trace(points_of(5), 0.25, note); // all known
     EXPECT_TRUE(parts.empty());
 }
 
@@ -121,7 +121,7 @@ TEST(VisibilityPlanes, ForgetsAllButWhatIsNamed) {
     const auto nothing = scenes::no_blockers();
     VisibilityPlanes planes(setting.origins, normals, nothing);
     const std::vector<LatticePoint> points = points_of(0);
-    planes.trace(points, [](double) {});
+    planes.trace(points, 2.0, [](double) {});
     const std::uint64_t kept = *planes.plane(points[0]);
     planes.keep_only(std::vector<LatticePoint>{points[0], points[0], 12345});
     EXPECT_EQ(*planes.plane(points[0]), kept);

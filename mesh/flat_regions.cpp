@@ -1,0 +1,198 @@
+#include "mesh/flat_regions.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "mesh/exact_sign.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+/// An edge as its triangle runs along it.
+struct HalfEdge {
+    std::uint32_t from = 0;
+    std::uint32_t to = 0;
+    std::uint32_t triangle = 0;
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> ends() const { return std::minmax(from, to); }
+};
+
+/// Sets that grow together.
+class Regions {
+public:
+    explicit Regions(std::size_t n) : parents_(n) { std::iota(parents_.begin(), parents_.end(), 0u); }
+    std::uint32_t root(std::uint32_t i) {
+        while (parents_[i] != i)
+            i = parents_[i] = parents_[parents_[i]];
+        return i;
+    }
+    void join(std::uint32_t a, std::uint32_t b) {
+        parents_[std::max(root(a), root(b))] = std::min(root(a), root(b));
+    }
+
+private:
+    std::vector<std::uint32_t> parents_;
+};
+
+/// A point's two coordinates other than `axis`: points of one plane keep their order of turns under that, or all reverse it.
+glm::vec2 without(int axis, const glm::vec3& point) {
+    return {point[(axis + 1) % 3], point[(axis + 2) % 3]};
+}
+
+/// How a triangle turns, seen along each axis. Triangles of one plane that turn the same way on every axis lie on the same side up.
+std::array<int, 3> turns(const TriangleMesh& mesh, const Triangle& triangle) {
+    std::array<int, 3> result{};
+    for (int axis = 0; axis < 3; ++axis)
+        result[static_cast<std::size_t>(axis)] =
+            turn(without(axis, mesh.positions[triangle[0]]), without(axis, mesh.positions[triangle[1]]),
+                 without(axis, mesh.positions[triangle[2]]));
+    return result;
+}
+
+/// The corners of the convex polygon that half-edges enclose: one loop, that turns one way, once around. Nothing where they do not.
+///
+/// All triangles of the region turn the same way, so each point off their edges is covered as often as the outline winds around it: once inside
+/// of such a loop, never outside.
+std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mesh,
+                                                         std::vector<HalfEdge> outline,
+                                                         const std::array<int, 3>& orientation) {
+    const auto seen = std::find_if(orientation.begin(), orientation.end(), [](int t) { return t != 0; });
+    if (seen == orientation.end())
+        return std::nullopt;
+    const auto axis = static_cast<int>(seen - orientation.begin());
+    const auto at = [&](std::uint32_t vertex) {
+        return without(axis, mesh.positions[vertex]);
+    };
+
+    std::sort(outline.begin(), outline.end(),
+              [](const HalfEdge& a, const HalfEdge& b) { return a.from < b.from; });
+    const auto leaving = [&](std::uint32_t vertex) {
+        return std::lower_bound(outline.begin(), outline.end(), vertex,
+                                [](const HalfEdge& edge, std::uint32_t v) { return edge.from < v; });
+    };
+    std::vector<std::uint32_t> loop;
+    std::uint32_t vertex = outline.front().from;
+    do {
+        const auto edge = leaving(vertex);
+        const bool one_way_on = edge != outline.end() && edge->from == vertex &&
+                                (edge + 1 == outline.end() || (edge + 1)->from != vertex);
+        if (!one_way_on || loop.size() == outline.size())
+            return std::nullopt;
+        loop.push_back(vertex);
+        vertex = edge->to;
+    } while (vertex != outline.front().from);
+    if (loop.size() != outline.size())
+        return std::nullopt; // there are holes
+
+    // Corners turn with the triangles; a vertex between two sides of one line must lie between their ends.
+    std::vector<std::uint32_t> corners;
+    int num_reversals = 0; // of the direction along the first coordinate: two for one time around
+    int last_direction = 0;
+    int first_direction = 0;
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+        const glm::vec2 before = at(loop[(i + loop.size() - 1) % loop.size()]);
+        const glm::vec2 here = at(loop[i]);
+        const glm::vec2 after = at(loop[(i + 1) % loop.size()]);
+        const int t = turn(before, here, after);
+        if (t == -*seen)
+            return std::nullopt;
+        if (t != 0)
+            corners.push_back(loop[i]);
+        else if ((before.x < here.x) != (here.x < after.x) || (before.y < here.y) != (here.y < after.y) ||
+                 (before.x > here.x) != (here.x > after.x) || (before.y > here.y) != (here.y > after.y))
+            return std::nullopt; // turns back on itself
+        // A side that goes straight up or down counts as going right, or left, by its second coordinate.
+        const int direction = here.x != after.x ? (here.x < after.x ? 1 : -1) : (here.y < after.y ? 1 : -1);
+        num_reversals += static_cast<int>(last_direction != 0 && direction != last_direction);
+        last_direction = direction;
+        if (first_direction == 0)
+            first_direction = direction;
+    }
+    num_reversals += static_cast<int>(last_direction != first_direction);
+    if (num_reversals != 2 || corners.size() < 3)
+        return std::nullopt;
+    return corners;
+}
+
+} // namespace
+
+std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
+    const std::size_t num_triangles = mesh.num_triangles();
+    std::vector<HalfEdge> edges;
+    edges.reserve(3 * num_triangles);
+    for (std::uint32_t i = 0; i < num_triangles; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
+            edges.push_back({mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3], i});
+    std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
+        return a.ends() != b.ends() ? a.ends() < b.ends() : a.triangle < b.triangle;
+    });
+
+    // Join the two triangles of an edge that lie in one plane, the same side up. Edges with one or many triangles stay outlines.
+    Regions regions(num_triangles);
+    std::vector<bool> is_inner(edges.size(), false);
+    for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
+        while (end < edges.size() && edges[end].ends() == edges[begin].ends())
+            ++end;
+        const HalfEdge& a = edges[begin];
+        if (end - begin != 2 || a.from != edges[begin + 1].to)
+            continue;
+        const HalfEdge& b = edges[begin + 1];
+        const auto opposite = [&](const HalfEdge& edge) {
+            const Triangle& t = mesh.triangles[edge.triangle];
+            return mesh.positions[*std::find_if(
+                t.begin(), t.end(), [&](std::uint32_t v) { return v != edge.from && v != edge.to; })];
+        };
+        const auto has_three_corners = [&](const HalfEdge& edge) {
+            const auto& [i, j, k] = mesh.triangles[edge.triangle];
+            return i != j && j != k && k != i;
+        };
+        if (!has_three_corners(a) || !has_three_corners(b) ||
+            !coplanar(mesh.positions[a.from], mesh.positions[a.to], opposite(a), opposite(b)))
+            continue;
+        const std::array<int, 3> orientation = turns(mesh, mesh.triangles[a.triangle]);
+        if (orientation == std::array<int, 3>{} || orientation != turns(mesh, mesh.triangles[b.triangle]))
+            continue; // no area, or folded over
+        regions.join(a.triangle, b.triangle);
+        is_inner[begin] = is_inner[begin + 1] = true;
+    }
+
+    // The outlines of regions of more than two triangles, region by region.
+    std::vector<std::uint32_t> sizes(num_triangles, 0);
+    for (std::uint32_t i = 0; i < num_triangles; ++i)
+        ++sizes[regions.root(i)];
+    std::vector<std::pair<std::uint32_t, HalfEdge>> outlines;
+    for (std::size_t i = 0; i < edges.size(); ++i)
+        if (const std::uint32_t region = regions.root(edges[i].triangle); !is_inner[i] && sizes[region] > 2)
+            outlines.emplace_back(region, edges[i]);
+    std::sort(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) {
+        return std::pair(a.first, a.second.from) < std::pair(b.first, b.second.from);
+    });
+
+    std::vector<bool> is_merged(num_triangles, false); // by region
+    std::vector<Triangle> fans;
+    for (std::size_t begin = 0, end = 0; begin < outlines.size(); begin = end) {
+        std::vector<HalfEdge> outline;
+        while (end < outlines.size() && outlines[end].first == outlines[begin].first)
+            outline.push_back(outlines[end++].second);
+        const std::uint32_t region = outlines[begin].first;
+        const auto corners = convex_outline(mesh, std::move(outline), turns(mesh, mesh.triangles[region]));
+        if (!corners || corners->size() - 2 >= sizes[region])
+            continue;
+        is_merged[region] = true;
+        for (std::size_t i = 2; i < corners->size(); ++i)
+            fans.push_back({(*corners)[0], (*corners)[i - 1], (*corners)[i]});
+    }
+    std::vector<Triangle> result;
+    for (std::uint32_t i = 0; i < num_triangles; ++i)
+        if (!is_merged[regions.root(i)])
+            result.push_back(mesh.triangles[i]);
+    result.insert(result.end(), fans.begin(), fans.end());
+    return result;
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,44 @@
+// Shadows of whole beams of rays: faster than ray by ray, with the same answers bit by bit.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/blockers.h"
+
+namespace relumine::prt {
+
+/// Answers for a block of receivers and a patch of directions together what another ray tracer answers ray by ray.
+///
+///            patch of directions
+///              \   |   /            The rays of a block of receivers through a patch of directions fill a shaft. Six planes hold it;
+///               \  |  /             a triangle outside of one of them blocks none of the rays. One walk of a tree of triangles finds
+///         |\     \ | /              the few that may. Most shafts meet nothing: 8,192 rays are decided at once.
+///         | \     \|/
+///     ----+--o-o-o-o-o----          What is left is tested triangle by triangle, receiver by receiver: first against the receiver's
+///          receivers                own cone, then with the edge functions of 64 rays at a time.
+///
+/// Why nothing changes: rounding errors have bounds, and a test here only decides where its result is beyond its bound. A ray hits a
+/// triangle for certain, misses all of them for certain, or is in doubt (it passes an edge within some 1e-6 of its length), and
+/// then `exact` is asked. So are wide patches and crowded shafts, where a beam does not pay.
+class BeamScene final : public Blockers {
+public:
+    /// `exact` traces the same mesh's triangles and must outlive this; the mesh may go. About 250 bytes per triangle.
+    BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact);
+    ~BeamScene() override;
+    BeamScene(BeamScene&&) noexcept;
+    BeamScene& operator=(BeamScene&&) noexcept;
+
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::uint32_t active) const override;
+    void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+                       std::span<std::uint64_t> rays) const override;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace relumine::prt
