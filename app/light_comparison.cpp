@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/output_options.h"
+#include "app/receiver_options.h"
 #include "files/output_file.h"
 #include "lights/place_lights.h"
 #include "relight/exact.h"

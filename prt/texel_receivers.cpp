@@ -22,9 +22,10 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
 /// A triangle in the atlas: texel coordinates, x to the right, y down, texel (x, y) is [x, x + 1] x [y, y + 1].
 class Chart {
 public:
-    Chart(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle, const AtlasSize& size) {
+    Chart(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const AtlasSize& size) {
         for (std::size_t i = 0; i < 3; ++i) {
-            const glm::dvec2 uv(mesh.uvs[triangle[i]]);
+            const glm::dvec2 uv(mesh.corner_uvs.empty() ? mesh.uvs[mesh.triangles[triangle][i]]
+                                                        : mesh.corner_uvs[triangle][i]);
             corners_[i] = {uv.x * size.width, (1.0 - uv.y) * size.height};
         }
         double longest = 0.0;
@@ -121,7 +122,7 @@ public:
 
 private:
     void draw(std::uint32_t triangle) {
-        const Chart chart(mesh_, mesh_.triangles[triangle], size_);
+        const Chart chart(mesh_, triangle, size_);
         if (chart.is_flat()) {
             ++num_flat_;
             return;
@@ -185,7 +186,7 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
         throw std::invalid_argument(
             fmt::format("expected a lightmap of 1 to {} texels a side and {} in all, got {} x {}",
                         MaxPictureSize, MaxTexels, size.width, size.height));
-    if (mesh.uvs.empty())
+    if (mesh.uvs.empty() && mesh.corner_uvs.empty())
         throw std::invalid_argument("expected a mesh with uvs for a lightmap, got one without");
 
     Atlas atlas(mesh, size);

@@ -149,6 +149,18 @@ TEST(TexelReceivers, MirroredChartsAreAsGood) {
     EXPECT_NEAR(texels.receivers.positions[0].x, 0.875f, 1e-6f);
 }
 
+TEST(TexelReceivers, UvsOfCornersAreAsGoodAsThoseOfVertices) {
+    const mesh::TriangleMesh by_vertex = rectangle({0.1f, 0.2f}, {0.9f, 0.7f});
+    mesh::TriangleMesh by_corner = by_vertex;
+    for (const mesh::Triangle& t : by_vertex.triangles)
+        by_corner.corner_uvs.push_back({by_vertex.uvs[t[0]], by_vertex.uvs[t[1]], by_vertex.uvs[t[2]]});
+    by_corner.uvs.clear();
+    const TexelReceivers expected = texel_receivers(by_vertex, {.width = 16, .height = 16});
+    const TexelReceivers actual = texel_receivers(by_corner, {.width = 16, .height = 16});
+    EXPECT_EQ(actual.receivers.positions, expected.receivers.positions);
+    EXPECT_EQ(actual.layout, expected.layout);
+}
+
 TEST(TexelReceivers, FlatTrianglesAndThoseOutsideAreCounted) {
     mesh::TriangleMesh floor = rectangle({0.0f, 0.0f}, {1.0f, 1.0f});
     floor.uvs.assign(4, glm::vec2(0.0f)); // as mesh::append_floor() leaves them
