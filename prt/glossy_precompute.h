@@ -16,7 +16,7 @@ struct GlossyOptions {
     /// A block's cut is fine enough when the error of its lobe, T_C - T over all directions, is at most this part of the lobe itself
     /// without blockers: sqrt(sum over cells of dw mean (T - T_C)^2) < tolerance sqrt(sum of dw T^2). It is the relative L2 error under a small light that may
     /// stand anywhere. For the grazing part of the diffuse lobe the whole diffuse lobe is what counts.
-    float tolerance = 0.1f;
+    float tolerance = 0.07f;
     std::uint32_t face_resolution = 1024; ///< as PrecomputeOptions
     float bias = 0.0f;                    ///< as PrecomputeOptions
     std::stop_token stop = {};

@@ -37,8 +37,9 @@ BinnedEnvironment EnvironmentBinner::bin(cubemap::CubeMap map) {
 
     start = Clock::now();
     if (sharp_tolerance_ > 0.0f)
-        result.sharp_lights = find_sharp_lights(result.map, *binning_, transfer_.quadtree.leaves(),
-                                                result.powers, sharp_tolerance_);
+        result.sharp_lights =
+            find_sharp_lights(result.map, *binning_, transfer_.quadtree.leaves(), result.powers,
+                              sharp_tolerance_, transfer_.glossy.has_value());
     result.seconds_sharp = seconds_since(start);
     return result;
 }

@@ -87,6 +87,9 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
       radiance_(transfer.num_receivers()) {
     if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
         throw std::invalid_argument("expected one position per receiver");
+    if ((!transfer.surfaces.empty() || transfer.glossy) &&
+        transfer.surfaces.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one surface per receiver, or none without a glossy part");
     traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0);
     if (transfer.glossy) {
         pyramid_.emplace(transfer.glossy->deepest_level());
@@ -360,8 +363,8 @@ std::size_t Relighter::update_changed(bool sharp_changed) {
 
 /// Which lights are sharp depends on the whole map.
 bool Relighter::update_sharp_lights() {
-    return replace_sharp_lights(
-        find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_, rays_.tolerance));
+    return replace_sharp_lights(find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(),
+                                                  powers_, rays_.tolerance, transfer_.glossy.has_value()));
 }
 
 /// Adds the clusters of sharp lights that came or went to `changed_` and traces anew when there are any; returns whether there are.

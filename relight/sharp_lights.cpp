@@ -30,13 +30,13 @@ constexpr std::uint32_t FinestLevel = 9;
 /// Finds the sharp cells below one cluster and cuts them into lights.
 class Search {
 public:
-    Search(const cubemap::CubeMap& environment, const LightBinning& binning, double min_power,
+    Search(const cubemap::CubeMap& environment, const LightBinning& binning, double min_power, bool even_too,
            std::vector<SharpLight>& lights)
-        : environment_(environment), binning_(binning), min_power_(min_power),
+        : environment_(environment), binning_(binning), min_power_(min_power), even_too_(even_too),
           texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))),
           lights_(lights) {}
 
-    /// Finds the sharp cells of a cluster of this power: none unless one of them is.
+    /// Finds the sharp cells of a cluster of this power: none unless one of them stands out, or those that do not are wanted, too.
     void look_into(std::uint32_t cluster, double cluster_power, const prt::Cell& cell) {
         candidates_.clear();
         collect(cell, LevelsBelowCluster);
@@ -44,7 +44,7 @@ public:
             std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
                 return candidate.power > SharpShare * cluster_power;
             });
-        if (uneven)
+        if (uneven || even_too_)
             for (const Candidate& candidate : candidates_)
                 cut(cluster, candidate.power, candidate.cell);
     }
@@ -84,6 +84,7 @@ private:
     const cubemap::CubeMap& environment_;
     const LightBinning& binning_;
     double min_power_;
+    bool even_too_;
     std::uint32_t texel_level_; ///< where a cell is no larger than a texel
     std::vector<Candidate> candidates_;
     std::vector<SharpLight>& lights_;
@@ -93,7 +94,7 @@ private:
 
 std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, const LightBinning& binning,
                                           std::span<const prt::Cell> clusters, std::span<const double> powers,
-                                          float tolerance) {
+                                          float tolerance, bool glossy) {
     // The length of a small cell's vector irradiance is its power.
     const double total_power = std::accumulate(powers.begin(), powers.end(), 0.0);
     std::vector<SharpLight> lights;
@@ -102,7 +103,7 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, c
     const double min_power =
         AllowedError * total_power / (4.0 * std::numbers::pi) / static_cast<double>(tolerance);
 
-    Search search(environment, binning, min_power, lights);
+    Search search(environment, binning, min_power, glossy, lights);
     for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster)
         if (powers[cluster] >= min_power)
             search.look_into(cluster, powers[cluster], clusters[cluster]);

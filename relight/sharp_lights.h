@@ -29,9 +29,11 @@ struct SharpLight {
 /// map's power P that the error a point light may make in the cluster, tolerance times its power, exceeds 0.25 % of the mean
 /// radiance P / (4 pi), and it or a sister more than an eighth of the cluster's power. There are a few dozen at most: large sources have no such cells.
 /// `powers`: the length of each cluster's full vector irradiance, in luminance, [clusters.size()]. Deterministic. O(clusters + texels of the brightest clusters).
+/// With `glossy` receivers bright cells are sharp even where their cluster is lit evenly, as highlights may be smaller than any cluster.
 [[nodiscard]] std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                                         const LightBinning& binning,
                                                         std::span<const prt::Cell> clusters,
-                                                        std::span<const double> powers, float tolerance);
+                                                        std::span<const double> powers, float tolerance,
+                                                        bool glossy = false);
 
 } // namespace relumine::relight

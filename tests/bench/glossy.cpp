@@ -15,7 +15,9 @@
 #include "cubemap/resample.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
+#include "prt/beam_scene.h"
 #include "prt/glossy_precompute.h"
+#include "prt/pixel_receivers.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
 #include "relight/exact.h"
@@ -36,6 +38,7 @@ struct Settings {
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
     std::uint32_t resolution = 256;
     std::size_t num_samples = 500;
+    bool pixels = false; ///< of a view of 512 x 512, in place of vertices
 };
 
 struct Environment {
@@ -73,20 +76,29 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+prt::Receivers seen_receivers(const Settings& settings, const mesh::TriangleMesh& mesh,
+                              const prt::RayScene& rays) {
+    const relight::Camera camera = relight::automatic_camera(mesh, {.width = 512, .height = 512});
+    if (settings.pixels)
+        return prt::pixel_receivers(mesh, rays, {.camera = camera, .width = 512, .height = 512}).receivers;
+    prt::Receivers receivers = prt::vertex_receivers(mesh);
+    for (const glm::vec3& position : receivers.positions)
+        receivers.to_eye.push_back(glm::normalize(camera.eye - position));
+    return receivers;
+}
+
 void run(const Settings& settings) {
     mesh::TriangleMesh mesh = mesh::load(settings.data / "meshes/stanford" / settings.mesh);
     if (settings.floor != 0)
         mesh::append_floor(mesh, settings.floor);
     const prt::RayScene rays(mesh);
+    const prt::BeamScene beams(mesh, rays);
     const float bias = prt::automatic_bias(mesh);
-    prt::Receivers receivers = prt::vertex_receivers(mesh);
-    const glm::vec3 eye = relight::automatic_camera(mesh).eye;
-    for (const glm::vec3& position : receivers.positions)
-        receivers.to_eye.push_back(glm::normalize(eye - position));
+    prt::Receivers receivers = seen_receivers(settings, mesh, rays);
 
     prt::PrecomputeStatistics diffuse;
     prt::Transfer transfer = prt::precompute(
-        receivers, rays,
+        receivers, beams,
         {.tolerance = settings.tolerance, .face_resolution = settings.resolution, .bias = bias}, &diffuse);
     fmt::print("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB of counts\n\n", settings.mesh,
                receivers.size(), diffuse.num_clusters, diffuse.seconds,
@@ -94,45 +106,52 @@ void run(const Settings& settings) {
 
     const std::vector<Environment> maps = environments(settings);
     const std::vector<std::uint32_t> sample = relight::random_receivers(transfer, settings.num_samples, 1);
-    fmt::print("| roughness | cells per block | MB | precompute | rays | relight |");
+    fmt::print("| roughness | cells per block | MB | precompute | rays | relight | frame under grace |");
     for (const Environment& environment : maps)
         fmt::print(" {} |", environment.name);
-    fmt::print("\n|---|---|---|---|---|---|---|---|---|\n");
+    fmt::print("\n|---|---|---|---|---|---|---|---|---|---|\n");
     for (const float roughness : settings.roughness) {
         receivers.surfaces.assign(receivers.size(), {.albedo = glm::vec3(0.3f),
                                                      .specular = glm::vec3(0.5f),
                                                      .highlight = prt::Highlight::Ggx,
                                                      .shape = roughness});
-        transfer.surfaces = receivers.surfaces;
         prt::GlossyStatistics statistics;
         transfer.glossy = prt::precompute_glossy(
             receivers, rays, transfer,
             {.tolerance = settings.glossy_tolerance, .face_resolution = settings.resolution, .bias = bias},
             &statistics);
+        prt::set_surfaces(transfer, receivers);
         relight::Relighter relighter(transfer, {.blockers = &rays,
                                                 .positions = receivers.positions,
                                                 .bias = bias,
                                                 .tolerance = settings.tolerance});
         std::vector<double> seconds;
+        std::vector<double> seconds_frame; // all of it: binning, tracing of sharp lights, relighting
         std::string errors;
         for (const Environment& environment : maps) {
-            for (int i = 0; i < 3; ++i)
-                seconds.push_back(relighter.set_environment(environment.map).seconds_relight);
+            for (int i = 0; i < 3; ++i) {
+                const relight::RelightTimes times = relighter.set_environment(environment.map);
+                seconds.push_back(times.seconds_relight);
+                if (&environment == &maps.front())
+                    seconds_frame.push_back(times.seconds_bin + times.seconds_trace + times.seconds_relight);
+            }
             const std::vector<glm::dvec3> exact =
                 relight::exact_radiance(receivers, sample, rays, environment.map, {.bias = bias});
             errors +=
                 fmt::format(" {:.4f} |", relight::compare(sample, exact, relighter.radiance()).relative_l2);
         }
-        fmt::print("| {} | {:.0f} + {:.0f} + {:.0f} | {:.0f} | {:.1f} s | {:.0f} M | {:.1f} ms |{}\n",
-                   roughness,
-                   static_cast<double>(transfer.glossy->lobes[0].num_entries()) /
-                       static_cast<double>(transfer.counts.num_blocks()),
-                   static_cast<double>(transfer.glossy->lobes[1].num_entries()) /
-                       static_cast<double>(transfer.counts.num_blocks()),
-                   static_cast<double>(transfer.glossy->lobes[2].num_entries()) /
-                       static_cast<double>(transfer.counts.num_blocks()),
-                   static_cast<double>(transfer.glossy->num_bytes()) * 1e-6, statistics.seconds,
-                   static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * median(seconds), errors);
+        fmt::print(
+            "| {} | {:.0f} + {:.0f} + {:.0f} | {:.0f} | {:.1f} s | {:.0f} M | {:.1f} ms | {:.1f} ms |{}\n",
+            roughness,
+            static_cast<double>(transfer.glossy->lobes[0].num_entries()) /
+                static_cast<double>(transfer.counts.num_blocks()),
+            static_cast<double>(transfer.glossy->lobes[1].num_entries()) /
+                static_cast<double>(transfer.counts.num_blocks()),
+            static_cast<double>(transfer.glossy->lobes[2].num_entries()) /
+                static_cast<double>(transfer.counts.num_blocks()),
+            static_cast<double>(transfer.glossy->num_bytes()) * 1e-6, statistics.seconds,
+            static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * median(seconds),
+            1e3 * median(seconds_frame), errors);
         std::fflush(stdout);
     }
 }
@@ -141,7 +160,7 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures glossy relighting of a mesh's vertices from the automatic camera: cells and "
+    CLI::App program{"Measures glossy relighting of a mesh seen by the automatic camera: cells and "
                      "bytes, seconds, relative L2 error"};
     program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
         ->capture_default_str();
@@ -152,6 +171,8 @@ int main(int argc, char** argv) {
     program.add_option("--glossy-tolerance", settings.glossy_tolerance, "of the lobes")
         ->capture_default_str();
     program.add_option("--resolution", settings.resolution, "R of the environments")->capture_default_str();
+    program.add_flag("--pixels", settings.pixels,
+                     "512 x 512 pixels of the automatic view, in place of vertices");
     program.add_option("--samples", settings.num_samples, "receivers to verify")->capture_default_str();
     CLI11_PARSE(program, argc, argv);
     try {
