@@ -88,6 +88,38 @@ bool leaves_planes(const TriangleTree::Leaf& leaf, const Shaft& shaft) {
     return true;
 }
 
+/// Writes the supports of a leaf's triangles, which are much closer than those of its box where a surface runs along a plane. False where one says
+/// that the leaf is outside.
+bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre, const Shaft& shaft,
+                     ShaftLeaves& leaves, std::size_t place) {
+    const hn::CappedTag<float, Width> d;
+    using Vector = hn::Vec<decltype(d)>;
+    Vector most[Shaft::NumPlanes];
+    for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
+        Vector corner[9];
+        for (std::size_t i = 0; i < 9; ++i)
+            corner[i] = hn::Sub(hn::Load(d, leaf.corners[i].data() + lane),
+                                hn::Set(d, centre[static_cast<int>(i % 3)]));
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
+            const Vector nx = hn::Set(d, shaft.normals[k].x);
+            const Vector ny = hn::Set(d, shaft.normals[k].y);
+            const Vector nz = hn::Set(d, shaft.normals[k].z);
+            const auto along = [&](std::size_t i) {
+                return hn::MulAdd(nx, corner[i], hn::MulAdd(ny, corner[i + 1], hn::Mul(nz, corner[i + 2])));
+            };
+            const Vector support = hn::Max(hn::Max(along(0), along(3)), along(6));
+            most[k] = lane == 0 ? support : hn::Max(most[k], support);
+        }
+    }
+    bool inside = true;
+    for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
+        const float support = hn::GetLane(hn::MaxOfLanes(d, most[k]));
+        leaves.supports[k][place] = support;
+        inside = inside && support >= shaft.offsets[k];
+    }
+    return inside;
+}
+
 bool find_leaves(const TriangleTree& tree, const Shaft& shaft, ShaftLeaves& leaves) {
     leaves.found.clear();
     leaves.stack.clear();
@@ -108,15 +140,19 @@ bool find_leaves(const TriangleTree& tree, const Shaft& shaft, ShaftLeaves& leav
                      lane});
         }
     }
-    leaves.size = leaves.found.size();
-    if (leaves.size > ShaftLeaves::MaxSize)
+    if (leaves.found.size() > ShaftLeaves::MaxSize)
         return false;
     std::sort(leaves.found.begin(), leaves.found.end(),
               [](const ShaftLeaves::Found& a, const ShaftLeaves::Found& b) { return a.near < b.near; });
-    for (std::size_t i = 0; i < leaves.size; ++i) {
-        const ShaftLeaves::Found& found = leaves.found[i];
+    leaves.size = 0;
+    for (const ShaftLeaves::Found& found : leaves.found) {
         const TriangleTree::Node& node = tree.nodes[static_cast<std::size_t>(found.node)];
-        leaves.leaves[i] = ~node.child[found.lane];
+        const std::int32_t leaf = ~node.child[found.lane];
+        const std::size_t i = leaves.size;
+        if (!supports_inside(tree.leaves[static_cast<std::size_t>(leaf)], tree.centre, shaft, leaves, i))
+            continue;
+        ++leaves.size;
+        leaves.leaves[i] = leaf;
         const auto low = [&](std::size_t a) {
             return node.bounds[a % 3][found.lane];
         };
@@ -129,12 +165,6 @@ bool find_leaves(const TriangleTree& tree, const Shaft& shaft, ShaftLeaves& leav
         leaves.boxes[3][i] = high(axis + 1);
         leaves.boxes[4][i] = low(axis + 2);
         leaves.boxes[5][i] = high(axis + 2);
-        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
-            const glm::vec3& n = shaft.normals[k];
-            leaves.supports[k][i] = n.x * (n.x >= 0.0f ? high(0) : low(0)) +
-                                    n.y * (n.y >= 0.0f ? high(1) : low(1)) +
-                                    n.z * (n.z >= 0.0f ? high(2) : low(2));
-        }
     }
     for (auto& row : leaves.supports)
         std::fill_n(row.begin() + static_cast<std::ptrdiff_t>(leaves.size), ShaftLeaves::Padding,

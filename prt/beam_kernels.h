@@ -56,7 +56,7 @@ struct ShaftLeaves {
     using Row = std::array<float, MaxSize + Padding>;
 
     std::size_t size = 0;
-    /// max over a leaf's box of normal . x, for each plane; [size], then lanes that are outside of everything
+    /// max over a leaf's triangles of normal . x, for each plane; [size], then lanes that are outside of everything
     std::array<Row, Shaft::NumPlanes> supports;
     /// the boxes in the patch's axes: low and high along `axis` (times its sign), along s, along t
     std::array<Row, 6> boxes;

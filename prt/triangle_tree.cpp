@@ -158,12 +158,10 @@ public:
 private:
     std::int32_t leaf(const Part& part) {
         TriangleTree::Leaf& leaf = tree_.leaves.emplace_back();
-        for (auto& row : leaf.corners)
-            row.fill(std::numeric_limits<float>::quiet_NaN());
-        leaf.longest.fill(0.0f);
         for (const Item& item : part.items) {
             const mesh::Triangle& triangle = triangles_[item.triangle];
             const std::size_t lane = leaf.size++;
+            leaf.longest[lane] = 0.0f;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 const glm::vec3& place = positions_[triangle[corner]];
                 const glm::vec3 edge = glm::abs(positions_[triangle[(corner + 1) % 3]] - place);
@@ -172,6 +170,9 @@ private:
                     leaf.corners[3 * corner + static_cast<std::size_t>(axis)][lane] = place[axis];
             }
         }
+        for (auto& row : leaf.corners)
+            std::fill(row.begin() + leaf.size, row.end(), row.front());
+        std::fill(leaf.longest.begin() + leaf.size, leaf.longest.end(), leaf.longest.front());
         return static_cast<std::int32_t>(tree_.leaves.size() - 1);
     }
 

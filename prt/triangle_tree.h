@@ -24,8 +24,9 @@ struct TriangleTree {
         std::array<std::int32_t, Width> child; ///< >= 0: that node; < 0: leaf ~child
     };
     struct alignas(64) Leaf {
-        std::array<std::array<float, Width>, 9> corners; ///< x, y, z of corners 0, 1, 2; NaN in unused lanes
-        std::array<float, Width> longest;                ///< largest component of the triangle's edges
+        std::array<std::array<float, Width>, 9>
+            corners;                      ///< x, y, z of corners 0, 1, 2; unused lanes repeat lane 0
+        std::array<float, Width> longest; ///< largest component of the triangle's edges
         std::uint32_t size = 0;
     };
 

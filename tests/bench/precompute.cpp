@@ -1,0 +1,224 @@
+// How fast the preprocessor is: beams and rays with Embree against the plain way, threads, memory, cancelling. See `./dev bench precompute --help`.
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <mutex>
+#include <numbers>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
+
+#include "data_gen/scenes.h"
+#include "mesh/floor.h"
+#include "mesh/load.h"
+#include "prt/beam_scene.h"
+#include "prt/lattice.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+
+namespace {
+
+using namespace relumine;
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// User time of this process, all threads: less moved by others on the machine than the clock on the wall.
+double cpu_seconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
+}
+
+double peak_megabytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<double>(usage.ru_maxrss) * 1024e-6;
+}
+
+/// The paper's algorithm as one would write it down: cell by cell, each of the nine samples a vector of floats, every ray on its own, nothing
+/// shared between cells. Returns the number of clusters.
+class PlainClustering {
+public:
+    PlainClustering(const prt::Receivers& receivers, const prt::RayScene& rays,
+                    const prt::PrecomputeOptions& options)
+        : receivers_(receivers), rays_(rays), options_(options) {}
+
+    std::size_t run() {
+        for (const cubemap::Face face : cubemap::AllFaces)
+            visit({.face = face});
+        return num_clusters_;
+    }
+
+private:
+    void visit(const prt::Cell& cell) {
+        if (cell.level >= options_.min_level && is_cluster(cell)) {
+            ++num_clusters_;
+            return;
+        }
+        for (std::uint32_t i = 0; i < 4; ++i)
+            visit(cell.child(i));
+    }
+    [[nodiscard]] bool is_cluster(const prt::Cell& cell) const {
+        const std::size_t n = receivers_.size();
+        std::array<std::vector<float>, prt::SamplesPerCell> transfer;
+        std::array<glm::vec3, prt::SamplesPerCell> directions;
+        const auto points = prt::lattice_points(cell);
+        for (std::size_t l = 0; l < prt::SamplesPerCell; ++l) {
+            transfer[l].resize(n);
+            directions[l] = prt::direction(points[l]);
+        }
+        tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+            const glm::vec3& normal = receivers_.normals[i];
+            const glm::vec3 origin = prt::ray_origin(receivers_.positions[i], normal, options_.bias);
+            for (std::size_t l = 0; l < prt::SamplesPerCell; ++l) {
+                const float cosine = glm::dot(normal, directions[l]);
+                transfer[l][i] = cosine > 0.0f && !rays_.occluded(origin, directions[l]) ? cosine : 0.0f;
+            }
+        });
+        std::array<double, prt::SamplesPerCell> distances{};
+        for (std::size_t i = 0; i < n; ++i) {
+            float mean = 0.0f;
+            for (std::size_t l = 0; l < prt::SamplesPerCell; ++l)
+                mean += static_cast<float>(prt::SampleWeights[l]) / prt::FullCount * transfer[l][i];
+            for (std::size_t l = 0; l < prt::SamplesPerCell; ++l)
+                distances[l] += static_cast<double>((transfer[l][i] - mean) * (transfer[l][i] - mean));
+        }
+        const double allowed =
+            static_cast<double>(options_.tolerance) * std::sqrt(static_cast<double>(n)) * std::numbers::pi;
+        return std::all_of(distances.begin(), distances.end(),
+                           [&](double d) { return d < allowed * allowed; });
+    }
+
+    const prt::Receivers& receivers_;
+    const prt::RayScene& rays_;
+    const prt::PrecomputeOptions& options_;
+    std::size_t num_clusters_ = 0;
+};
+
+/// The longest time between two calls.
+class LongestGap {
+public:
+    void call() {
+        const std::scoped_lock lock(mutex_);
+        longest_ = std::max(longest_, seconds_since(last_));
+        last_ = Clock::now();
+    }
+    [[nodiscard]] double seconds() const { return longest_; }
+
+private:
+    std::mutex mutex_;
+    Clock::time_point last_ = Clock::now();
+    double longest_ = 0.0;
+};
+
+void print(const std::string& name, double seconds, double cpu, std::size_t num_clusters) {
+    fmt::print("{:<22} {:8.2f} s  {:8.2f} s of processors  {:6} clusters", name, seconds, cpu, num_clusters);
+}
+
+void measure(const std::string& name, const prt::Receivers& receivers, const prt::Blockers& blockers,
+             prt::PrecomputeOptions options) {
+    LongestGap gap;
+    options.on_progress = [&](double) {
+        gap.call();
+    };
+    prt::PrecomputeStatistics statistics;
+    const double before = cpu_seconds();
+    const prt::Transfer transfer = prt::precompute(receivers, blockers, options, &statistics);
+    print(name, statistics.seconds, cpu_seconds() - before, transfer.num_clusters());
+    fmt::print("  {:.0f} M rays  longest without progress {:.0f} ms  peak {:.0f} MB\n",
+               static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3, peak_megabytes());
+}
+
+/// Time from the wish to stop to the end of the work, at moments spread over it.
+void measure_cancel(const prt::Receivers& receivers, const prt::Blockers& blockers,
+                    prt::PrecomputeOptions options) {
+    double longest = 0.0;
+    for (int i = 1; i <= 8; ++i) {
+        std::stop_source stop;
+        options.stop = stop.get_token();
+        Clock::time_point asked;
+        const std::jthread canceller([&, i] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(170 * i));
+            asked = Clock::now();
+            stop.request_stop();
+        });
+        try {
+            static_cast<void>(prt::precompute(receivers, blockers, options));
+        } catch (const prt::Cancelled&) {
+            longest = std::max(longest, seconds_since(asked));
+        }
+    }
+    fmt::print("cancelled after at most {:.0f} ms\n", longest * 1e3);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App program("how fast relumine precompute is");
+    std::string mesh_file;
+    std::uint32_t floor_vertices = 193;
+    float tolerance = 0.03f;
+    bool plain = false;
+    bool threads = false;
+    bool cancel = false;
+    program.add_option("--mesh", mesh_file,
+                       "a mesh file, or 'colonnade' for the generated one; default: the bunny");
+    program.add_option("--floor", floor_vertices, "floor of N x N vertices, 0 for none")
+        ->capture_default_str();
+    program.add_option("--tolerance", tolerance)->capture_default_str();
+    program.add_flag("--plain", plain,
+                     "also one ray at a time, cell by cell: minutes at the default tolerance");
+    program.add_flag("--threads", threads, "also on one thread");
+    program.add_flag("--cancel", cancel, "also how fast it stops");
+    CLI11_PARSE(program, argc, argv);
+
+    mesh::TriangleMesh mesh;
+    if (mesh_file == "colonnade") {
+        mesh = data_gen::colonnade();
+    } else {
+        const std::filesystem::path bunny =
+            std::filesystem::path(RELUMINE_DATA_DIR) / "meshes/stanford/bun_zipper.ply";
+        mesh = mesh::load(mesh_file.empty() ? bunny : std::filesystem::path(mesh_file));
+        if (floor_vertices > 0)
+            mesh::append_floor(mesh, floor_vertices);
+    }
+    const prt::Receivers receivers = prt::vertex_receivers(mesh);
+    const prt::PrecomputeOptions options{.tolerance = tolerance, .bias = prt::automatic_bias(mesh)};
+    fmt::print("{} vertices, {} triangles, tolerance {}\n", mesh.num_vertices(), mesh.num_triangles(),
+               tolerance);
+
+    const prt::RayScene rays(mesh);
+    const Clock::time_point start = Clock::now();
+    const prt::BeamScene beams(mesh, rays);
+    fmt::print("tree for the beams     {:8.2f} s\n", seconds_since(start));
+    if (threads) {
+        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        measure("beams, one thread", receivers, beams, options);
+    }
+    measure("beams", receivers, beams, options);
+    measure("Embree, packets", receivers, rays, options);
+    if (plain) {
+        const Clock::time_point plain_start = Clock::now();
+        const double before = cpu_seconds();
+        const std::size_t num_clusters = PlainClustering(receivers, rays, options).run();
+        print("plain", seconds_since(plain_start), cpu_seconds() - before, num_clusters);
+        fmt::print("\n");
+    }
+    if (cancel)
+        measure_cancel(receivers, beams, options);
+}
