@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/output_options.h"
+#include "app/session.h"
 #include "mesh/load.h"
 #include "prt/receivers.h"
 
@@ -19,14 +20,20 @@ void SceneOptions::add_to(CLI::App& command) {
         ->required();
     command.add_flag("--clusters-only", clusters_only,
                      "light the sun through its cluster too, without shadow rays of its own");
+    command.add_option(
+        "--surface-albedo", albedo,
+        "scenes with materials: albedo of all surfaces in place of the precompute's, a number or R,G,B");
+    command.add_option(
+        "--surface-specular", specular,
+        "scenes with highlights: their F0 (Ks) in place of the precompute's, a number or R,G,B");
 }
 
 namespace {
 
 prt::Scene load(const SceneOptions& options) {
     const std::string extension = extension_of(options.path);
-    const bool is_mesh =
-        extension == ".obj" || extension == ".ply" || extension == ".off" || extension == ".stl";
+    const bool is_mesh = extension == ".obj" || extension == ".gltf" || extension == ".glb" ||
+                         extension == ".ply" || extension == ".off" || extension == ".stl";
     if (!options.mesh_too || !is_mesh)
         return prt::load_scene(options.path);
     if (options.clusters_only)
@@ -39,10 +46,29 @@ prt::Scene load(const SceneOptions& options) {
     return scene;
 }
 
+/// Colours are no part of the transfer: they may change.
+void recolour(prt::Scene& scene, const SceneOptions& options) {
+    if (options.albedo.empty() && options.specular.empty())
+        return;
+    if (scene.receivers.surfaces.empty())
+        throw std::runtime_error(fmt::format("{}: expected a scene with materials for --surface-albedo and "
+                                             "--surface-specular, got one without",
+                                             options.path));
+    for (prt::Surface& surface : scene.receivers.surfaces) {
+        if (!options.albedo.empty())
+            surface.albedo = parse_color("--surface-albedo", options.albedo);
+        if (!options.specular.empty())
+            surface.specular = parse_color("--surface-specular", options.specular);
+    }
+    prt::set_surfaces(scene.transfer, scene.receivers);
+}
+
 } // namespace
 
 LitScene::LitScene(const SceneOptions& options)
-    : scene_(load(options)), rays_(scene_.mesh), clusters_only_(options.clusters_only) {}
+    : scene_(load(options)), rays_(scene_.mesh), clusters_only_(options.clusters_only) {
+    recolour(scene_, options);
+}
 
 relight::ShadowRays LitScene::shadow_rays() const {
     if (clusters_only_)

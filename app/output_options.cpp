@@ -58,11 +58,7 @@ relight::Camera camera_of(const OutputOptions& options, const prt::Scene& scene)
 std::optional<glm::vec3> parse_albedo(const std::string& text) {
     if (text == "mesh")
         return std::nullopt;
-    const bool is_grey = text.find(',') == std::string::npos;
-    const glm::vec3 factor = parse_vec3("--albedo", is_grey ? fmt::format("{0},{0},{0}", text) : text);
-    if (!(factor.r >= 0.0f && factor.g >= 0.0f && factor.b >= 0.0f))
-        throw CLI::ValidationError("--albedo", fmt::format("expected numbers >= 0, got '{}'", text));
-    return factor;
+    return parse_color("--albedo", text);
 }
 
 /// Radiance times albedo: one factor for all, or the mesh's own colours.

@@ -136,6 +136,14 @@ glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
     return result;
 }
 
+glm::vec3 parse_color(const std::string& option, const std::string& text) {
+    const bool is_grey = text.find(',') == std::string::npos;
+    const glm::vec3 color = parse_vec3(option, is_grey ? fmt::format("{0},{0},{0}", text) : text);
+    if (color.r < 0.0f || color.g < 0.0f || color.b < 0.0f)
+        throw CLI::ValidationError(option, fmt::format("expected numbers >= 0, got '{}'", text));
+    return color;
+}
+
 CLI::Validator number_between(double min, double max) {
     return {[min, max](const std::string& text) {
                 double value = 0.0;

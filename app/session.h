@@ -68,6 +68,9 @@ private:
 /// Three numbers "X,Y,Z" of an option. Throws CLI::ValidationError (wrong usage) for anything else.
 [[nodiscard]] glm::vec3 parse_vec3(const std::string& option, const std::string& text);
 
+/// A colour "R,G,B" or one number for all three, >= 0. Throws CLI::ValidationError for anything else.
+[[nodiscard]] glm::vec3 parse_color(const std::string& option, const std::string& text);
+
 /// Accepts numbers from `min` to `max`. Unlike CLI::Range not NaN.
 [[nodiscard]] CLI::Validator number_between(double min, double max);
 

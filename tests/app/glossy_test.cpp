@@ -72,6 +72,20 @@ TEST_F(Glossy, AnAlbedoScalesTheLight) {
         EXPECT_NEAR(half[i][1], 0.5f * plain[i][1], 1e-6f);
 }
 
+TEST_F(Glossy, ColoursMayChangeAfterwards) {
+    const std::string shape = "ggx:roughness=0.4,";
+    make("one.prt", {"--material", shape + "albedo=0.2,f0=0.9", "--view", "auto"});
+    make("two.prt", {"--material", shape + "albedo=0.7,0.5,0.3,f0=0.1", "--view", "auto"});
+    succeed({"relight", "one.prt", "white.hdr", "-o", "one.npy", "--surface-albedo", "0.7,0.5,0.3",
+             "--surface-specular", "0.1"});
+    succeed({"relight", "two.prt", "white.hdr", "-o", "two.npy"});
+    EXPECT_EQ(npy_values(read("one.npy")), npy_values(read("two.npy")));
+    make("plain.prt", {});
+    fail({"relight", "plain.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "0.5"},
+         {"plain.prt", "materials"});
+    misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "-1"}, "--surface-albedo");
+}
+
 TEST_F(Glossy, LimitsAreSaid) {
     const std::string sharp = "ggx:roughness=0.05,f0=0.5";
     const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution", "16",
