@@ -75,6 +75,18 @@ float narrowness_of(const Surface& surface) {
     return 0.0f;
 }
 
+/// The tolerance is for highlights of at least this width (roughness 0.3) and falls with what is narrower: a broad one takes in many
+/// lights, whose errors cancel; a narrow one sees one at a time. Cells of narrow ones are few all the same.
+constexpr float FullToleranceWidth = 0.18f;
+
+float tightened(float tolerance, const BlockToRefine& block) {
+    float narrowest = FullToleranceWidth;
+    for (const float width : block.narrowness)
+        if (width > 0.0f)
+            narrowest = std::min(narrowest, width);
+    return tolerance * std::pow(narrowest / FullToleranceWidth, 0.75f);
+}
+
 std::uint32_t deepest_level(std::uint32_t face_resolution) {
     return std::min(static_cast<std::uint32_t>(std::bit_width(face_resolution - 1)), MaxGlossyLevel);
 }
@@ -123,7 +135,7 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
     std::vector<glm::vec3> origins;
     const BlockToRefine to_refine = block_at(block, origins);
     EntriesOfBlock entries;
-    RefinementLimits limits{.tolerance = options_.tolerance,
+    RefinementLimits limits{.tolerance = tightened(options_.tolerance, to_refine),
                             .max_level = deepest_level(options_.face_resolution)};
     for (const GlossyLobe lobe :
          {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {

@@ -15,7 +15,7 @@ namespace relumine::prt {
 struct GlossyOptions {
     /// A block's cut is fine enough when the error of its lobe, T_C - T over all directions, is at most this part of the lobe itself
     /// without blockers: sqrt(sum over cells of dw mean (T - T_C)^2) < tolerance sqrt(sum of dw T^2). It is the relative L2 error under a small light that may
-    /// stand anywhere. For the grazing part of the diffuse lobe the whole diffuse lobe is what counts.
+    /// stand anywhere. Highlights narrower than that of roughness 0.3 are held to less. For the grazing part of the diffuse lobe the whole diffuse lobe is what counts.
     float tolerance = 0.07f;
     std::uint32_t face_resolution = 1024; ///< as PrecomputeOptions
     float bias = 0.0f;                    ///< as PrecomputeOptions
