@@ -5,8 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,7 +14,7 @@
 
 #include "cubemap/environment.h"
 #include "cubemap/resample.h"
-#include "data_gen/environments.h"
+#include "data_gen/sequences.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "prt/ray_scene.h"
@@ -65,35 +63,26 @@ double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
-using Maps = std::function<cubemap::CubeMap(std::size_t frame)>;
-
 struct Sequence {
     std::string name;
-    Maps map;
+    data_gen::FrameMaker map;
 };
 
+/// Those of `relumine generate sequence` that the tables of docs/measurements.md show.
 std::vector<Sequence> sequences(const Settings& settings) {
-    const auto part = [n = settings.num_frames](std::size_t frame) {
-        return static_cast<double>(frame) / static_cast<double>(n);
-    };
     std::vector<Sequence> result;
-    result.push_back({"sun through the sky", [=, r = settings.resolution](std::size_t frame) {
-                          const double day = part(frame);
-                          return data_gen::sun_and_sky(
-                              r, {.sun_elevation_degrees = 10.0 + 45.0 * std::sin(3.14159265 * day),
-                                  .sun_azimuth_degrees = -90.0 + 180.0 * day,
-                                  .ground_albedo = {0.24, 0.20, 0.15},
-                                  .scale = 1.0 / 20.0});
-                      }});
     const fs::path grace = settings.data / "envs/debevec/grace_cross.hdr";
-    if (fs::exists(grace)) {
-        const cubemap::CubeMap probe =
-            cubemap::resample(cubemap::load_environment(grace), settings.resolution);
-        result.push_back({"grace, turning", [=](std::size_t frame) {
-                              return cubemap::rotated(probe, 360.0 * part(frame));
-                          }});
-    } else {
-        fmt::print("grace: skipped, no {}; name the folder with --data\n", grace.string());
+    for (const data_gen::Sequence& sequence : data_gen::sequences()) {
+        data_gen::SequenceOptions options{.num_frames = settings.num_frames,
+                                          .face_resolution = settings.resolution};
+        if (sequence.name == "sun") {
+            result.push_back({"sun", sequence.make(options)});
+        } else if (sequence.name == "turn" && fs::exists(grace)) {
+            options.probe = cubemap::resample(cubemap::load_environment(grace), settings.resolution);
+            result.push_back({"turn, grace", sequence.make(options)});
+        } else if (sequence.name == "turn") {
+            fmt::print("turn: skipped, no {}; name the folder with --data\n", grace.string());
+        }
     }
     return result;
 }

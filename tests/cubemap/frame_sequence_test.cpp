@@ -1,9 +1,11 @@
 #include "cubemap/frame_sequence.h"
 
 #include <atomic>
+#include <chrono>
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -241,6 +243,38 @@ TEST(ReadAhead, MakesOneAheadAndNoMore) {
     }
     EXPECT_EQ(num_alive, 0);
     EXPECT_LE(most, 2);
+}
+
+TEST(ReadAhead, NeverMakesTwoAtOnceInAnyOrder) {
+    // Nothing guards the list: only that one is made at a time does, and the thread sanitizer looks on. Other threads are slow,
+    // so that whoever does not wait for them is seen without it, too.
+    std::vector<std::size_t> made;
+    {
+        const std::thread::id caller = std::this_thread::get_id();
+        ReadAhead<std::size_t> ahead(5, [&](std::size_t i) {
+            if (std::this_thread::get_id() != caller)
+                std::this_thread::sleep_for(std::chrono::milliseconds(5));
+            made.push_back(i);
+            return i;
+        });
+        for (const std::size_t i : {0u, 1u, 4u, 2u, 2u, 0u})
+            EXPECT_EQ(ahead.get(i), i);
+    } // while 1 is made
+    EXPECT_THAT(made, ElementsAre(0, 1, 2, 4, 2, 3, 2, 3, 0, 1));
+}
+
+TEST(ReadAhead, ThrowsForTheOneThatWasAskedForAlone) {
+    ReadAhead<std::size_t> ahead(4, [](std::size_t i) {
+        if (i == 1)
+            throw std::runtime_error("one");
+        return i;
+    });
+    EXPECT_EQ(ahead.get(0), 0u);
+    EXPECT_EQ(ahead.get(2), 2u); // 1 had been begun
+    EXPECT_EQ(message_of([&] { static_cast<void>(ahead.get(1)); }), "one");
+    EXPECT_EQ(ahead.get(0), 0u);
+    EXPECT_EQ(message_of([&] { static_cast<void>(ahead.get(1)); }), "one"); // made ahead
+    EXPECT_EQ(ahead.get(3), 3u);
 }
 
 } // namespace
