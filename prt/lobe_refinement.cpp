@@ -30,11 +30,22 @@ static_assert(GridSize - SamplesPerCell == PacketSize);
 
 /// Place in a split's grid of sample l of its child i.
 constexpr std::size_t grid_place(std::uint32_t child, std::size_t l) {
-    return (2 * (child >> 1u) + l / 3) * GridWidth + 2 * (child & 1u) + l % 3;
+    const std::size_t right = child & 1u;
+    const std::size_t below = child >> 1u;
+    return (2 * below + l / 3) * GridWidth + 2 * right + l % 3;
 }
 
 constexpr bool is_new(std::size_t place) {
     return place / GridWidth % 2 == 1 || place % GridWidth % 2 == 1;
+}
+
+/// Place of a sample in a grid of samples, row by row.
+double column(std::size_t sample, std::size_t width = 3) {
+    return static_cast<double>(sample % width);
+}
+double row(std::size_t sample, std::size_t width = 3) {
+    const std::size_t whole = sample / width;
+    return static_cast<double>(whole);
 }
 
 /// A bit for each receiver.
@@ -131,8 +142,8 @@ void LobeRefiner::add_first_cells() {
                 Node node{.cell = {face, static_cast<std::uint8_t>(level), x, y}};
                 std::array<glm::vec3, SamplesPerCell> directions;
                 for (std::size_t l = 0; l < SamplesPerCell; ++l)
-                    directions[l] = cubemap::direction(face, (x + 0.5 * static_cast<double>(l % 3)) / width,
-                                                       (y + 0.5 * static_cast<double>(l / 3)) / width);
+                    directions[l] =
+                        cubemap::direction(face, (x + 0.5 * column(l)) / width, (y + 0.5 * row(l)) / width);
                 std::array<Floats, SamplesPerCell> values;
                 evaluate_lobe(block_.surfaces, lobe_, directions, values);
                 std::array<const Floats*, SamplesPerCell> pointers;
@@ -149,9 +160,9 @@ void LobeRefiner::split(const Node& parent) {
     const double size = 0.25 * parent.cell.size();
     std::array<glm::vec3, GridSize> directions;
     for (std::size_t i = 0; i < GridSize; ++i)
-        directions[i] = cubemap::direction(parent.cell.face,
-                                           (4 * parent.cell.x + static_cast<double>(i % GridWidth)) * size,
-                                           (4 * parent.cell.y + static_cast<double>(i / GridWidth)) * size);
+        directions[i] =
+            cubemap::direction(parent.cell.face, (4 * parent.cell.x + column(i, GridWidth)) * size,
+                               (4 * parent.cell.y + row(i, GridWidth)) * size);
     GridValues values;
     evaluate_lobe(block_.surfaces, lobe_, directions, values);
 
@@ -263,8 +274,8 @@ std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) con
         // A hair inside, as samples lie on borders of cells.
         constexpr double Inside = 1e-6;
         const double size = node.cell.size();
-        const double s = (node.cell.x + 0.5 + (0.5 - Inside) * (static_cast<double>(l % 3) - 1.0)) * size;
-        const double t = (node.cell.y + 0.5 + (0.5 - Inside) * (static_cast<double>(l / 3) - 1.0)) * size;
+        const double s = (node.cell.x + 0.5 + (0.5 - Inside) * (column(l) - 1.0)) * size;
+        const double t = (node.cell.y + 0.5 + (0.5 - Inside) * (row(l) - 1.0)) * size;
         const std::uint32_t leaf = transfer_.quadtree.leaf_at({.face = node.cell.face, .s = s, .t = t});
         for (std::size_t i = 0; i < block_.origins.size(); ++i)
             parts[l][i] = static_cast<float>(transfer_.counts.count(block_.block * BlockSize + i, leaf)) *

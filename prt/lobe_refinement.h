@@ -17,12 +17,12 @@ namespace relumine::prt {
 
 /// A block of receivers, all that its lobes share.
 struct BlockToRefine {
-    std::size_t block = 0; ///< of the transfer
     BlockSurfaces surfaces = {};
     std::span<const glm::vec3> origins = {};   ///< [1..16] where the receivers' rays start
     std::array<glm::vec3, BlockSize> mirror{}; ///< the eye's direction mirrored at each receiver's normal
     std::array<float, BlockSize>
         narrowness{}; ///< angle over which each receiver's highlight changes, radians; 0 where it has none
+    std::size_t block = 0; ///< of the transfer
 };
 
 /// A cell of a block's cut and the lobe's mean over it, visibility included, for each receiver.
