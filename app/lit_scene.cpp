@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "app/output_options.h"
 #include "app/session.h"
 #include "mesh/load.h"
 #include "prt/receivers.h"
@@ -31,10 +30,7 @@ void SceneOptions::add_to(CLI::App& command) {
 namespace {
 
 prt::Scene load(const SceneOptions& options) {
-    const std::string extension = extension_of(options.path);
-    const bool is_mesh = extension == ".obj" || extension == ".gltf" || extension == ".glb" ||
-                         extension == ".ply" || extension == ".off" || extension == ".stl";
-    if (!options.mesh_too || !is_mesh)
+    if (!options.mesh_too || !mesh::has_mesh_extension(options.path))
         return prt::load_scene(options.path);
     if (options.clusters_only)
         throw std::runtime_error(

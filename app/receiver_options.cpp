@@ -5,7 +5,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <glm/geometric.hpp>
 
 #include "prt/pixel_receivers.h"
 #include "prt/texel_receivers.h"
@@ -130,11 +129,7 @@ void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays, const 
 void ReceiverOptions::apply_eye(prt::Scene& scene) const {
     const std::optional<prt::Camera> own = camera();
     scene.settings.view = own ? *own : relight::automatic_camera(scene.mesh);
-    for (const glm::vec3& position : scene.receivers.positions) {
-        const glm::vec3 to_eye = scene.settings.view->eye - position;
-        const float distance = glm::length(to_eye);
-        scene.receivers.to_eye.push_back(distance > 0.0f ? to_eye / distance : glm::vec3(0.0f, 1.0f, 0.0f));
-    }
+    prt::look_from(scene.receivers, scene.settings.view->eye);
 }
 
 void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene, const prt::RayScene& rays,

@@ -28,14 +28,24 @@ PolygonSoup read_soup(const std::filesystem::path& path, const std::string& exte
     return read_stl(bytes);
 }
 
-} // namespace
-
-TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
+/// In small letters, with the dot.
+std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    return extension;
+}
+
+} // namespace
+
+bool has_mesh_extension(const std::filesystem::path& path) {
     constexpr std::array<std::string_view, 6> Extensions = {".glb", ".gltf", ".obj", ".off", ".ply", ".stl"};
-    if (std::find(Extensions.begin(), Extensions.end(), extension) == Extensions.end())
+    return std::find(Extensions.begin(), Extensions.end(), extension_of(path)) != Extensions.end();
+}
+
+TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
+    const std::string extension = extension_of(path);
+    if (!has_mesh_extension(path))
         throw std::runtime_error(
             fmt::format("{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
                         path.string(), extension));

@@ -23,4 +23,7 @@ enum class NormalSource {
 /// out of range, a position that is not finite, or declares more or less than it holds.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path, NormalSource normals = NormalSource::File);
 
+/// Whether load() knows the path's extension, in capitals or not.
+[[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);
+
 } // namespace relumine::mesh

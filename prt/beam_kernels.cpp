@@ -408,41 +408,6 @@ HWY_EXPORT(find_leaves);
 HWY_EXPORT(clear_certain);
 } // namespace
 
-/// Whether all rays of the shaft run away from the triangle's plane, which then says more than a large triangle's box does.
-bool leaves_plane(const TriangleTree::Leaf& leaf, std::size_t lane, const Shaft& shaft) {
-    glm::dvec3 corner[3];
-    for (std::size_t k = 0; k < 3; ++k)
-        for (std::size_t a = 0; a < 3; ++a)
-            corner[k][static_cast<int>(a)] = static_cast<double>(leaf.corners[3 * k + a][lane]);
-    const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const glm::dvec3 middle = 0.5 * (glm::dvec3(shaft.origins_low) + glm::dvec3(shaft.origins_high));
-    const glm::dvec3 half = 0.5 * (glm::dvec3(shaft.origins_high) - glm::dvec3(shaft.origins_low));
-    const double height = glm::dot(normal, middle - corner[0]);
-    const double spread = glm::dot(glm::abs(normal), half);
-    // Embree sees the receiver's side of the plane in float; a ray that runs along the plane must not be judged.
-    const double size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
-    const double longest = static_cast<double>(leaf.longest[lane]);
-    const double margin =
-        64.0 * static_cast<double>(Rounding) * (size + longest * longest) * static_cast<double>(shaft.reach);
-    if (!(std::abs(height) > spread + margin))
-        return false;
-    const double side = height > 0.0 ? 1.0 : -1.0;
-    return std::all_of(shaft.corners.begin(), shaft.corners.end(), [&](const glm::vec3& w) {
-        return side * glm::dot(normal, glm::dvec3(w)) >
-               32.0 * static_cast<double>(Rounding) * (size + longest * longest);
-    });
-}
-
-bool leaves_planes(const TriangleTree::Leaf& leaf, const Shaft& shaft) {
-    constexpr std::uint32_t FewTriangles = 4; // more are rarely large
-    if (leaf.size > FewTriangles)
-        return false;
-    for (std::size_t lane = 0; lane < leaf.size; ++lane)
-        if (!leaves_plane(leaf, lane, shaft))
-            return false;
-    return true;
-}
-
 bool find_leaves(const TriangleTree& tree, const Shaft& shaft, ShaftLeaves& leaves) {
     return HWY_DYNAMIC_DISPATCH(find_leaves)(tree, shaft, leaves);
 }

@@ -76,6 +76,20 @@ protected:
     Blockers& operator=(Blockers&&) = default;
 };
 
+/// Which of a packet's `candidates` reach a receiver: above its horizon, n.w > 0 in float, and not blocked.
+[[nodiscard]] inline std::uint32_t lit_lanes(const Blockers& blockers, const glm::vec3& origin,
+                                             const glm::vec3& normal, const DirectionPacket& directions,
+                                             std::uint32_t candidates) {
+    std::uint32_t above = 0;
+    for (std::uint32_t i = 0; i < PacketSize; ++i) {
+        const float cosine =
+            normal.x * directions.x[i] + normal.y * directions.y[i] + normal.z * directions.z[i];
+        above |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
+    }
+    above &= candidates;
+    return above == 0 ? 0 : above & ~blockers.occluded(origin, directions, above);
+}
+
 /// Where a receiver's rays start: lifted off its surface along the normal, so that the surface does not block itself.
 [[nodiscard]] inline glm::vec3 ray_origin(const glm::vec3& position, const glm::vec3& normal, float bias) {
     return position + bias * normal;

@@ -173,8 +173,6 @@ GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
     });
 
     GlossyTransfer glossy;
-    for (const std::uint32_t receiver : transfer_.order)
-        glossy.to_eye.push_back(receivers_.to_eye[receiver]);
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
         glossy.lobes[lobe] = joined(std::move(entries[lobe]));
         statistics.num_entries += glossy.lobes[lobe].num_entries();

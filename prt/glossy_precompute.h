@@ -39,6 +39,7 @@ struct GlossyStatistics {
 /// Cuts of all blocks, for receivers with to_eye and surfaces. Each block refines the cell with the largest error first, nine samples to a cell [JN,
 /// Section 4.1], T with the BRDF [JN, Eq. 3]. Where the transfer's counts say that a receiver sees all of a cluster or nothing, that is taken for its
 /// visibility; only in between rays are traced. Parallel over blocks (TBB); the same bits for any number of threads.
+/// set_surfaces() gives the transfer what relighting needs of the receivers.
 /// Throws std::invalid_argument for receivers that do not fit the transfer, Cancelled when stopped.
 [[nodiscard]] GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
                                                const Transfer& transfer, const GlossyOptions& options = {},

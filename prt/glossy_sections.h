@@ -12,7 +12,7 @@ void add_glossy_sections(Sections& sections, const GlossyTransfer& glossy);
 /// Whether the file has them.
 [[nodiscard]] bool has_glossy(const SectionReader& reader);
 
-/// All checked: shapes, cells that exist, in order and apart, finite scales. Leaves GlossyTransfer::to_eye empty.
+/// All checked: shapes, cells that exist, in order and apart, finite scales.
 /// Fails as SectionReader does.
 [[nodiscard]] GlossyTransfer read_glossy(const SectionReader& reader, std::size_t num_blocks);
 

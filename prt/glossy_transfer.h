@@ -36,7 +36,7 @@ struct LobeCuts {
 
 /// All of it. Arrays by place in spatial order, as in Transfer.
 struct GlossyTransfer {
-    std::vector<glm::vec3> to_eye;                ///< [num_receivers] unit
+    std::vector<glm::vec3> to_eye;                ///< [num_receivers] unit; set_surfaces() fills it
     std::array<LobeCuts, NumGlossyLobes> lobes{}; ///< by GlossyLobe
 
     /// Deepest level that any cell has.

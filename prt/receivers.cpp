@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 
 namespace relumine::prt {
 
@@ -37,6 +38,15 @@ std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers
     std::transform(receivers.points.begin(), receivers.points.end(), colors.begin(),
                    [&](const MeshPoint& point) { return value_at(mesh, mesh.colors, point); });
     return colors;
+}
+
+void look_from(Receivers& receivers, const glm::vec3& eye) {
+    receivers.to_eye.clear();
+    for (const glm::vec3& position : receivers.positions) {
+        const glm::vec3 to_eye = eye - position;
+        const float distance = glm::length(to_eye);
+        receivers.to_eye.push_back(distance > 0.0f ? to_eye / distance : glm::vec3(0.0f, 1.0f, 0.0f));
+    }
 }
 
 std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {

@@ -28,6 +28,9 @@ struct Receivers {
 /// One receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section 3.1].
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
 
+/// Gives every receiver its direction to an eye; one that is in the eye looks up.
+void look_from(Receivers& receivers, const glm::vec3& eye);
+
 /// The mesh's colours at the receivers [num_receivers]: interpolated at their points, or those of the vertices. Throws
 /// std::invalid_argument for a mesh without colours.
 [[nodiscard]] std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <mutex>
 #include <numbers>
@@ -49,25 +50,6 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
     return tile;
 }
 
-/// Calls visit(lane, cosine) for the tile's lights that reach the receiver.
-template<typename Visit>
-void for_visible(const Tile& tile, const glm::vec3& origin, const glm::vec3& normal,
-                 const prt::Blockers& blockers, const Visit& visit) {
-    std::array<float, prt::PacketSize> cosines{};
-    std::uint32_t above = 0;
-    for (std::size_t i = 0; i < prt::PacketSize; ++i) {
-        cosines[i] = normal.x * tile.packet.x[i] + normal.y * tile.packet.y[i] + normal.z * tile.packet.z[i];
-        above |= static_cast<std::uint32_t>(cosines[i] > 0.0f) << i;
-    }
-    above &= tile.lit;
-    if (above == 0)
-        return;
-    const std::uint32_t visible = above & ~blockers.occluded(origin, tile.packet, above);
-    for (std::size_t i = 0; i < prt::PacketSize; ++i)
-        if ((visible >> i & 1u) != 0)
-            visit(i, cosines[i]);
-}
-
 /// Light that one receiver sends back, colours put in last.
 class ExactReceiver {
 public:
@@ -82,16 +64,19 @@ public:
 
     void add(const Tile& tile, const prt::Blockers& blockers, prt::Lobes<glm::dvec3>& sums) const {
         const bool diffuse_only = surface_.highlight == prt::Highlight::None;
-        for_visible(tile, origin_, normal_, blockers, [&](std::size_t i, float cosine) {
+        std::uint32_t lit = prt::lit_lanes(blockers, origin_, normal_, tile.packet, tile.lit);
+        for (; lit != 0; lit &= lit - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(lit));
+            const glm::vec3 w(tile.packet.x[i], tile.packet.y[i], tile.packet.z[i]);
+            const float cosine = normal_.x * w.x + normal_.y * w.y + normal_.z * w.z;
             sums.diffuse += tile.power[i] * (static_cast<double>(cosine) / std::numbers::pi);
             if (diffuse_only)
-                return;
-            const prt::Lobes<float> lobes = prt::evaluate_lobes(
-                surface_, normal_, to_eye_, {tile.packet.x[i], tile.packet.y[i], tile.packet.z[i]});
+                continue;
+            const prt::Lobes<float> lobes = prt::evaluate_lobes(surface_, normal_, to_eye_, w);
             sums.diffuse_grazing += tile.power[i] * static_cast<double>(lobes.diffuse_grazing);
             sums.specular += tile.power[i] * static_cast<double>(lobes.specular);
             sums.specular_grazing += tile.power[i] * static_cast<double>(lobes.specular_grazing);
-        });
+        }
     }
 
     [[nodiscard]] glm::dvec3 radiance(const prt::Lobes<glm::dvec3>& sums) const {

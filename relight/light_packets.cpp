@@ -44,16 +44,9 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
 /// Which of the packet's lights reach the receiver.
 std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position, const glm::vec3& normal,
                                     const ShadowRays& rays) {
-    std::uint32_t above = 0;
-    for (std::uint32_t i = 0; i < packet.directions.num_directions; ++i) {
-        const float cosine = normal.x * packet.directions.x[i] + normal.y * packet.directions.y[i] +
-                             normal.z * packet.directions.z[i];
-        above |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
-    }
-    if (above == 0)
-        return 0;
-    const glm::vec3 origin = prt::ray_origin(position, normal, rays.bias);
-    return above & ~rays.blockers->occluded(origin, packet.directions, above);
+    const std::uint32_t used = (1u << packet.directions.num_directions) - 1;
+    return prt::lit_lanes(*rays.blockers, prt::ray_origin(position, normal, rays.bias), normal,
+                          packet.directions, used);
 }
 
 glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& normal,

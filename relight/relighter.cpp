@@ -90,6 +90,8 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())
         throw std::invalid_argument("expected one surface per receiver, or none without a glossy part");
+    if (transfer.glossy && transfer.glossy->to_eye.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected a direction to the eye per receiver, see prt::set_surfaces()");
     traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0);
     if (transfer.glossy) {
         pyramid_.emplace(transfer.glossy->deepest_level());

@@ -17,6 +17,7 @@
 #include "prt/ray_scene.h"
 #include "relight/light_editor.h"
 #include "tests/bench/bunny.h"
+#include "tests/bench/median.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -65,12 +66,6 @@ Figures steps(relight::LightEditor& editor, const LayersAt& layers_at) {
     return figures;
 }
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
-}
-
 void print_row(const char* name, const Figures& figures, double full) {
     fmt::print("| {} | {:.3f} ms | {:.3f} ms | {:.0f} | {:.0f} x |\n", name, 1e3 * figures.average,
                1e3 * figures.worst, figures.clusters, full / figures.average);
@@ -117,7 +112,7 @@ int main(int argc, char** argv) {
             return std::vector{disc("front", front + shift, 0.05, 10.0),
                                disc("side", side + shift, 0.10, 5.0)};
         });
-        const double full_seconds = median(full);
+        const double full_seconds = bench::median(full);
         fmt::print("Bunny, {} vertices, {} clusters, beach at R = {}; a full relight of the binned map and "
                    "its binning: {:.1f} ms\n\n",
                    scene.mesh.num_vertices(), scene.transfer.num_clusters(), settings.resolution,

@@ -17,6 +17,7 @@
 #include "prt/ray_scene.h"
 #include "prt/scene_file.h"
 #include "relight/relighter.h"
+#include "tests/bench/median.h"
 
 using namespace relumine;
 
@@ -34,12 +35,6 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
 }
 
 void measure_sequence(const data_gen::Sequence& sequence, const Settings& settings, const prt::Scene& scene,
@@ -81,7 +76,8 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
     const double least = *std::min_element(relight.begin(), relight.end());
     fmt::print("| {} | {:.0f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} |\n", sequence.name,
                static_cast<double>(num_clusters) / count, 100.0 * static_cast<double>(num_resummed) / count,
-               median(bin), least, median(relight), median(trace), 1e3 / median(relight));
+               bench::median(bin), least, bench::median(relight), bench::median(trace),
+               1e3 / bench::median(relight));
     std::fflush(stdout);
 }
 
@@ -98,7 +94,7 @@ void measure_shares(const Settings& settings, const prt::Scene& scene) {
         relighter.resum();
         all.push_back(milliseconds_since(start));
     }
-    fmt::print("\nsum of all clusters: {:.1f} ms (least {:.1f})\n", median(all),
+    fmt::print("\nsum of all clusters: {:.1f} ms (least {:.1f})\n", bench::median(all),
                *std::min_element(all.begin(), all.end()));
     std::mt19937 random(1);
     for (const double share : {0.01, 0.05, 0.1, 0.2, 0.29, 0.4, 0.5}) {
@@ -114,8 +110,9 @@ void measure_shares(const Settings& settings, const prt::Scene& scene) {
             resummed = relighter.set_frame(std::move(frame)).resummed;
             update.push_back(milliseconds_since(start));
         }
-        fmt::print("{:.0f} % of the clusters: {:.1f} ms (least {:.1f}){}\n", 100.0 * share, median(update),
-                   *std::min_element(update.begin(), update.end()), resummed ? ", all summed" : "");
+        fmt::print("{:.0f} % of the clusters: {:.1f} ms (least {:.1f}){}\n", 100.0 * share,
+                   bench::median(update), *std::min_element(update.begin(), update.end()),
+                   resummed ? ", all summed" : "");
     }
 }
 

@@ -23,6 +23,7 @@
 #include "relight/exact.h"
 #include "relight/picture.h"
 #include "relight/relighter.h"
+#include "tests/bench/median.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -70,20 +71,13 @@ std::vector<Environment> environments(const Settings& settings) {
     return result;
 }
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
-}
-
 prt::Receivers seen_receivers(const Settings& settings, const mesh::TriangleMesh& mesh,
                               const prt::RayScene& rays) {
     const relight::Camera camera = relight::automatic_camera(mesh, {.width = 512, .height = 512});
     if (settings.pixels)
         return prt::pixel_receivers(mesh, rays, {.camera = camera, .width = 512, .height = 512}).receivers;
     prt::Receivers receivers = prt::vertex_receivers(mesh);
-    for (const glm::vec3& position : receivers.positions)
-        receivers.to_eye.push_back(glm::normalize(camera.eye - position));
+    prt::look_from(receivers, camera.eye);
     return receivers;
 }
 
@@ -150,8 +144,8 @@ void run(const Settings& settings) {
             static_cast<double>(transfer.glossy->lobes[2].num_entries()) /
                 static_cast<double>(transfer.counts.num_blocks()),
             static_cast<double>(transfer.glossy->num_bytes()) * 1e-6, statistics.seconds,
-            static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * median(seconds),
-            1e3 * median(seconds_frame), errors);
+            static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * bench::median(seconds),
+            1e3 * bench::median(seconds_frame), errors);
         std::fflush(stdout);
     }
 }

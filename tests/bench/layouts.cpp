@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <string>
 #include <vector>
 
@@ -14,15 +13,13 @@
 
 #include "cubemap/convert.h"
 #include "cubemap/resample.h"
+#include "tests/cubemap/sunny_sky.h"
 
 using namespace relumine::cubemap;
 
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 constexpr std::uint32_t SourceResolution = 16;
-constexpr double SunRadius = 0.265 * Pi / 180.0;
-constexpr double SunRadiance = 1e5;
 
 /// The crosses and the strip are the cube's pixels elsewhere: bit by bit the same.
 constexpr std::array<Layout, 5> Layouts = {Layout::LatLong, Layout::Cube, Layout::AngularMap,
@@ -45,45 +42,20 @@ const std::array<Sun, NumSuns> Suns = {{
 
 /// A smooth sky, and in each channel a sun of its own.
 CubeMap sky(std::size_t first_sun) {
-    constexpr std::uint32_t R = 256;
-    CubeMap map(R);
-    for (const Face face : AllFaces) {
-        for (std::uint32_t y = 0; y < R; ++y) {
-            for (std::uint32_t x = 0; x < R; ++x) {
-                const glm::dvec3 w = texel_direction(face, x, y, R);
-                map.at(face, x, y) =
-                    glm::vec3(static_cast<float>(1.0 + 0.6 * w.y + 0.3 * std::sin(7.0 * w.x)));
-            }
-        }
-    }
+    CubeMap map = smooth_sky();
     for (int channel = 0; channel < 3; ++channel) {
-        const FacePoint point =
-            face_point(glm::normalize(Suns[first_sun + static_cast<std::size_t>(channel)].direction));
-        const auto x = static_cast<std::uint32_t>(point.s * R), y = static_cast<std::uint32_t>(point.t * R);
-        constexpr double Width = 1.0 / R;
-        const double texel = solid_angle(x * Width, y * Width, (x + 1) * Width, (y + 1) * Width);
-        map.at(point.face, x, y)[channel] +=
-            static_cast<float>(SunRadiance * 2.0 * Pi * (1.0 - std::cos(SunRadius)) / texel);
+        glm::vec3 color(0.0f);
+        color[channel] = 1.0f;
+        add_sun(map, glm::normalize(Suns[first_sun + static_cast<std::size_t>(channel)].direction), color);
     }
     return map;
-}
-
-constexpr int NumNormals = 32;
-std::vector<glm::dvec3> normals() {
-    std::vector<glm::dvec3> found;
-    for (int i = 0; i < NumNormals; ++i) {
-        const double y = 1.0 - (2 * i + 1) / static_cast<double>(NumNormals), angle = i * 2.39996322972865332,
-                     across = std::sqrt(1.0 - y * y);
-        found.emplace_back(across * std::cos(angle), y, across * std::sin(angle));
-    }
-    return found;
 }
 
 /// Total power and then the irradiance of every normal.
 std::vector<glm::dvec3> measured(const EnvironmentImage& image) {
     const CubeMap map = resample(image, 128);
     std::vector<glm::dvec3> values = {total_power(map)};
-    for (const glm::dvec3& normal : normals())
+    for (const glm::dvec3& normal : even_normals())
         values.push_back(irradiance(map, normal));
     return values;
 }

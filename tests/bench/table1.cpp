@@ -27,6 +27,7 @@
 #include "relight/exact.h"
 #include "relight/picture.h"
 #include "relight/relighter.h"
+#include "tests/bench/median.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -73,12 +74,6 @@ prt::Scene precomputed(const fs::path& mesh, std::uint32_t face_resolution,
     return scene;
 }
 
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
-}
-
 /// The experiment of Section 6: a disc added to the beach map, its intensity rising over 60 steps. `radius` is a part of the map's width.
 double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, double radius) {
     const std::uint32_t r = relighter.environment().resolution;
@@ -104,39 +99,63 @@ double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, d
             }
         seconds.push_back(relighter.update_region(box, radiance).seconds);
     }
-    return median(seconds);
+    return bench::median(seconds);
+}
+
+/// Size of the scene's file.
+std::uint64_t saved_bytes(const prt::Scene& scene, const char* name) {
+    const fs::path file = fs::temp_directory_path() / fmt::format("relumine_table1_{}.prt", name);
+    const std::uint64_t bytes = prt::save_scene(file, scene);
+    fs::remove(file);
+    return bytes;
+}
+
+/// A scene under the crosses.
+struct UnderCrosses {
+    std::vector<relight::RelightTimes> times; ///< five of each cross
+    nlohmann::json errors;                    ///< relative L2 against exact integration, by cross
+    std::size_t num_samples = 0;
+};
+
+/// `resolution` of the environments, 0: their natural one.
+UnderCrosses under_crosses(relight::Relighter& relighter, const prt::Receivers& receivers,
+                           const prt::RayScene& rays, float bias, const Settings& settings,
+                           std::uint32_t resolution = 0) {
+    UnderCrosses result;
+    const std::vector<std::uint32_t> sample =
+        relight::random_receivers(relighter.transfer(), settings.num_samples, 1);
+    result.num_samples = sample.size();
+    for (const char* name : Crosses) {
+        fmt::print(stderr, "exact integration under {}\n", name);
+        const cubemap::EnvironmentImage image =
+            cubemap::load_environment(settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name));
+        const cubemap::CubeMap map =
+            cubemap::resample(image, resolution != 0 ? resolution : cubemap::natural_resolution(image));
+        for (int i = 0; i < 5; ++i)
+            result.times.push_back(relighter.set_environment(map));
+        const std::vector<glm::dvec3> exact =
+            relight::exact_radiance(receivers, sample, rays, map, {.bias = bias});
+        result.errors[name] = relight::compare(sample, exact, relighter.radiance()).relative_l2;
+    }
+    return result;
 }
 
 nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
     prt::PrecomputeStatistics statistics;
     fmt::print(stderr, "{}: precompute at R = 1024\n", paper.name);
     const prt::Scene scene = precomputed(settings.data / "meshes/stanford" / paper.mesh, 1024, statistics);
-    const fs::path file = fs::temp_directory_path() / fmt::format("relumine_table1_{}.prt", paper.name);
-    const std::uint64_t file_bytes = prt::save_scene(file, scene);
-    fs::remove(file);
+    const std::uint64_t file_bytes = saved_bytes(scene, paper.name);
 
     const prt::RayScene rays(scene.mesh);
     const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
     const relight::ShadowRays shadow_rays{
         .blockers = &rays, .positions = scene.mesh.positions, .bias = scene.settings.bias, .tolerance = rms};
     relight::Relighter relighter(scene.transfer, shadow_rays);
-    nlohmann::json errors;
+    const UnderCrosses verified =
+        under_crosses(relighter, prt::vertex_receivers(scene.mesh), rays, scene.settings.bias, settings);
     std::vector<double> relight_seconds;
-    const std::vector<std::uint32_t> sample =
-        relight::random_receivers(scene.transfer, settings.num_samples, 1);
-    for (const char* name : Crosses) {
-        fmt::print(stderr, "{}: exact integration under {}\n", paper.name, name);
-        const cubemap::EnvironmentImage image =
-            cubemap::load_environment(settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name));
-        const cubemap::CubeMap map = cubemap::resample(image, cubemap::natural_resolution(image));
-        for (int i = 0; i < 5; ++i) {
-            const relight::RelightTimes times = relighter.set_environment(map);
-            relight_seconds.push_back(times.seconds_trace + times.seconds_relight);
-        }
-        const std::vector<glm::dvec3> exact = relight::exact_radiance(
-            prt::vertex_receivers(scene.mesh), sample, rays, map, {.bias = scene.settings.bias});
-        errors[name] = relight::compare(sample, exact, relighter.radiance()).relative_l2;
-    }
+    for (const relight::RelightTimes& times : verified.times)
+        relight_seconds.push_back(times.seconds_trace + times.seconds_relight);
 
     // The light sources of the experiment stand in front of the model and at its side.
     const cubemap::EnvironmentImage beach =
@@ -150,11 +169,11 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
                           {"clusters", statistics.num_clusters},
                           {"file_bytes", file_bytes},
                           {"seconds_precompute", statistics.seconds},
-                          {"seconds_relight", median(relight_seconds)},
+                          {"seconds_relight", bench::median(relight_seconds)},
                           {"seconds_edit_5_percent", edit_front},
                           {"seconds_edit_10_percent", edit_side},
-                          {"samples_verified", sample.size()},
-                          {"relative_l2", errors}};
+                          {"samples_verified", verified.num_samples},
+                          {"relative_l2", verified.errors}};
     if (settings.with_4096 && paper.name == std::string("Bunny")) { // as the paper has it
         fmt::print(stderr, "{}: precompute at R = 4096\n", paper.name);
         static_cast<void>(precomputed(settings.data / "meshes/stanford" / paper.mesh, 4096, statistics));
@@ -173,13 +192,11 @@ nlohmann::json measure_buddha(const Settings& settings) {
     scene.settings.epsilon = Epsilon;
     scene.settings.view = relight::automatic_camera(scene.mesh);
     scene.receivers = prt::vertex_receivers(scene.mesh);
-    for (const glm::vec3& position : scene.receivers.positions) {
-        scene.receivers.to_eye.push_back(glm::normalize(scene.settings.view->eye - position));
-        scene.receivers.surfaces.push_back({.albedo = glm::vec3(0.3f),
-                                            .specular = glm::vec3(0.5f),
-                                            .highlight = prt::Highlight::Ggx,
-                                            .shape = Roughness});
-    }
+    prt::look_from(scene.receivers, scene.settings.view->eye);
+    scene.receivers.surfaces.assign(scene.receivers.size(), {.albedo = glm::vec3(0.3f),
+                                                             .specular = glm::vec3(0.5f),
+                                                             .highlight = prt::Highlight::Ggx,
+                                                             .shape = Roughness});
     const auto start = std::chrono::steady_clock::now();
     const prt::RayScene exact_rays(scene.mesh);
     const prt::BeamScene rays(scene.mesh, exact_rays);
@@ -191,29 +208,18 @@ nlohmann::json measure_buddha(const Settings& settings) {
                                {.face_resolution = 256, .bias = scene.settings.bias}, &glossy);
     prt::set_surfaces(scene.transfer, scene.receivers);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    const fs::path file = fs::temp_directory_path() / "relumine_table1_buddha.prt";
-    const std::uint64_t file_bytes = prt::save_scene(file, scene);
-    fs::remove(file);
+    const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);
 
     const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
     relight::Relighter relighter(scene.transfer, {.blockers = &exact_rays,
                                                   .positions = scene.mesh.positions,
                                                   .bias = scene.settings.bias,
                                                   .tolerance = rms});
-    nlohmann::json errors;
+    const UnderCrosses verified =
+        under_crosses(relighter, scene.receivers, exact_rays, scene.settings.bias, settings, 256);
     std::vector<double> relight_seconds;
-    const std::vector<std::uint32_t> sample =
-        relight::random_receivers(scene.transfer, settings.num_samples, 1);
-    for (const char* name : Crosses) {
-        const cubemap::CubeMap map = cubemap::resample(
-            cubemap::load_environment(settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name)),
-            256);
-        for (int i = 0; i < 5; ++i)
-            relight_seconds.push_back(relighter.set_environment(map).seconds_relight);
-        const std::vector<glm::dvec3> exact =
-            relight::exact_radiance(scene.receivers, sample, exact_rays, map, {.bias = scene.settings.bias});
-        errors[name] = relight::compare(sample, exact, relighter.radiance()).relative_l2;
-    }
+    for (const relight::RelightTimes& times : verified.times)
+        relight_seconds.push_back(times.seconds_relight);
     return {{"scene", PaperBuddha.name},
             {"vertices", scene.mesh.num_vertices()},
             {"clusters", scene.transfer.num_clusters()},
@@ -222,9 +228,9 @@ nlohmann::json measure_buddha(const Settings& settings) {
             {"file_bytes", file_bytes},
             {"seconds_precompute", seconds},
             {"seconds_glossy", glossy.seconds},
-            {"seconds_relight", median(relight_seconds)},
-            {"samples_verified", sample.size()},
-            {"relative_l2", errors}};
+            {"seconds_relight", bench::median(relight_seconds)},
+            {"samples_verified", verified.num_samples},
+            {"relative_l2", verified.errors}};
 }
 
 void print_buddha(const nlohmann::json& row) {

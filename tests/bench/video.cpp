@@ -23,6 +23,7 @@
 #include "relight/light_packets.h"
 #include "relight/relighter.h"
 #include "tests/bench/bunny.h"
+#include "tests/bench/median.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -55,12 +56,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
-                     values.end());
-    return values[values.size() / 2];
 }
 
 struct Sequence {
@@ -208,7 +203,7 @@ private:
         exposure_ = MeanLuminance * static_cast<double>(exact_.size() * sample_.size()) / luminance;
         prt_ = {.method = "prt",
                 .report = relight::measure_flicker(relit, exact_, exposure_),
-                .seconds_light = median(seconds)};
+                .seconds_light = bench::median(seconds)};
     }
 
     [[nodiscard]] lights::LightClusters cluster(const lights::FrameSamples& samples) const {
@@ -250,7 +245,7 @@ private:
             const relight::RelightTimes times = relighter_.set_lights(frames.at(frame));
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
         }
-        row.seconds_light = median(seconds);
+        row.seconds_light = bench::median(seconds);
         rows_.push_back(std::move(row));
     }
 

@@ -13,43 +13,17 @@
 #include <tbb/global_control.h>
 
 #include "cubemap/resample.h"
+#include "tests/cubemap/sunny_sky.h"
 #include "tests/cubemap/test_images.h"
 
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
-/// A sky with a sun of 0.53 degrees and radiance 1e5.
+/// With a sun.
 CubeMap sky(const glm::dvec3& sun) {
-    constexpr std::uint32_t R = 256;
-    CubeMap map(R);
-    for (const Face face : AllFaces) {
-        for (std::uint32_t y = 0; y < R; ++y) {
-            for (std::uint32_t x = 0; x < R; ++x) {
-                const glm::dvec3 w = texel_direction(face, x, y, R);
-                map.at(face, x, y) =
-                    glm::vec3(static_cast<float>(1.0 + 0.6 * w.y + 0.3 * std::sin(7.0 * w.x)));
-            }
-        }
-    }
-    const FacePoint point = face_point(sun);
-    const auto x = static_cast<std::uint32_t>(point.s * R), y = static_cast<std::uint32_t>(point.t * R);
-    const double sun_angle = 2.0 * Pi * (1.0 - std::cos(0.265 * Pi / 180.0));
-    const double texel_angle = solid_angle(x / 256.0, y / 256.0, (x + 1) / 256.0, (y + 1) / 256.0);
-    map.at(point.face, x, y) += glm::vec3(static_cast<float>(1e5 * sun_angle / texel_angle));
+    CubeMap map = smooth_sky();
+    add_sun(map, sun);
     return map;
-}
-
-/// 32 normals evenly over the sphere.
-std::vector<glm::dvec3> normals() {
-    std::vector<glm::dvec3> found;
-    for (int i = 0; i < 32; ++i) {
-        const double y = 1.0 - (2 * i + 1) / 32.0, angle = i * 2.39996322972865332,
-                     across = std::sqrt(1.0 - y * y);
-        found.emplace_back(across * std::cos(angle), y, across * std::sin(angle));
-    }
-    return found;
 }
 
 struct Loss {
@@ -63,7 +37,7 @@ Loss loss(const EnvironmentImage& before, const EnvironmentImage& after) {
     const glm::dvec3 power = total_power(after) / total_power(before);
     for (int channel = 0; channel < 3; ++channel)
         result.power = std::max(result.power, std::abs(power[channel] - 1.0));
-    for (const glm::dvec3& normal : normals()) {
+    for (const glm::dvec3& normal : even_normals()) {
         const glm::dvec3 had = irradiance(a, normal), has = irradiance(b, normal);
         for (int channel = 0; channel < 3; ++channel)
             result.irradiance = std::max(result.irradiance, std::abs(has[channel] / had[channel] - 1.0));
@@ -296,7 +270,7 @@ TEST(ConvertData, GalileoAsCrossAndAsAngularMapShowsTheSameWorld) {
     EXPECT_GT(correlation(cross, probe), 0.97);
     EXPECT_LT(correlation(cross, turned(probe, {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}})), 0.9); // mirrored
     EXPECT_LT(correlation(cross, rotated(probe, 90.0)), 0.9);
-    for (const glm::dvec3& normal : normals())
+    for (const glm::dvec3& normal : even_normals())
         EXPECT_NEAR(irradiance(probe, normal).y / irradiance(cross, normal).y, 1.0, 0.05);
 }
 

@@ -20,8 +20,8 @@ struct GlossyScene {
                                                    .face_resolution = face_resolution,
                                                    .bias = diffuse.options.bias} {
         const glm::vec3 eye(1.5f, 2.5f, 3.0f);
+        prt::look_from(receivers, eye);
         for (std::size_t i = 0; i < receivers.size(); ++i) {
-            receivers.to_eye.push_back(glm::normalize(eye - receivers.positions[i]));
             prt::Surface surface{.albedo = {0.6f, 0.4f, 0.2f}, .specular = {0.04f, 0.3f, 0.9f}};
             if (i % 3 != 2) {
                 surface.highlight = i % 3 == 0 ? prt::Highlight::Ggx : prt::Highlight::BlinnPhong;
@@ -30,9 +30,8 @@ struct GlossyScene {
             }
             receivers.surfaces.push_back(surface);
         }
-        for (const std::uint32_t receiver : transfer.order)
-            transfer.surfaces.push_back(receivers.surfaces[receiver]);
         transfer.glossy = prt::precompute_glossy(receivers, diffuse.rays, transfer, options);
+        prt::set_surfaces(transfer, receivers);
     }
 
     [[nodiscard]] relight::ShadowRays shadow_rays() const { return diffuse.shadow_rays(); }

@@ -60,10 +60,9 @@ prt::Transfer glossy_transfer(const prt::Receivers& receivers, float tolerance,
                               std::uint32_t face_resolution) {
     const scenes::AnalyticBlockers nothing = scenes::no_blockers();
     prt::Transfer transfer = prt::precompute(receivers, nothing, {.face_resolution = face_resolution});
-    for (const std::uint32_t receiver : transfer.order)
-        transfer.surfaces.push_back(receivers.surfaces[receiver]);
     transfer.glossy = prt::precompute_glossy(receivers, nothing, transfer,
                                              {.tolerance = tolerance, .face_resolution = face_resolution});
+    prt::set_surfaces(transfer, receivers);
     return transfer;
 }
 
@@ -198,8 +197,8 @@ TEST(GlossyRelighting, LambertWithAnAlbedoIsGeometryRelightingTimesIt) {
     receivers.to_eye.assign(receivers.size(), glm::vec3(0.0f, 1.0f, 0.0f));
     receivers.surfaces.assign(receivers.size(), {.albedo = {0.5f, 0.25f, 1.0f}});
     prt::Transfer transfer = diffuse.transfer;
-    transfer.surfaces = receivers.surfaces;
     transfer.glossy = prt::precompute_glossy(receivers, diffuse.rays, transfer);
+    prt::set_surfaces(transfer, receivers);
     const cubemap::CubeMap map = scenes::random_environment(32, 2);
     std::vector<glm::vec3> expected = relight(diffuse.transfer, map);
     for (glm::vec3& b : expected)
