@@ -21,6 +21,7 @@
 
 #include "prt/cluster_kernels.h"
 #include "prt/lattice.h"
+#include "prt/receiver_order.h"
 #include "prt/visibility_planes.h"
 
 namespace relumine::prt {

@@ -35,8 +35,4 @@ void look_from(Receivers& receivers, const glm::vec3& eye);
 /// std::invalid_argument for a mesh without colours.
 [[nodiscard]] std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers);
 
-/// An order that puts neighbours in space next to each other: place -> receiver index, [num_receivers]. Morton order of the
-/// positions on a 2^21 grid, ties by index; receivers with a zero normal come last. Deterministic.
-[[nodiscard]] std::vector<std::uint32_t> spatial_order(const Receivers& receivers);
-
 } // namespace relumine::prt

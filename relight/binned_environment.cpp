@@ -1,16 +1,60 @@
 #include "relight/binned_environment.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include "relight/relighter.h"
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 
 namespace relumine::relight {
+
+namespace {
+
+bool is_good(const glm::vec3& texel) {
+    // NaN fails both comparisons.
+    const auto good = [](float value) {
+        return value >= 0.0f && value <= MaxRadiance;
+    };
+    return good(texel.r) && good(texel.g) && good(texel.b);
+}
+
+/// Whether all values are surely good. As whole numbers, floats from 0 up are in their own order, and NaN and what is below zero are
+/// larger than all of them: one comparison that compilers turn into vectors. (-0 is good, but not surely.)
+bool are_surely_good(std::span<const glm::vec3> texels) {
+    const auto surely = [](float value) {
+        return std::bit_cast<std::uint32_t>(value) <= std::bit_cast<std::uint32_t>(MaxRadiance);
+    };
+    bool good = true;
+    for (const glm::vec3& texel : texels)
+        good &= surely(texel.r) & surely(texel.g) & surely(texel.b);
+    return good;
+}
+
+} // namespace
+
+void require_radiance(std::span<const glm::vec3> texels) {
+    constexpr std::size_t Grain = 1 << 16;
+    if (texels.size() <= Grain && are_surely_good(texels))
+        return; // rows of an edit: not worth a task
+    std::atomic<bool> good = true;
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, texels.size(), Grain), [&](const auto& part) {
+        if (!are_surely_good(texels.subspan(part.begin(), part.size())))
+            good = false;
+    });
+    if (good)
+        return;
+    const auto bad = std::find_if_not(texels.begin(), texels.end(), is_good);
+    if (bad != texels.end())
+        throw std::invalid_argument(fmt::format("expected finite radiance from 0 to {}, got ({}, {}, {})",
+                                                MaxRadiance, bad->r, bad->g, bad->b));
+}
 
 BinnedEnvironment EnvironmentBinner::bin(cubemap::CubeMap map) {
     using Clock = std::chrono::steady_clock;

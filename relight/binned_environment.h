@@ -2,7 +2,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
 #include "prt/transfer.h"
@@ -10,6 +13,12 @@
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
+
+/// The brightest texel that sums over a whole sphere of it stay finite for, in float, with room to spare.
+inline constexpr float MaxRadiance = 1e30f;
+
+/// Throws std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance. Parallel; at the speed of memory.
+void require_radiance(std::span<const glm::vec3> texels);
 
 /// All that relighting needs of an environment.
 struct BinnedEnvironment {

@@ -48,14 +48,15 @@ FloatVec load_counts(const std::uint8_t* counts) {
     return hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts)));
 }
 
-/// c max(n.E, 0) added up over clusters, per channel.
+/// Radiance of some receivers, per channel.
 struct Sum {
     FloatVec red, green, blue;
 
     // Written out: g++ compiles an implicit constructor without the instruction set of the functions around it.
     Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
 
-    void add(FloatVec count, const Normals& n, const float* e) {
+    /// c max(n.E, 0)
+    void add_clamped(FloatVec count, const Normals& n, const float* e) {
         add(count, n.cosine(e), n.cosine(e + 3), n.cosine(e + 6));
     }
 
@@ -72,43 +73,125 @@ struct Sum {
     }
 };
 
-/// Sums c max(n.E, 0) over the set bits of `mixed`; `counts` and `vectors` begin at the word's first entry and cluster.
-void sum_word(std::uint64_t mixed, const std::uint8_t* counts, const BlockNormals& normals,
-              const float* vectors, WordSum& result) {
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
-        const Normals n(normals, lane);
+/// c E added up over clusters, per channel and axis, where no receiver needs the clamp.
+struct VectorSum {
+    FloatVec red_x, red_y, red_z, green_x, green_y, green_z, blue_x, blue_y, blue_z;
+
+    VectorSum()
+        : red_x(hn::Zero(Floats())), red_y(red_x), red_z(red_x), green_x(red_x), green_y(red_x),
+          green_z(red_x), blue_x(red_x), blue_y(red_x), blue_z(red_x) {}
+
+    void add(FloatVec count, const float* e) {
+        const Floats d;
+        red_x = hn::MulAdd(count, hn::Set(d, e[0]), red_x);
+        red_y = hn::MulAdd(count, hn::Set(d, e[1]), red_y);
+        red_z = hn::MulAdd(count, hn::Set(d, e[2]), red_z);
+        green_x = hn::MulAdd(count, hn::Set(d, e[3]), green_x);
+        green_y = hn::MulAdd(count, hn::Set(d, e[4]), green_y);
+        green_z = hn::MulAdd(count, hn::Set(d, e[5]), green_z);
+        blue_x = hn::MulAdd(count, hn::Set(d, e[6]), blue_x);
+        blue_y = hn::MulAdd(count, hn::Set(d, e[7]), blue_y);
+        blue_z = hn::MulAdd(count, hn::Set(d, e[8]), blue_z);
+    }
+
+    /// n . this
+    [[nodiscard]] Sum on(const Normals& n) const {
         Sum sum;
-        const std::uint8_t* entry = counts + lane;
-        for (std::uint64_t bits = mixed; bits != 0; bits &= bits - 1, entry += prt::BlockSize)
-            sum.add(load_counts(entry), n,
-                    vectors + static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride);
+        sum.red = hn::MulAdd(n.x, red_x, hn::MulAdd(n.y, red_y, hn::Mul(n.z, red_z)));
+        sum.green = hn::MulAdd(n.x, green_x, hn::MulAdd(n.y, green_y, hn::Mul(n.z, green_z)));
+        sum.blue = hn::MulAdd(n.x, blue_x, hn::MulAdd(n.y, blue_y, hn::Mul(n.z, blue_z)));
+        return sum;
+    }
+};
+
+std::size_t first_float(std::uint64_t bits) {
+    return static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride;
+}
+
+/// The mixed clusters of a block and word. `counts` and `vectors` begin at the word's first entry and cluster.
+struct MixedWord {
+    std::uint64_t clusters;
+    const std::uint8_t* counts;
+    const BlockNormals& normals;
+};
+
+/// Sums c max(n.E, 0) over the word's clusters.
+void sum_clamped(const MixedWord& word, const float* vectors, WordSum& result) {
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
+        const Normals n(word.normals, lane);
+        Sum sum;
+        const std::uint8_t* counts = word.counts + lane;
+        for (std::uint64_t bits = word.clusters; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
+            sum.add_clamped(load_counts(counts), n, vectors + first_float(bits));
         sum.store(result, lane);
     }
 }
 
-/// The same sum with two sets of vectors at once, which differ in `changed` clusters only.
-void sum_word_twice(std::uint64_t mixed, std::uint64_t changed, const std::uint8_t* counts,
-                    const BlockNormals& normals, const float* before, const float* after,
-                    WordSum& result_before, WordSum& result_after) {
+/// The same where the clamp can be left out.
+void sum_unclamped(const MixedWord& word, const float* vectors, WordSum& result) {
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
-        const Normals n(normals, lane);
+        VectorSum sum;
+        const std::uint8_t* counts = word.counts + lane;
+        for (std::uint64_t bits = word.clusters; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
+            sum.add(load_counts(counts), vectors + first_float(bits));
+        sum.on(Normals(word.normals, lane)).store(result, lane);
+    }
+}
+
+/// sum_clamped() with two sets of vectors at once, which differ in `changed` clusters only.
+void sum_clamped_twice(const MixedWord& word, std::uint64_t changed, const float* before, const float* after,
+                       WordSum& result_before, WordSum& result_after) {
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
+        const Normals n(word.normals, lane);
         Sum sum_before;
         Sum sum_after;
-        const std::uint8_t* entry = counts + lane;
-        for (std::uint64_t bits = mixed; bits != 0; bits &= bits - 1, entry += prt::BlockSize) {
-            const std::size_t first =
-                static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride;
-            const auto count = load_counts(entry);
-            const float* e = before + first;
+        const std::uint8_t* counts = word.counts + lane;
+        for (std::uint64_t bits = word.clusters; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
+            const auto count = load_counts(counts);
+            const float* e = before + first_float(bits);
             const auto red = n.cosine(e), green = n.cosine(e + 3), blue = n.cosine(e + 6);
             sum_before.add(count, red, green, blue);
             if ((changed & bits & (~bits + 1)) == 0)
                 sum_after.add(count, red, green, blue);
             else
-                sum_after.add(count, n, after + first);
+                sum_after.add_clamped(count, n, after + first_float(bits));
         }
         sum_before.store(result_before, lane);
         sum_after.store(result_after, lane);
+    }
+}
+
+void add(const WordSum& sum, BlockLight& light) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        for (std::size_t i = 0; i < prt::BlockSize; ++i)
+            light.mixed[channel][i] += static_cast<double>(sum[channel][i]);
+}
+
+void add_difference(const WordSum& before, const WordSum& after, BlockLight& light) {
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        for (std::size_t i = 0; i < prt::BlockSize; ++i)
+            light.mixed[channel][i] +=
+                static_cast<double>(after[channel][i]) - static_cast<double>(before[channel][i]);
+}
+
+/// Adds the clusters of the set bits, one difference of prefix sums for each run of them; `prefix` begins at the word's first cluster.
+void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
+    const hn::CappedTag<double, ClusterLights::Stride - 1> d;
+    for (std::size_t lane = 0; lane < ClusterLights::Stride - 1; lane += hn::Lanes(d)) {
+        auto lanes = hn::LoadU(d, sum + lane);
+        double last = 0.0;
+        for (std::uint64_t rest = bits; rest != 0;) {
+            const std::size_t first = first_float(rest);
+            rest += rest & (~rest + 1); // the run carries into the zero above it, if there is one
+            const std::size_t end = rest == 0 ? 64 * ClusterLights::Stride : first_float(rest);
+            rest &= bits;
+            lanes = hn::Add(lanes,
+                            hn::Sub(hn::LoadU(d, prefix + end + lane), hn::LoadU(d, prefix + first + lane)));
+            last += prefix[end + ClusterLights::Stride - 1] - prefix[first + ClusterLights::Stride - 1];
+        }
+        hn::StoreU(lanes, d, sum + lane);
+        if (lane == 0)
+            sum[ClusterLights::Stride - 1] += last;
     }
 }
 
@@ -132,73 +215,79 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockR
     }
 }
 
-void light_tile(const prt::VisibleCounts& counts, std::size_t tile, const BlockNormals* normals,
-                const ClusterLights& lights, BlockLight* light) {
-    const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t end = counts.tile_begin(tile + 1);
-    for (std::size_t block = begin; block < end; ++block)
-        light[block] = {};
-    std::size_t word = counts.word(begin, 0);
-    for (std::size_t w = 0; w < counts.words_per_block(); ++w) {
-        const float* vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride;
-        const double* prefix = lights.prefix.data() + w * 64 * ClusterLights::Stride;
-        for (std::size_t block = begin; block < end; ++block, ++word) {
-            // Runs of clusters that the whole block sees: one difference of prefix sums each.
-            std::uint64_t visible = counts.visible[word];
-            while (visible != 0) {
-                const int first = std::countr_zero(visible);
-                const int length = std::countr_one(visible >> first);
-                const double* before = prefix + static_cast<std::size_t>(first) * ClusterLights::Stride;
-                const double* after = before + static_cast<std::size_t>(length) * ClusterLights::Stride;
-                for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
-                    light[block].visible[i] += after[i] - before[i];
-                visible &= length == 64 ? 0 : ~(((std::uint64_t{1} << length) - 1) << first);
-            }
-            if (counts.mixed[word] == 0)
-                continue;
-            WordSum sum;
-            sum_word(counts.mixed[word], counts.mixed_counts(word, 0), normals[block], vectors, sum);
-            for (std::size_t channel = 0; channel < 3; ++channel)
-                for (std::size_t i = 0; i < prt::BlockSize; ++i)
-                    light[block].mixed[channel][i] += static_cast<double>(sum[channel][i]);
-        }
+/// Calls visit(block, word) for the set bits; `word` is that of the tile's first block.
+template<class Visit>
+void for_blocks(std::uint64_t bits, std::size_t begin, std::size_t word, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+        visit(begin + i, word + i);
     }
 }
 
-std::uint64_t update_tile(const prt::VisibleCounts& counts, std::size_t tile, const BlockNormals* normals,
-                          std::span<const ChangedWord> changes, const float* all_before,
-                          const float* all_after, BlockLight* light) {
+void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights, BlockLight* light) {
+    const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
     const std::size_t end = counts.tile_begin(tile + 1);
+    std::fill(light + begin, light + end, BlockLight{});
+    for (std::size_t w = 0; w < counts.words_per_block(); ++w) {
+        const TileWord& blocks = scene.words[tile * counts.words_per_block() + w];
+        const std::size_t first_word = counts.word(begin, w);
+        const float* vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride;
+        const double* prefix = lights.prefix.data() + w * 64 * ClusterLights::Stride;
+        const auto mixed = [&](std::size_t block, std::size_t word) {
+            return MixedWord{counts.mixed[word], counts.mixed_counts(word, 0), scene.normals[block]};
+        };
+        for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
+            add_runs(counts.visible[word], prefix, light[block].visible.data());
+        });
+        for_blocks(blocks.clamped, begin, first_word, [&](std::size_t block, std::size_t word) {
+            WordSum sum;
+            sum_clamped(mixed(block, word), vectors, sum);
+            add(sum, light[block]);
+        });
+        for_blocks(blocks.unclamped, begin, first_word, [&](std::size_t block, std::size_t word) {
+            WordSum sum;
+            sum_unclamped(mixed(block, word), vectors, sum);
+            add(sum, light[block]);
+        });
+    }
+}
+
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
+                          const float* all_before, const float* all_after, BlockLight* light) {
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile);
     std::uint64_t touched = 0;
     for (const ChangedWord& change : changes) {
+        const TileWord& blocks = scene.words[tile * counts.words_per_block() + change.word];
+        const std::size_t first_word = counts.word(begin, change.word);
         const float* before = all_before + std::size_t{change.word} * 64 * ClusterLights::Stride;
         const float* after = all_after + std::size_t{change.word} * 64 * ClusterLights::Stride;
-        std::size_t word = counts.word(begin, change.word);
-        for (std::size_t block = begin; block < end; ++block, ++word) {
-            const std::uint64_t mixed = counts.mixed[word];
-            std::uint64_t visible = counts.visible[word] & change.clusters;
-            if (visible == 0 && (mixed & change.clusters) == 0)
-                continue;
-            touched |= std::uint64_t{1} << (block - begin);
-            for (; visible != 0; visible &= visible - 1) {
-                const std::size_t first =
-                    static_cast<std::size_t>(std::countr_zero(visible)) * ClusterLights::Stride;
+        for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
+            for (std::uint64_t seen = counts.visible[word] & change.clusters; seen != 0; seen &= seen - 1) {
+                touched |= std::uint64_t{1} << (block - begin);
+                const std::size_t first = first_float(seen);
                 for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
                     light[block].visible[i] +=
                         static_cast<double>(after[first + i]) - static_cast<double>(before[first + i]);
             }
-            if ((mixed & change.clusters) == 0)
-                continue;
-            WordSum sum_before;
-            WordSum sum_after;
-            sum_word_twice(mixed, change.clusters, counts.mixed_counts(word, 0), normals[block], before,
-                           after, sum_before, sum_after);
-            for (std::size_t channel = 0; channel < 3; ++channel)
-                for (std::size_t i = 0; i < prt::BlockSize; ++i)
-                    light[block].mixed[channel][i] += static_cast<double>(sum_after[channel][i]) -
-                                                      static_cast<double>(sum_before[channel][i]);
-        }
+        });
+        for_blocks(
+            blocks.clamped | blocks.unclamped, begin, first_word, [&](std::size_t block, std::size_t word) {
+                if ((counts.mixed[word] & change.clusters) == 0)
+                    return;
+                touched |= std::uint64_t{1} << (block - begin);
+                const MixedWord mixed{counts.mixed[word], counts.mixed_counts(word, 0), scene.normals[block]};
+                WordSum sum_before;
+                WordSum sum_after;
+                if ((blocks.clamped >> (block - begin) & 1u) != 0) {
+                    sum_clamped_twice(mixed, change.clusters, before, after, sum_before, sum_after);
+                } else {
+                    sum_unclamped(mixed, before, sum_before);
+                    sum_unclamped(mixed, after, sum_after);
+                }
+                add_difference(sum_before, sum_after, light[block]);
+            });
     }
     return touched;
 }
@@ -235,17 +324,15 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockR
     HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, radiance);
 }
 
-void light_tile(const prt::VisibleCounts& counts, std::size_t tile, std::span<const BlockNormals> normals,
-                const ClusterLights& lights, std::span<BlockLight> light) {
-    HWY_DYNAMIC_DISPATCH(light_tile)(counts, tile, normals.data(), lights, light.data());
+void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                std::span<BlockLight> light) {
+    HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data());
 }
 
-std::uint64_t update_tile(const prt::VisibleCounts& counts, std::size_t tile,
-                          std::span<const BlockNormals> normals, std::span<const ChangedWord> changes,
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
                           std::span<const float> before, std::span<const float> after,
                           std::span<BlockLight> light) {
-    return HWY_DYNAMIC_DISPATCH(update_tile)(counts, tile, normals.data(), changes, before.data(),
-                                             after.data(), light.data());
+    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, before.data(), after.data(), light.data());
 }
 
 } // namespace relumine::relight

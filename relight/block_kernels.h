@@ -10,7 +10,9 @@
 #include <glm/vec3.hpp>
 
 #include "prt/transfer.h"
+#include "relight/block_normals.h"
 #include "relight/cluster_lights.h"
+#include "relight/tile_words.h"
 
 namespace relumine::relight {
 
@@ -41,11 +43,6 @@ struct ChangedWord {
     std::uint64_t clusters = 0; ///< bit cluster % 64
 };
 
-/// Normals of blocks, coordinates apart: [num_blocks] of {x[16], y[16], z[16]}, padded with zeros.
-struct alignas(64) BlockNormals {
-    std::array<std::array<float, prt::BlockSize>, 3> axes{};
-};
-
 /// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver].
 struct alignas(64) BlockRadiance {
     std::array<std::array<float, prt::BlockSize>, 3> channels{};
@@ -58,15 +55,20 @@ struct alignas(64) BlockRadiance {
 /// Both parts of a block's light put together, never below zero.
 void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockRadiance& radiance);
 
-/// Lights the blocks of a tile from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi. `normals` and `light` are
-/// those of all blocks.
-void light_tile(const prt::VisibleCounts& counts, std::size_t tile, std::span<const BlockNormals> normals,
-                const ClusterLights& lights, std::span<BlockLight> light);
+/// What a scene's blocks are lit by and with; sums of a tile's blocks need no more.
+struct BlockScene {
+    const prt::VisibleCounts& counts;
+    std::span<const TileWord> words;       ///< tile_words()
+    std::span<const BlockNormals> normals; ///< [num_blocks]
+};
+
+/// Lights the blocks of a tile from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi. `light` is that of all blocks.
+void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                std::span<BlockLight> light);
 
 /// Adds what the changed clusters make of the tile's light [JN, Eq. 15]. `before` and `after` are ClusterLights::vectors of all clusters;
 /// they differ in no other cluster. Returns the blocks that see any of them, bit b for the tile's block b.
-std::uint64_t update_tile(const prt::VisibleCounts& counts, std::size_t tile,
-                          std::span<const BlockNormals> normals, std::span<const ChangedWord> changes,
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
                           std::span<const float> before, std::span<const float> after,
                           std::span<BlockLight> light);
 

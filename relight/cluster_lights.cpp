@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
-#include "relight/row_kernel.h"
+#include "relight/texel_kernel.h"
 
 namespace relumine::relight {
 
@@ -102,22 +102,23 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment, const pr
             cubemap::solid_angle(part_s0, part_t0, part_s1, part_t1) / std::sqrt(u * u + v * v + 1.0);
         sums.add(glm::dvec3(environment.at(cell.face, x, y)) * weight, u, v);
     };
+    // The texels around a rectangle of whole ones: all of them where there is none.
+    const bool any_whole = columns.whole_begin < columns.whole_end && rows.whole_begin < rows.whole_end;
     for (std::uint32_t y = rows.begin; y < rows.end; ++y) {
-        const bool whole_row = y >= rows.whole_begin && y < rows.whole_end;
-        const std::uint32_t whole_begin = whole_row ? columns.whole_begin : columns.end;
-        const std::uint32_t whole_end = whole_row ? columns.whole_end : columns.end;
-        for (std::uint32_t x = columns.begin; x < std::min(whole_begin, columns.end); ++x)
+        const bool whole_row = any_whole && y >= rows.whole_begin && y < rows.whole_end;
+        for (std::uint32_t x = columns.begin; x < (whole_row ? columns.whole_begin : columns.end); ++x)
             add_part(x, y);
-        if (whole_begin < whole_end) {
-            const RowSums row = row_sums(&environment.at(cell.face, whole_begin, y),
-                                         weights_.data() + std::size_t{y} * resolution_ + whole_begin,
-                                         whole_end - whole_begin, (whole_begin + 0.5) * step - 1.0, step);
-            sums.one += row.one;
-            sums.u += row.u;
-            sums.v += row.one * ((y + 0.5) * step - 1.0);
-        }
-        for (std::uint32_t x = std::max(whole_end, columns.begin); x < columns.end; ++x)
+        for (std::uint32_t x = columns.whole_end; whole_row && x < columns.end; ++x)
             add_part(x, y);
+    }
+    if (any_whole) {
+        const TexelSums whole = texel_sums(
+            &environment.at(cell.face, columns.whole_begin, rows.whole_begin),
+            weights_.data() + std::size_t{rows.whole_begin} * resolution_ + columns.whole_begin, resolution_,
+            columns.whole_end - columns.whole_begin, rows.whole_end - rows.whole_begin);
+        sums.one += whole.one;
+        sums.u += whole.x * step + whole.one * ((columns.whole_begin + 0.5) * step - 1.0);
+        sums.v += whole.y * step + whole.one * ((rows.whole_begin + 0.5) * step - 1.0);
     }
     return {.red = to_world(cell.face, sums.u.r, sums.v.r, sums.one.r),
             .green = to_world(cell.face, sums.u.g, sums.v.g, sums.one.g),

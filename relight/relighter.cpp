@@ -68,21 +68,10 @@ void sort_unique(std::vector<std::uint32_t>& values) {
 
 } // namespace
 
-void require_radiance(std::span<const glm::vec3> texels) {
-    // One branch per texel: NaN fails both comparisons.
-    const auto good = [](float value) {
-        return value >= 0.0f && value <= MaxRadiance;
-    };
-    for (const glm::vec3& texel : texels)
-        if (!good(texel.r) || !good(texel.g) || !good(texel.b))
-            throw std::invalid_argument(fmt::format("expected finite radiance from 0 to {}, got ({}, {}, {})",
-                                                    MaxRadiance, texel.r, texel.g, texel.b));
-}
-
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()), powers_(transfer.num_clusters()),
-      normals_(transfer.counts.num_blocks()), light_(transfer.counts.num_blocks()),
-      lights_(transfer.num_clusters()), lit_by_(lights_.vectors),
+      normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
+      light_(transfer.counts.num_blocks()), lights_(transfer.num_clusters()), lit_by_(lights_.vectors),
       binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
       radiance_(transfer.num_receivers()) {
     if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
@@ -97,10 +86,6 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
         pyramid_.emplace(transfer.glossy->deepest_level());
         glossy_.resize(transfer.counts.num_blocks());
     }
-    for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
-        for (int axis = 0; axis < 3; ++axis)
-            normals_[place / prt::BlockSize].axes[static_cast<std::size_t>(axis)][place % prt::BlockSize] =
-                transfer.normals[place][axis];
 }
 
 RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
@@ -219,8 +204,9 @@ void Relighter::resum() {
     std::iota(changed_.begin(), changed_.end(), 0u);
     set_cluster_lights(changed_);
     lights_.sum_prefix();
+    const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
     tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
-        light_tile(transfer_.counts, tile, normals_, lights_, light_);
+        light_tile(scene, tile, lights_, light_);
         for (std::size_t block = transfer_.counts.tile_begin(tile);
              block < transfer_.counts.tile_begin(tile + 1); ++block) {
             light_glossy(block);
@@ -340,9 +326,9 @@ std::size_t Relighter::update_changed(bool sharp_changed) {
         changed_words_.back().clusters |= std::uint64_t{1} << (cluster % 64);
     }
     std::atomic<std::size_t> num_blocks = 0;
+    const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
     tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
-        std::uint64_t touched =
-            update_tile(transfer_.counts, tile, normals_, changed_words_, lit_by_, lights_.vectors, light_);
+        std::uint64_t touched = update_tile(scene, tile, changed_words_, lit_by_, lights_.vectors, light_);
         if (sharp_changed || transfer_.glossy)
             touched = ~std::uint64_t{0};
         const std::size_t begin = transfer_.counts.tile_begin(tile);

@@ -26,12 +26,6 @@ namespace relumine::relight {
 
 using cubemap::TexelRectangle;
 
-/// The brightest texel that sums over a whole sphere of it stay finite for, in float, with room to spare.
-inline constexpr float MaxRadiance = 1e30f;
-
-/// Throws std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
-void require_radiance(std::span<const glm::vec3> texels);
-
 /// Where the time of set_environment() went.
 struct RelightTimes {
     double seconds_bin = 0.0;     ///< summing the environment into clusters
@@ -126,6 +120,7 @@ private:
     std::optional<LightPyramid> pyramid_;        ///< where the transfer has a glossy part
     std::vector<GlossyLight> glossy_;            ///< [num_blocks], or none
     std::vector<BlockNormals> normals_;          ///< [num_blocks]
+    std::vector<TileWord> words_;                ///< tile_words()
     std::vector<BlockLight> light_;              ///< [num_blocks]
     ClusterLights lights_;
     std::vector<float> lit_by_; ///< ClusterLights::vectors that light_ is made of

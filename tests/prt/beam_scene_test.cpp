@@ -15,6 +15,7 @@
 #include "prt/lattice.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
+#include "prt/receiver_order.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
 #include "tests/prt/scenes.h"

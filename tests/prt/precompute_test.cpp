@@ -17,6 +17,7 @@
 #include "cubemap/cube_map.h"
 #include "prt/lattice.h"
 #include "prt/ray_scene.h"
+#include "prt/receiver_order.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/scenes.h"
 

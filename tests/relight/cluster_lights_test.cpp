@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -9,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "relight/row_kernel.h"
+#include "relight/texel_kernel.h"
 #include "tests/prt/every_target.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/environments.h"
@@ -175,29 +176,37 @@ TEST(LightBinning, ALightOfOneTexelIsItsDirectionTimesItsPower) {
               VectorIrradiance{});
 }
 
-TEST(RowSums, EqualAPlainLoopForAnyLengthOnEveryTarget) {
+TEST(TexelSums, EqualAPlainLoopForAnySizeOnEveryTarget) {
     std::mt19937 random(8);
     std::uniform_real_distribution<float> value(0.0f, 2.0f);
-    for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 255u, 256u, 257u, 1024u}) {
-        std::vector<glm::vec3> radiance(count);
-        std::vector<float> weights(count);
-        RowSums expected;
-        for (std::size_t i = 0; i < count; ++i) {
-            radiance[i] = {value(random), value(random), i == count / 2 ? 1e5f : value(random)};
-            weights[i] = value(random);
-            const glm::dvec3 weighted = glm::dvec3(radiance[i]) * static_cast<double>(weights[i]);
-            expected.one += weighted;
-            expected.u += weighted * (0.25 + 0.001 * static_cast<double>(i));
+    constexpr std::size_t Stride = 60;
+    for (const std::size_t width : {1u, 3u, 4u, 7u, 8u, 16u, 17u, 31u, 60u})
+        for (const std::size_t height : {1u, 2u, 63u, 64u, 65u, 200u}) {
+            // What lies beside the rectangle must not matter, not even to lanes that are not counted.
+            constexpr float Outside = std::numeric_limits<float>::quiet_NaN();
+            std::vector<glm::vec3> radiance((height - 1) * Stride + width, glm::vec3(Outside));
+            std::vector<float> weights(radiance.size(), Outside);
+            TexelSums expected;
+            for (std::size_t y = 0; y < height; ++y)
+                for (std::size_t x = 0; x < width; ++x) {
+                    const std::size_t i = y * Stride + x;
+                    radiance[i] = {value(random), value(random), x == width / 2 ? 1e5f : value(random)};
+                    weights[i] = value(random);
+                    const glm::dvec3 weighted = glm::dvec3(radiance[i]) * static_cast<double>(weights[i]);
+                    expected.one += weighted;
+                    expected.x += weighted * static_cast<double>(x);
+                    expected.y += weighted * static_cast<double>(y);
+                }
+            scenes::on_every_target([&] {
+                const TexelSums sums = texel_sums(radiance.data(), weights.data(), Stride, width, height);
+                // At most 64 additions in float, errors half a unit of 2^-24 each that mostly cancel.
+                for (int channel = 0; channel < 3; ++channel) {
+                    EXPECT_NEAR(sums.one[channel], expected.one[channel], 1e-6 * expected.one[channel]);
+                    EXPECT_NEAR(sums.x[channel], expected.x[channel], 1e-6 * expected.x[channel]);
+                    EXPECT_NEAR(sums.y[channel], expected.y[channel], 1e-6 * expected.y[channel]);
+                }
+            });
         }
-        scenes::on_every_target([&] {
-            const RowSums sums = row_sums(radiance.data(), weights.data(), count, 0.25, 0.001);
-            // At most 256 additions in float, errors half a unit of 2^-24 each that mostly cancel.
-            for (int channel = 0; channel < 3; ++channel) {
-                EXPECT_NEAR(sums.one[channel], expected.one[channel], 2e-6 * expected.one[channel]);
-                EXPECT_NEAR(sums.u[channel], expected.u[channel], 2e-6 * expected.u[channel]);
-            }
-        });
-    }
 }
 
 TEST(LightBinning, AnyNumberOfThreadsGivesTheSameBits) {
