@@ -195,7 +195,8 @@ void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
     }
 }
 
-void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockRadiance& radiance) {
+void block_radiance(const BlockNormals& normals, const BlockLight& light, const TracedRadiance* traced,
+                    BlockRadiance& radiance) {
     const hn::CappedTag<double, prt::BlockSize> d;
     const hn::Rebind<float, decltype(d)> floats;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
@@ -208,8 +209,10 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockR
             const auto n_dot_e = hn::MulAdd(nx, hn::Set(d, e[0]), hn::MulAdd(ny, hn::Set(d, e[1]), along_z));
             const auto mixed = hn::LoadU(d, light.mixed[channel].data() + lane);
             // A whole cluster counts 16. Sums of nothing may round to a hair below zero.
-            const auto sum = hn::Max(
-                hn::Zero(d), hn::MulAdd(hn::Set(d, static_cast<double>(prt::FullCount)), n_dot_e, mixed));
+            auto sum = hn::Max(hn::Zero(d),
+                               hn::MulAdd(hn::Set(d, static_cast<double>(prt::FullCount)), n_dot_e, mixed));
+            if (traced != nullptr)
+                sum = hn::Add(sum, hn::LoadU(d, traced->channels[channel].data() + lane));
             hn::StoreU(hn::DemoteTo(floats, sum), floats, radiance.channels[channel].data() + lane);
         }
     }
@@ -320,8 +323,9 @@ void ClusterLights::sum_prefix() {
         prefix[i + Stride] = prefix[i] + static_cast<double>(vectors[i]);
 }
 
-void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockRadiance& radiance) {
-    HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, radiance);
+void block_radiance(const BlockNormals& normals, const BlockLight& light, const TracedRadiance* traced,
+                    BlockRadiance& radiance) {
+    HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, traced, radiance);
 }
 
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,

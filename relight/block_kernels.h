@@ -52,8 +52,14 @@ struct alignas(64) BlockRadiance {
     }
 };
 
-/// Both parts of a block's light put together, never below zero.
-void block_radiance(const BlockNormals& normals, const BlockLight& light, BlockRadiance& radiance);
+/// Radiance that a block's receivers have beside that of the clusters, for albedo 1, [channel][receiver].
+struct alignas(64) TracedRadiance {
+    std::array<std::array<double, prt::BlockSize>, 3> channels{};
+};
+
+/// Both parts of a block's light put together, never below zero, and `traced` (null: nothing) added.
+void block_radiance(const BlockNormals& normals, const BlockLight& light, const TracedRadiance* traced,
+                    BlockRadiance& radiance);
 
 /// What a scene's blocks are lit by and with; sums of a tile's blocks need no more.
 struct BlockScene {

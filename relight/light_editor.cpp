@@ -231,7 +231,9 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         }
         if (i < turned_layers_.size())
             add(turned_layers_[i]);
-        if (i < next_layers_.size())
+        const bool same_place =
+            both && turned_layers_[i].on && turned_layers_[i].region == next_layers_[i].region;
+        if (i < next_layers_.size() && !same_place)
             add(next_layers_[i]);
     }
     // Rectangles that do not grow by it were made one; what of others overlaps is done once all the same.

@@ -22,9 +22,6 @@ namespace relumine::relight {
 
 namespace {
 
-/// Blocks of one task that traces sharp lights: about 50 microseconds of work, well above the cost of starting a task.
-constexpr std::size_t BlocksPerTask = 4;
-
 /// How far from 1 the length of a light's direction may be, as in files of lights.
 constexpr double UnitTolerance = 1e-3;
 
@@ -70,18 +67,16 @@ void sort_unique(std::vector<std::uint32_t>& values) {
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()), powers_(transfer.num_clusters()),
-      normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
-      light_(transfer.counts.num_blocks()), lights_(transfer.num_clusters()), lit_by_(lights_.vectors),
+      traced_(transfer, rays), normals_(block_normals(transfer.normals)),
+      words_(tile_words(transfer, normals_)), light_(transfer.counts.num_blocks()),
+      lights_(transfer.num_clusters()), lit_by_(lights_.vectors),
       binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
       radiance_(transfer.num_receivers()) {
-    if (rays.blockers != nullptr && rays.positions.size() != transfer.num_receivers())
-        throw std::invalid_argument("expected one position per receiver");
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())
         throw std::invalid_argument("expected one surface per receiver, or none without a glossy part");
     if (transfer.glossy && transfer.glossy->to_eye.size() != transfer.num_receivers())
         throw std::invalid_argument("expected a direction to the eye per receiver, see prt::set_surfaces()");
-    traced_.resize(rays.blockers != nullptr ? transfer.num_receivers() : 0);
     if (transfer.glossy) {
         pyramid_.emplace(transfer.glossy->deepest_level());
         glossy_.resize(transfer.counts.num_blocks());
@@ -93,7 +88,7 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
     take(std::move(binned));
-    trace_sharp_lights();
+    traced_.trace(sharp_lights_);
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace += seconds_since(start);
 
@@ -132,7 +127,7 @@ UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
     bool sharp_changed = is_first;
     if (is_first) {
         sharp_lights_ = std::move(frame.sharp_lights);
-        trace_sharp_lights();
+        traced_.trace(sharp_lights_);
     } else {
         sharp_changed = replace_sharp_lights(std::move(frame.sharp_lights));
     }
@@ -189,7 +184,7 @@ RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights)
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    trace_sharp_lights();
+    traced_.trace(sharp_lights_);
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace = seconds_since(start);
 
@@ -227,38 +222,6 @@ void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
             rest -= sharp->irradiance;
         lights_.set(cluster, rest);
     }
-}
-
-void Relighter::trace_sharp_lights() {
-    if (traced_.empty())
-        return;
-    const LightPackets packets(sharp_lights_);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, transfer_.counts.num_blocks(), BlocksPerTask),
-                      [&](const auto& blocks) {
-                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block)
-                              trace_block(packets, block);
-                      });
-}
-
-void Relighter::trace_block(const LightPackets& packets, std::size_t block) {
-    const std::size_t begin = block * prt::BlockSize;
-    const std::size_t size = std::min(prt::BlockSize, traced_.size() - begin);
-    if (!transfer_.glossy) {
-        for (std::size_t place = begin; place < begin + size; ++place)
-            traced_[place].diffuse =
-                packets.radiance(rays_.positions[transfer_.order[place]], transfer_.normals[place], rays_);
-        return;
-    }
-    prt::BlockSurfaces surfaces;
-    std::array<glm::vec3, prt::BlockSize> positions;
-    for (std::size_t i = 0; i < size; ++i) {
-        positions[i] = rays_.positions[transfer_.order[begin + i]];
-        surfaces.set(i, transfer_.surfaces[begin + i], transfer_.normals[begin + i],
-                     transfer_.glossy->to_eye[begin + i]);
-    }
-    packets.light_block(surfaces, std::span(positions).first(size),
-                        std::span(transfer_.normals).subspan(begin, size), rays_,
-                        std::span(traced_).subspan(begin, size));
 }
 
 void Relighter::check(const TexelRectangle& rectangle) const {
@@ -364,7 +327,7 @@ bool Relighter::replace_sharp_lights(std::vector<SharpLight> lights) {
             changed_.push_back(light.cluster);
     sort_unique(changed_);
     sharp_lights_ = std::move(lights);
-    trace_sharp_lights();
+    traced_.trace(sharp_lights_);
     return true;
 }
 
@@ -380,38 +343,30 @@ void Relighter::light_glossy(std::size_t block) {
         light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(), glossy_[block][lobe]);
 }
 
-/// Radiance through all lobes of a receiver; `diffuse` is that of the clusters.
-prt::Lobes<glm::vec3> Relighter::lobes_of(std::size_t place, const glm::vec3& diffuse) const {
-    prt::Lobes<glm::vec3> lobes{.diffuse = diffuse};
+/// What a receiver with a surface sends on; `diffuse` is its radiance for albedo 1.
+glm::vec3 Relighter::through_surface(std::size_t place, const glm::vec3& diffuse) const {
+    prt::Lobes<glm::vec3> lobes = traced_.highlights(place);
+    lobes.diffuse = diffuse;
     if (!glossy_.empty()) {
         const GlossyLight& light = glossy_[place / prt::BlockSize];
         const auto through = [&](prt::GlossyLobe lobe) {
             return light[static_cast<std::size_t>(lobe)].of(place % prt::BlockSize);
         };
-        lobes.specular = through(prt::GlossyLobe::Specular);
-        lobes.specular_grazing = through(prt::GlossyLobe::SpecularGrazing);
-        lobes.diffuse_grazing = through(prt::GlossyLobe::DiffuseGrazing);
+        lobes.specular += through(prt::GlossyLobe::Specular);
+        lobes.specular_grazing += through(prt::GlossyLobe::SpecularGrazing);
+        lobes.diffuse_grazing += through(prt::GlossyLobe::DiffuseGrazing);
     }
-    if (!traced_.empty()) {
-        const prt::Lobes<glm::dvec3>& traced = traced_[place];
-        lobes.diffuse = glm::vec3(glm::dvec3(lobes.diffuse) + traced.diffuse);
-        lobes.diffuse_grazing += glm::vec3(traced.diffuse_grazing);
-        lobes.specular += glm::vec3(traced.specular);
-        lobes.specular_grazing += glm::vec3(traced.specular_grazing);
-    }
-    return lobes;
+    return prt::reflect(transfer_.surfaces[place], lobes);
 }
 
 void Relighter::write_radiance(std::size_t block) {
     BlockRadiance sums;
-    block_radiance(normals_[block], light_[block], sums);
+    block_radiance(normals_[block], light_[block], traced_.diffuse(block), sums);
     const std::size_t begin = block * prt::BlockSize;
-    const std::size_t end = std::min(begin + prt::BlockSize, radiance_.size());
-    for (std::size_t place = begin; place < end; ++place) {
-        const prt::Lobes<glm::vec3> lobes = lobes_of(place, sums.of(place - begin));
-        radiance_[transfer_.order[place]] =
-            transfer_.surfaces.empty() ? lobes.diffuse : prt::reflect(transfer_.surfaces[place], lobes);
-    }
+    const std::size_t size = std::min(prt::BlockSize, radiance_.size() - begin);
+    for (std::size_t i = 0; i < size; ++i)
+        radiance_[transfer_.order[begin + i]] =
+            transfer_.surfaces.empty() ? sums.of(i) : through_surface(begin + i, sums.of(i));
 }
 
 std::vector<glm::vec3> relight(const prt::Transfer& transfer, const cubemap::CubeMap& environment,

@@ -21,6 +21,7 @@
 #include "relight/light_packets.h"
 #include "relight/light_pyramid.h"
 #include "relight/sharp_lights.h"
+#include "relight/traced_light.h"
 
 namespace relumine::relight {
 
@@ -101,27 +102,25 @@ private:
     void check(const TexelRectangle& rectangle) const;
     void set_cluster_lights(std::span<const std::uint32_t> clusters);
     void take(BinnedEnvironment binned);
-    void trace_sharp_lights();
-    void trace_block(const LightPackets& packets, std::size_t block);
     bool update_sharp_lights();
     bool replace_sharp_lights(std::vector<SharpLight> lights);
     std::size_t update_changed(bool sharp_changed);
     void set_pyramid();
     void light_glossy(std::size_t block);
     void write_radiance(std::size_t block);
-    [[nodiscard]] prt::Lobes<glm::vec3> lobes_of(std::size_t place, const glm::vec3& diffuse) const;
+    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse) const;
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
     std::vector<VectorIrradiance> sums_; ///< [num_clusters] all light of each cluster
     std::vector<double> powers_;         ///< [num_clusters] length of its luminance
     std::vector<SharpLight> sharp_lights_;
-    std::vector<prt::Lobes<glm::dvec3>> traced_; ///< [num_receivers] by place: radiance from the sharp lights
-    std::optional<LightPyramid> pyramid_;        ///< where the transfer has a glossy part
-    std::vector<GlossyLight> glossy_;            ///< [num_blocks], or none
-    std::vector<BlockNormals> normals_;          ///< [num_blocks]
-    std::vector<TileWord> words_;                ///< tile_words()
-    std::vector<BlockLight> light_;              ///< [num_blocks]
+    TracedLight traced_;                  ///< what sharp_lights_ make
+    std::optional<LightPyramid> pyramid_; ///< where the transfer has a glossy part
+    std::vector<GlossyLight> glossy_;     ///< [num_blocks], or none
+    std::vector<BlockNormals> normals_;   ///< [num_blocks]
+    std::vector<TileWord> words_;         ///< tile_words()
+    std::vector<BlockLight> light_;       ///< [num_blocks]
     ClusterLights lights_;
     std::vector<float> lit_by_; ///< ClusterLights::vectors that light_ is made of
     EnvironmentBinner binner_;
