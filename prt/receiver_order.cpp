@@ -16,8 +16,9 @@ namespace relumine::prt {
 
 namespace {
 
-/// What a turn of the normal by one radian counts, as a part of the scene's extent. Between 0.03 and 0.1 little changes.
-constexpr double NormalWeight = 1.0 / 16.0;
+/// What a turn of the normal by one radian counts, as a part of the scene's extent. Best for bunny and dragon; half of it or twice as much
+/// costs 2 to 3 % more mixed blocks.
+constexpr double NormalWeight = 1.0 / 32.0;
 
 /// Receivers of a large group: what `beam_scene` traces at a time.
 constexpr std::size_t LargeGroup = 8 * BlockSize;
@@ -32,7 +33,7 @@ struct Place {
     std::uint32_t receiver = 0;
 };
 
-/// Sum over axes of the squared extent, times the number of places.
+/// Sum over axes of the extent, times the number of places.
 float spread(std::span<const Place> places) {
     std::array<float, NumAxes> low = places.front().at;
     std::array<float, NumAxes> high = low;
@@ -43,7 +44,7 @@ float spread(std::span<const Place> places) {
         }
     float sum = 0.0f;
     for (std::size_t axis = 0; axis < NumAxes; ++axis)
-        sum += (high[axis] - low[axis]) * (high[axis] - low[axis]);
+        sum += high[axis] - low[axis];
     return sum * static_cast<float>(places.size());
 }
 

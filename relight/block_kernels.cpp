@@ -256,6 +256,26 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
     }
 }
 
+/// By how much the vectors of some clusters of a word changed together.
+class VectorDifference {
+public:
+    VectorDifference(std::uint64_t clusters, const float* before, const float* after) {
+        for (; clusters != 0; clusters &= clusters - 1) {
+            const std::size_t first = first_float(clusters);
+            for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
+                sum_[i] += static_cast<double>(after[first + i]) - static_cast<double>(before[first + i]);
+        }
+    }
+
+    void add_to(std::array<double, ClusterLights::Stride>& vector) const {
+        for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
+            vector[i] += sum_[i];
+    }
+
+private:
+    std::array<double, ClusterLights::Stride> sum_{};
+};
+
 std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
                           const float* all_before, const float* all_after, BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
@@ -266,14 +286,17 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<c
         const std::size_t first_word = counts.word(begin, change.word);
         const float* before = all_before + std::size_t{change.word} * 64 * ClusterLights::Stride;
         const float* after = all_after + std::size_t{change.word} * 64 * ClusterLights::Stride;
+        // Most blocks that see any of the changed clusters whole see all of them: neighbours in the sky.
+        const VectorDifference all(change.clusters, before, after);
         for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
-            for (std::uint64_t seen = counts.visible[word] & change.clusters; seen != 0; seen &= seen - 1) {
-                touched |= std::uint64_t{1} << (block - begin);
-                const std::size_t first = first_float(seen);
-                for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
-                    light[block].visible[i] +=
-                        static_cast<double>(after[first + i]) - static_cast<double>(before[first + i]);
-            }
+            const std::uint64_t seen = counts.visible[word] & change.clusters;
+            if (seen == 0)
+                return;
+            touched |= std::uint64_t{1} << (block - begin);
+            if (seen == change.clusters)
+                all.add_to(light[block].visible);
+            else
+                VectorDifference(seen, before, after).add_to(light[block].visible);
         });
         for_blocks(
             blocks.clamped | blocks.unclamped, begin, first_word, [&](std::size_t block, std::size_t word) {

@@ -1,9 +1,9 @@
 #include "relight/sharp_lights.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <numbers>
-#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -26,6 +26,18 @@ constexpr double FinestShare = 1.0 / 64.0;
 
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
+
+/// Four sums side by side: each addition waits for the one before it, and this runs with every edit.
+double sum_of(std::span<const double> values) {
+    std::array<double, 4> sums{};
+    std::size_t i = 0;
+    for (; i + sums.size() <= values.size(); i += sums.size())
+        for (std::size_t k = 0; k < sums.size(); ++k)
+            sums[k] += values[i + k];
+    for (; i < values.size(); ++i)
+        sums[0] += values[i];
+    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+}
 
 /// Finds the sharp cells below one cluster and cuts them into lights.
 class Search {
@@ -96,7 +108,7 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, c
                                           std::span<const prt::Cell> clusters, std::span<const double> powers,
                                           float tolerance, bool glossy) {
     // The length of a small cell's vector irradiance is its power.
-    const double total_power = std::accumulate(powers.begin(), powers.end(), 0.0);
+    const double total_power = sum_of(powers);
     std::vector<SharpLight> lights;
     if (total_power == 0.0 || tolerance <= 0.0f)
         return lights;

@@ -65,10 +65,10 @@ TEST(ReceiverOrder, PutsNeighboursIntoABlock) {
 }
 
 TEST(ReceiverOrder, PutsThoseThatFaceAlikeIntoABlock) {
-    // A grid of 32 x 32 places on a sheet, the receivers of both sides in turn.
+    // A grid of 128 x 128 places on a sheet, the receivers of both sides in turn.
     Receivers receivers;
-    for (std::uint32_t i = 0; i < 2 * 32 * 32; ++i) {
-        receivers.positions.emplace_back(i / 2 % 32, 0.0f, i / 64);
+    for (std::uint32_t i = 0; i < 2 * 128 * 128; ++i) {
+        receivers.positions.emplace_back(i / 2 % 128, 0.0f, i / 256);
         receivers.normals.emplace_back(0.0f, i % 2 == 0 ? 1.0f : -1.0f, 0.0f);
     }
     EXPECT_EQ(mean_distance(receivers.normals, spatial_order(receivers)), 0.0);
