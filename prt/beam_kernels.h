@@ -51,7 +51,7 @@ struct Shaft {
 
 /// The leaves in a shaft, from near to far. Kept from shaft to shaft for its memory.
 struct ShaftLeaves {
-    static constexpr std::size_t MaxSize = 4096;
+    static constexpr std::size_t MaxSize = 2048;
     static constexpr std::size_t Padding = 16;
     using Row = std::array<float, MaxSize + Padding>;
 

@@ -21,9 +21,12 @@
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
 #include "relight/exact.h"
+#include "relight/glossy_kernels.h"
+#include "relight/light_pyramid.h"
 #include "relight/picture.h"
 #include "relight/relighter.h"
 #include "tests/bench/median.h"
+#include "tests/bench/memory_bandwidth.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -81,6 +84,25 @@ prt::Receivers seen_receivers(const Settings& settings, const mesh::TriangleMesh
     return receivers;
 }
 
+/// Seconds that the lobes' sums alone take, and the bytes of transfer they read: all of them, in a relighting as in an edit.
+std::pair<double, double> lobes_alone(const prt::Transfer& transfer, const cubemap::CubeMap& map) {
+    relight::LightPyramid pyramid(transfer.glossy->deepest_level());
+    pyramid.set(map, relight::LightBinning(map.resolution), {});
+    std::vector<relight::GlossyLight> light(transfer.counts.num_blocks());
+    const double seconds = bench::median_seconds([&] {
+        tbb::parallel_for(std::size_t{0}, light.size(), [&](std::size_t block) {
+            for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
+                relight::light_block(transfer.glossy->lobes[lobe], block, pyramid.light(),
+                                     light[block][lobe]);
+        });
+    });
+    constexpr std::size_t BytesPerEntry = prt::BlockSize + sizeof(std::uint32_t) + sizeof(float);
+    std::size_t num_entries = 0;
+    for (const prt::LobeCuts& cuts : transfer.glossy->lobes)
+        num_entries += cuts.num_entries();
+    return {seconds, static_cast<double>(num_entries * BytesPerEntry)};
+}
+
 void run(const Settings& settings) {
     mesh::TriangleMesh mesh = mesh::load(settings.data / "meshes/stanford" / settings.mesh);
     if (settings.floor != 0)
@@ -98,12 +120,15 @@ void run(const Settings& settings) {
                receivers.size(), diffuse.num_clusters, diffuse.seconds,
                static_cast<double>(transfer.counts.counts.size() + 24 * transfer.counts.mixed.size()) * 1e-6);
 
+    const double bandwidth = bench::memory_bandwidth();
+    fmt::print("Memory is read at {:.1f} GB/s.\n\n", 1e-9 * bandwidth);
     const std::vector<Environment> maps = environments(settings);
     const std::vector<std::uint32_t> sample = relight::random_receivers(transfer, settings.num_samples, 1);
-    fmt::print("| roughness | cells per block | MB | precompute | rays | relight | frame under grace |");
+    fmt::print("| roughness | cells per block | MB | precompute | rays | relight | frame under grace | lobes "
+               "alone |");
     for (const Environment& environment : maps)
         fmt::print(" {} |", environment.name);
-    fmt::print("\n|---|---|---|---|---|---|---|---|---|---|\n");
+    fmt::print("\n|---|---|---|---|---|---|---|---|---|---|---|\n");
     for (const float roughness : settings.roughness) {
         receivers.surfaces.assign(receivers.size(), {.albedo = glm::vec3(0.3f),
                                                      .specular = glm::vec3(0.5f),
@@ -134,18 +159,20 @@ void run(const Settings& settings) {
             errors +=
                 fmt::format(" {:.4f} |", relight::compare(sample, exact, relighter.radiance()).relative_l2);
         }
-        fmt::print(
-            "| {} | {:.0f} + {:.0f} + {:.0f} | {:.0f} | {:.1f} s | {:.0f} M | {:.1f} ms | {:.1f} ms |{}\n",
-            roughness,
-            static_cast<double>(transfer.glossy->lobes[0].num_entries()) /
-                static_cast<double>(transfer.counts.num_blocks()),
-            static_cast<double>(transfer.glossy->lobes[1].num_entries()) /
-                static_cast<double>(transfer.counts.num_blocks()),
-            static_cast<double>(transfer.glossy->lobes[2].num_entries()) /
-                static_cast<double>(transfer.counts.num_blocks()),
-            static_cast<double>(transfer.glossy->num_bytes()) * 1e-6, statistics.seconds,
-            static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * bench::median(seconds),
-            1e3 * bench::median(seconds_frame), errors);
+        const auto [lobe_seconds, lobe_bytes] = lobes_alone(transfer, maps.front().map);
+        fmt::print("| {} | {:.0f} + {:.0f} + {:.0f} | {:.0f} | {:.1f} s | {:.0f} M | {:.1f} ms | {:.1f} ms | "
+                   "{:.1f} ms, {:.1f} GB/s ({:.2f}) |{}\n",
+                   roughness,
+                   static_cast<double>(transfer.glossy->lobes[0].num_entries()) /
+                       static_cast<double>(transfer.counts.num_blocks()),
+                   static_cast<double>(transfer.glossy->lobes[1].num_entries()) /
+                       static_cast<double>(transfer.counts.num_blocks()),
+                   static_cast<double>(transfer.glossy->lobes[2].num_entries()) /
+                       static_cast<double>(transfer.counts.num_blocks()),
+                   static_cast<double>(transfer.glossy->num_bytes()) * 1e-6, statistics.seconds,
+                   static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * bench::median(seconds),
+                   1e3 * bench::median(seconds_frame), 1e3 * lobe_seconds, 1e-9 * lobe_bytes / lobe_seconds,
+                   lobe_bytes / lobe_seconds / bandwidth, errors);
         std::fflush(stdout);
     }
 }

@@ -1,7 +1,8 @@
-// The middle of several measurements: one slow run does not move it.
+// Times, and the middle of several: one slow run does not move it.
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstddef>
 #include <vector>
 
@@ -12,6 +13,25 @@ inline double median(std::vector<double> values) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2),
                      values.end());
     return values[values.size() / 2];
+}
+
+/// Of one run, on the wall.
+template<class Work>
+double seconds_of(const Work& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The median of 21 runs, after one that is not counted.
+template<class Work>
+double median_seconds(const Work& work) {
+    constexpr int NumRuns = 21;
+    work();
+    std::vector<double> seconds;
+    for (int i = 0; i < NumRuns; ++i)
+        seconds.push_back(seconds_of(work));
+    return median(seconds);
 }
 
 } // namespace relumine::bench

@@ -1,6 +1,4 @@
 // How fast the preprocessor is: beams and rays with Embree against the plain way, threads, memory, cancelling. See `./dev bench precompute --help`.
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -27,6 +25,7 @@
 #include "prt/lattice.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
+#include "tests/bench/process_usage.h"
 
 namespace {
 
@@ -35,19 +34,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-/// User time of this process, all threads: less moved by others on the machine than the clock on the wall.
-double cpu_seconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_utime.tv_sec) + 1e-6 * static_cast<double>(usage.ru_utime.tv_usec);
-}
-
-double peak_megabytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return static_cast<double>(usage.ru_maxrss) * 1024e-6;
 }
 
 /// The paper's algorithm as one would write it down: cell by cell, each of the nine samples a vector of floats, every ray on its own, nothing
@@ -137,11 +123,11 @@ void measure(const std::string& name, const prt::Receivers& receivers, const prt
         gap.call();
     };
     prt::PrecomputeStatistics statistics;
-    const double before = cpu_seconds();
+    const double before = bench::cpu_seconds();
     const prt::Transfer transfer = prt::precompute(receivers, blockers, options, &statistics);
-    print(name, statistics.seconds, cpu_seconds() - before, transfer.num_clusters());
+    print(name, statistics.seconds, bench::cpu_seconds() - before, transfer.num_clusters());
     fmt::print("  {:.0f} M rays  longest without progress {:.0f} ms  peak {:.0f} MB\n",
-               static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3, peak_megabytes());
+               static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3, bench::peak_megabytes());
 }
 
 /// Time from the wish to stop to the end of the work, at moments spread over it.
@@ -214,9 +200,9 @@ int main(int argc, char** argv) {
     measure("Embree, packets", receivers, rays, options);
     if (plain) {
         const Clock::time_point plain_start = Clock::now();
-        const double before = cpu_seconds();
+        const double before = bench::cpu_seconds();
         const std::size_t num_clusters = PlainClustering(receivers, rays, options).run();
-        print("plain", seconds_since(plain_start), cpu_seconds() - before, num_clusters);
+        print("plain", seconds_since(plain_start), bench::cpu_seconds() - before, num_clusters);
         fmt::print("\n");
     }
     if (cancel)

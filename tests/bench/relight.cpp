@@ -1,12 +1,9 @@
 // How fast a precomputed scene is relit and edited, beside the plain ways: a dense table of bytes, and a full relighting for every edit. All
 // in one run, so that the ratios hold on a busy machine. See `./dev bench relight --help`.
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,7 +11,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/environment.h"
 #include "cubemap/resample.h"
@@ -24,6 +20,7 @@
 #include "tests/bench/bunny.h"
 #include "tests/bench/dense_table.h"
 #include "tests/bench/median.h"
+#include "tests/bench/memory_bandwidth.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -37,42 +34,6 @@ struct Settings {
     std::uint32_t resolution = 1024;
     std::size_t num_samples = 2000; ///< receivers to verify
 };
-
-double seconds_of(const std::function<void()>& work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The median of 21 runs, after one that is not counted.
-double median_seconds(const std::function<void()>& work) {
-    constexpr int NumRuns = 21;
-    work();
-    std::vector<double> seconds;
-    for (int i = 0; i < NumRuns; ++i)
-        seconds.push_back(seconds_of(work));
-    return bench::median(seconds);
-}
-
-/// Bytes per second that all threads read together from memory, from 1 GiB: four times the largest cache known.
-double memory_bandwidth() {
-    constexpr std::size_t NumWords = std::size_t{1} << 27;
-    constexpr std::size_t NumParts = 64;
-    const std::vector<std::uint64_t> words(NumWords, 1);
-    std::atomic<std::uint64_t> total = 0;
-    const double seconds = median_seconds([&] {
-        tbb::parallel_for(std::size_t{0}, NumParts, [&](std::size_t part) {
-            const std::uint64_t* word = words.data() + part * (NumWords / NumParts);
-            std::uint64_t sum = 0;
-            for (std::size_t i = 0; i < NumWords / NumParts; ++i)
-                sum += word[i];
-            total += sum;
-        });
-    });
-    if (total == 0) // so that the sums are not optimised away
-        fmt::print(stderr, "impossible\n");
-    return static_cast<double>(NumWords * sizeof(std::uint64_t)) / seconds;
-}
 
 class Report {
 public:
@@ -103,13 +64,13 @@ double edit_seconds(relight::LightEditor& editor, double part_of_face) {
     constexpr int NumEdits = 200;
     std::vector<double> seconds;
     for (int i = 1; i <= NumEdits; ++i)
-        seconds.push_back(seconds_of([&] { editor.set_layer(0, disc(part_of_face, 0.05 * i)); }));
+        seconds.push_back(bench::seconds_of([&] { editor.set_layer(0, disc(part_of_face, 0.05 * i)); }));
     return bench::median(seconds);
 }
 
 void measure_relighting(const Settings& settings, const prt::Scene& scene,
                         const relight::ShadowRays& shadow_rays, Report& report) {
-    const double bandwidth = memory_bandwidth();
+    const double bandwidth = bench::memory_bandwidth();
     report.add_value("memory_bandwidth", bandwidth);
     const cubemap::CubeMap beach = cubemap::resample(
         cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr"), settings.resolution);
@@ -119,7 +80,7 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
     // A Relighter without sharp lights: what is compared is the sum over clusters.
     relight::Relighter relighter(scene.transfer);
     relighter.set_environment(beach);
-    const double full = median_seconds([&] { relighter.resum(); });
+    const double full = bench::median_seconds([&] { relighter.resum(); });
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const double bytes = static_cast<double>(counts.counts.size() + 16 * counts.mixed.size());
 
@@ -129,7 +90,7 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
          relight::LightBinning(beach.resolution).sums(beach, scene.transfer.quadtree.leaves()))
         light.emplace_back(glm::length(sum.red), glm::length(sum.green), glm::length(sum.blue));
     std::vector<glm::vec3> dense_radiance;
-    const double dense = median_seconds([&] { bench::relight(table, light, dense_radiance); });
+    const double dense = bench::median_seconds([&] { bench::relight(table, light, dense_radiance); });
     double difference = 0.0, norm = 0.0;
     for (std::size_t place = 0; place < scene.transfer.num_receivers(); ++place) {
         const glm::dvec3 ours(relighter.radiance()[scene.transfer.order[place]]);
@@ -152,8 +113,8 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
 
     const relight::LightBinning binning(beach.resolution);
     const double map_bytes = static_cast<double>(beach.texels.size() * sizeof(glm::vec3));
-    const double bin =
-        median_seconds([&] { static_cast<void>(binning.sums(beach, scene.transfer.quadtree.leaves())); });
+    const double bin = bench::median_seconds(
+        [&] { static_cast<void>(binning.sums(beach, scene.transfer.quadtree.leaves())); });
     report.add("bin", "binning", 1e3 * bin,
                fmt::format("{:.0f} MB at {:.1f} GB/s, {:.2f} of what memory gives", 1e-6 * map_bytes,
                            1e-9 * map_bytes / bin, map_bytes / bin / bandwidth));
@@ -168,7 +129,7 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
 void measure_files(const prt::Scene& scene, Report& report) {
     const fs::path path = fs::temp_directory_path() / "relumine_bench_relight.prt";
     prt::save_scene(path, scene);
-    const double load = median_seconds([&] { static_cast<void>(prt::load_scene(path)); });
+    const double load = bench::median_seconds([&] { static_cast<void>(prt::load_scene(path)); });
     report.add("load", "loading the .prt", 1e3 * load,
                fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(fs::file_size(path))));
     report.add_value("prt_bytes", static_cast<double>(fs::file_size(path)));
@@ -187,7 +148,7 @@ void measure_errors(const Settings& settings, const prt::Scene& scene, const rel
             cubemap::load_environment(settings.data / "envs/debevec" / (name + "_cross.hdr")), Resolution);
         const std::vector<glm::vec3> relit = relight::relight(scene.transfer, map, shadow_rays);
         std::vector<glm::dvec3> exact;
-        seconds.push_back(seconds_of([&] {
+        seconds.push_back(bench::seconds_of([&] {
             exact = relight::exact_radiance(scene.receivers, sample, *shadow_rays.blockers, map,
                                             {.bias = scene.settings.bias});
         }));

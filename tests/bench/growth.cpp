@@ -1,0 +1,195 @@
+// How cost grows with vertices, clusters and blockers: measured, plotted, and a power law fitted. See `./dev bench growth --help`.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "data_gen/environments.h"
+#include "data_gen/scenes.h"
+#include "prt/beam_scene.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "relight/plot.h"
+#include "relight/relighter.h"
+#include "tests/bench/median.h"
+#include "tests/bench/process_usage.h"
+
+namespace fs = std::filesystem;
+using namespace relumine;
+
+namespace {
+
+/// Steps of about the square root of ten.
+constexpr std::size_t VertexSteps[] = {20'000, 63'000, 200'000, 630'000, 2'000'000};
+constexpr std::size_t TriangleSteps[] = {10'000, 50'000, 250'000, 1'000'000, 5'000'000};
+constexpr float ToleranceSteps[] = {0.1f, 0.056f, 0.032f, 0.018f, 0.01f};
+
+constexpr float GrowthTolerance = 0.05f;     ///< where vertices or blockers grow
+constexpr std::size_t BlobVertices = 50'000; ///< where clusters grow
+constexpr std::uint32_t FloorVertices = 142; ///< of a side: 20,164 receivers where blockers grow
+constexpr std::uint32_t EnvironmentResolution = 256;
+
+struct Cost {
+    double x = 0.0; ///< what grows
+    std::size_t num_receivers = 0, num_triangles = 0, num_clusters = 0;
+    double build = 0.0;      ///< seconds to sort the blockers
+    double precompute = 0.0; ///< processor seconds, all threads
+    double relight = 0.0;    ///< seconds, the median of many
+    double peak_megabytes = 0.0;
+};
+
+Cost measure(const mesh::TriangleMesh& blockers, const prt::Receivers& receivers, float tolerance) {
+    Cost cost{.num_receivers = receivers.size(), .num_triangles = blockers.triangles.size()};
+    double before = bench::cpu_seconds();
+    const prt::RayScene rays(blockers);
+    const prt::BeamScene beams(blockers, rays);
+    cost.build = bench::cpu_seconds() - before;
+    before = bench::cpu_seconds();
+    const prt::Transfer transfer =
+        prt::precompute(receivers, beams, {.tolerance = tolerance, .bias = prt::automatic_bias(blockers)});
+    cost.precompute = bench::cpu_seconds() - before;
+    cost.num_clusters = transfer.num_clusters();
+    relight::Relighter relighter(transfer);
+    relighter.set_environment(data_gen::two_soft_boxes(EnvironmentResolution));
+    cost.relight = bench::median_seconds([&] { relighter.resum(); });
+    cost.peak_megabytes = bench::peak_megabytes();
+    return cost;
+}
+
+/// The exponent p of the power law y = a x^p that is nearest in logarithms.
+double exponent(const std::vector<Cost>& costs, double Cost::*y) {
+    double mean_x = 0.0, mean_y = 0.0;
+    const auto n = static_cast<double>(costs.size());
+    for (const Cost& cost : costs) {
+        mean_x += std::log(cost.x) / n;
+        mean_y += std::log(cost.*y) / n;
+    }
+    double xy = 0.0, xx = 0.0;
+    for (const Cost& cost : costs) {
+        const double dx = std::log(cost.x) - mean_x;
+        xy += dx * (std::log(cost.*y) - mean_y);
+        xx += dx * dx;
+    }
+    return xy / xx;
+}
+
+relight::Plot::Series series(const std::string& name, const std::vector<Cost>& costs, double Cost::*y) {
+    relight::Plot::Series result;
+    result.name = fmt::format("{}, exponent {:.2f}", name, exponent(costs, y));
+    for (const Cost& cost : costs) {
+        result.x.push_back(cost.x);
+        result.y.push_back(cost.*y);
+    }
+    return result;
+}
+
+/// A table on stdout and a plot in the folder.
+nlohmann::json report(const std::string& what, const std::vector<Cost>& costs, const fs::path& folder) {
+    fmt::print("Against {}: precompute grows with exponent {:.2f}, relighting with {:.2f}.\n\n", what,
+               exponent(costs, &Cost::precompute), exponent(costs, &Cost::relight));
+    fmt::print("| receivers | triangles | clusters | sorting the blockers | precompute, processor seconds | "
+               "relight | peak so far |\n|---|---|---|---|---|---|---|\n");
+    nlohmann::json rows = nlohmann::json::array();
+    for (const Cost& cost : costs) {
+        fmt::print("| {} | {} | {} | {:.2f} s | {:.2f} | {:.2f} ms | {:.0f} MB |\n", cost.num_receivers,
+                   cost.num_triangles, cost.num_clusters, cost.build, cost.precompute, 1e3 * cost.relight,
+                   cost.peak_megabytes);
+        rows.push_back({{"receivers", cost.num_receivers},
+                        {"triangles", cost.num_triangles},
+                        {"clusters", cost.num_clusters},
+                        {"build", cost.build},
+                        {"precompute", cost.precompute},
+                        {"relight", cost.relight}});
+    }
+    fmt::print("\n");
+    std::fflush(stdout);
+    const relight::Plot plot{.title = fmt::format("Cost against {}", what),
+                             .x_label = what,
+                             .y_label = "seconds",
+                             .x_scale = relight::Scale::Log,
+                             .y_scale = relight::Scale::Log,
+                             .series = {series("precompute (processor)", costs, &Cost::precompute),
+                                        series("relight", costs, &Cost::relight)}};
+    std::ofstream(folder / fmt::format("growth_{}.svg", what)) << relight::svg(plot);
+    return rows;
+}
+
+std::vector<Cost> against_vertices(std::size_t most) {
+    std::vector<Cost> costs;
+    for (const std::size_t num_vertices : VertexSteps) {
+        if (num_vertices > most)
+            break;
+        const mesh::TriangleMesh mesh = data_gen::blob(num_vertices);
+        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), GrowthTolerance));
+        costs.back().x = static_cast<double>(mesh.num_vertices());
+    }
+    return costs;
+}
+
+std::vector<Cost> against_clusters() {
+    const mesh::TriangleMesh mesh = data_gen::blob(BlobVertices);
+    std::vector<Cost> costs;
+    for (const float tolerance : ToleranceSteps) {
+        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), tolerance));
+        costs.back().x = static_cast<double>(costs.back().num_clusters);
+    }
+    return costs;
+}
+
+/// Vertices of the floor that the scenes stand on.
+prt::Receivers floor_receivers(const mesh::TriangleMesh& mesh) {
+    prt::Receivers floor;
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i)
+        if (mesh.positions[i].y == 0.0f && mesh.normals[i] == glm::vec3(0.0f, 1.0f, 0.0f)) {
+            floor.positions.push_back(mesh.positions[i]);
+            floor.normals.push_back(mesh.normals[i]);
+        }
+    return floor;
+}
+
+/// The same points of the floor beside a boulder of more and more triangles.
+std::vector<Cost> against_blockers(std::size_t most) {
+    const prt::Receivers floor = floor_receivers(data_gen::blob(BlobVertices));
+    std::vector<Cost> costs;
+    for (const std::size_t num_triangles : TriangleSteps) {
+        if (num_triangles > most)
+            break;
+        costs.push_back(measure(data_gen::blob(num_triangles / 2), floor, GrowthTolerance));
+        costs.back().x = static_cast<double>(costs.back().num_triangles);
+    }
+    return costs;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    CLI::App program{
+        "Measures how precompute and relighting grow with vertices, clusters and blockers; Markdown on "
+        "stdout, plots and JSON in a folder"};
+    fs::path folder = ".";
+    std::size_t most_vertices = 2'000'000;
+    std::size_t most_triangles = 5'000'000;
+    program.add_option("--folder", folder, "where the plots go")->capture_default_str();
+    program.add_option("--vertices", most_vertices, "at most so many")->capture_default_str();
+    program.add_option("--triangles", most_triangles, "at most so many")->capture_default_str();
+    CLI11_PARSE(program, argc, argv);
+    try {
+        fs::create_directories(folder);
+        nlohmann::json result;
+        result["vertices"] = report("vertices", against_vertices(most_vertices), folder);
+        result["clusters"] = report("clusters", against_clusters(), folder);
+        result["triangles"] = report("triangles", against_blockers(most_triangles), folder);
+        std::ofstream(folder / "growth.json") << result.dump(2) << '\n';
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "bench_growth: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}
