@@ -155,6 +155,15 @@ TEST(Relighter, RefusesEnvironmentsThatAreNone) {
     refused(short_of_texels);
 }
 
+TEST(Relighter, TakesMinusZeroForBlack) {
+    cubemap::CubeMap black(200, glm::vec3(0.0f)); // more texels than are looked at in one go
+    const cubemap::CubeMap zero = black;
+    black.at(cubemap::Face::NegativeZ, 199, 199) = glm::vec3(-0.0f);
+    EXPECT_EQ(relight(relit_scene().transfer, black), relight(relit_scene().transfer, zero));
+    black.at(cubemap::Face::NegativeZ, 199, 199) = glm::vec3(-1e-40f);
+    EXPECT_THROW(static_cast<void>(relight(relit_scene().transfer, black)), std::invalid_argument);
+}
+
 /// A random rectangle of a face with new radiance; sometimes a sun of 1e6, sometimes darkness.
 struct Edit {
     TexelRectangle rectangle;
