@@ -1,4 +1,4 @@
-// PNG, JPEG, BMP and TGA files as bytes of RGB. The only user of stb_image.
+// PNG, JPEG, BMP and TGA files as bytes of RGB. The only user of stb_image; jpeg_decoder.h does JPEG.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,8 @@ inline constexpr std::uint64_t MaxCheapPixels = std::uint64_t{1} << 26;
 struct DecodedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::unique_ptr<std::uint8_t, void (*)(void*)> rgb; ///< [height * width * 3] from the top left
+    std::unique_ptr<std::uint8_t, void (*)(void*)> rgb{nullptr,
+                                                       nullptr}; ///< [height * width * 3] from the top left
 };
 
 /// Grey becomes RGB, alpha is dropped, 16 bits become 8. What the header declares is held against the file's size before memory is

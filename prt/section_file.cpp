@@ -124,6 +124,9 @@ private:
                 entry.offset <= bytes_.size() && entry.stored_size <= bytes_.size() - entry.offset;
             if (!inside || entry.size / MaxCompressionRatio > entry.stored_size)
                 fail("sections inside the file", "a damaged section table");
+            const std::string own_name = name(entry); // goes into messages
+            if (!std::all_of(own_name.begin(), own_name.end(), [](char c) { return c > ' ' && c <= '~'; }))
+                fail("names of sections", "a damaged section table");
         }
         return table;
     }
