@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
@@ -30,6 +30,35 @@ constexpr std::array<std::int64_t, 10> RowsPerBlock = {1, 1, 1, 16, 32, 16, 32, 
 /// Blocks up to this size are allowed for any file, larger ones for files that are not this many times smaller: as for whole
 /// images in exr_file.cpp.
 constexpr std::uint64_t CheapBlock = std::uint64_t{256} << 20, LargestRatio = 4000;
+
+struct FixedSize {
+    std::string_view type;
+    std::int64_t size;
+};
+constexpr std::array FixedSizes = {FixedSize{"box2f", 16},
+                                   FixedSize{"box2i", 16},
+                                   FixedSize{"chromaticities", 32},
+                                   FixedSize{"compression", 1},
+                                   FixedSize{"deepImageState", 1},
+                                   FixedSize{"double", 8},
+                                   FixedSize{"envmap", 1},
+                                   FixedSize{"float", 4},
+                                   FixedSize{"int", 4},
+                                   FixedSize{"keycode", 28},
+                                   FixedSize{"lineOrder", 1},
+                                   FixedSize{"m33d", 72},
+                                   FixedSize{"m33f", 36},
+                                   FixedSize{"m44d", 128},
+                                   FixedSize{"m44f", 64},
+                                   FixedSize{"rational", 8},
+                                   FixedSize{"tiledesc", 9},
+                                   FixedSize{"timecode", 8},
+                                   FixedSize{"v2d", 16},
+                                   FixedSize{"v2f", 8},
+                                   FixedSize{"v2i", 8},
+                                   FixedSize{"v3d", 24},
+                                   FixedSize{"v3f", 12},
+                                   FixedSize{"v3i", 12}};
 
 class HeaderWalk {
 public:
@@ -102,26 +131,33 @@ private:
         return is_empty ? std::nullopt : std::optional(part);
     }
 
+    /// OpenEXR reads a known type as far as its content says, whatever size is declared, and the next attribute begins there.
     void read_attribute(const std::string& name, const std::string& type, std::int64_t size, Part& part) {
-        if (name == "dataWindow" && size == 16) {
+        const auto fixed = std::find_if(FixedSizes.begin(), FixedSizes.end(),
+                                        [&](const FixedSize& known) { return known.type == type; });
+        if (fixed != FixedSizes.end() && fixed->size != size)
+            throw std::runtime_error(fmt::format("a {} of {} bytes", type, size));
+        if (name == "dataWindow" && type == "box2i") {
             const std::int64_t x0 = number(), y0 = number();
             part.width = number() - x0 + 1;
             part.height = number() - y0 + 1;
-        } else if (name == "tiles" && size == 9) {
+        } else if (name == "tiles" && type == "tiledesc") {
             part.tile_width = unsigned_number();
             part.tile_height = unsigned_number();
-        } else if (name == "chunkCount" && size == 4) {
+        } else if (name == "chunkCount" && type == "int") {
             part.num_chunks = number();
-        } else if (name == "compression" && size == 1) {
+        } else if (name == "compression" && type == "compression") {
             char compression = 0;
             read(&compression, 1);
             if (compression >= 0 && static_cast<std::size_t>(compression) < RowsPerBlock.size())
                 part.rows_per_block = RowsPerBlock[static_cast<std::size_t>(compression)];
         } else if (type == "chlist") {
-            part.bytes_per_pixel = 4 * count_channels(size);
-        } else if (type == "preview" && size >= 8) {
+            part.bytes_per_pixel = read_channels(size);
+        } else if (type == "stringvector") {
+            check_strings(size);
+        } else if (type == "preview") {
             const std::int64_t width = unsigned_number(), height = unsigned_number();
-            if (width > size || height > size || width * height * 4 > size - 8)
+            if (width > size || height > size || width * height * 4 + 8 != size)
                 throw std::runtime_error(
                     fmt::format("a preview of {}x{} pixels in {} bytes", width, height, size));
         }
@@ -129,8 +165,30 @@ private:
 
     std::int64_t unsigned_number() { return static_cast<std::uint32_t>(number()); }
 
-    /// At most so many: each takes its name, a zero and 16 bytes.
-    static std::int64_t count_channels(std::int64_t size) { return size / 18; }
+    /// Names with 16 bytes each, up to an empty name. Returns the bytes of a pixel.
+    std::int64_t read_channels(std::int64_t size) {
+        const std::uint64_t end = stream_.tellg() + static_cast<std::uint64_t>(size);
+        std::int64_t bytes_per_pixel = 0;
+        while (!text().empty()) {
+            constexpr std::int64_t Half = 1;
+            bytes_per_pixel += number() == Half ? 2 : 4;
+            for (int i = 0; i < 3; ++i)
+                static_cast<void>(number());
+        }
+        if (stream_.tellg() != end)
+            throw std::runtime_error(fmt::format("a list of channels that is not {} bytes long", size));
+        return bytes_per_pixel;
+    }
+
+    void check_strings(std::int64_t size) {
+        while (size > 0) {
+            const std::int64_t length = size < 4 ? -1 : number();
+            size -= 4 + length;
+            if (length < 0 || size < 0)
+                throw std::runtime_error("a list of strings that is not as long as it says");
+            stream_.seekg(stream_.tellg() + static_cast<std::uint64_t>(length));
+        }
+    }
 
     void check_block(const Part& part) const {
         if (part.width < 1 || part.height < 1)

@@ -230,7 +230,7 @@ std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
 
 /// Nodes repeat meshes, primitives repeat accessors: without a limit, 64 KB of glTF make thousands of millions of vertices.
 void GltfReader::count(const Primitive& primitive) {
-    constexpr std::uint64_t AlwaysAllowed = std::uint64_t{1} << 22, PerByte = 64;
+    constexpr std::uint64_t AlwaysAllowed = std::uint64_t{1} << 20, PerByte = 64;
     const std::uint64_t limit = std::max(AlwaysAllowed, PerByte * document_.num_bytes());
     num_elements_ += primitive.positions.size() + primitive.triangles.size();
     if (num_elements_ > limit)

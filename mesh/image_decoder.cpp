@@ -72,6 +72,27 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
     return 0;
 }
 
+/// stb_image allocates for what a chunk declares before it reads it.
+void check_png_chunks(std::span<const std::byte> file) {
+    constexpr std::size_t Signature = 8, Around = 12; // length, type, checksum
+    const auto length_at = [&](std::size_t at) {      // high byte first
+        std::uint64_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            length = length << 8 | std::to_integer<std::uint64_t>(file[at + i]);
+        return length;
+    };
+    for (std::size_t at = Signature; at + Around <= file.size();) {
+        const std::uint64_t length = length_at(at);
+        if (length > file.size() - at - Around)
+            throw std::runtime_error(
+                fmt::format("expected PNG chunks inside the file, got one of {} bytes", length));
+        if (std::memcmp(file.data() + at + 4, "IEND", 4) == 0)
+            return;
+        at += Around + length;
+    }
+    throw std::runtime_error("expected a PNG image with its end, got none");
+}
+
 void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint64_t height) {
     if (width < 1 || height < 1 || width > MaxImageEdge || height > MaxImageEdge)
         throw std::runtime_error(fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
@@ -110,6 +131,8 @@ DecodedImage decode_image(std::span<const std::byte> file) {
     if (file.empty() || stbi_info_from_memory(bytes, num_bytes, &width, &height, &channels) == 0)
         throw std::runtime_error(fmt::format(
             "expected a PNG, JPEG, BMP or TGA image, got {} bytes of something else", file.size()));
+    if (format_of(file) == Format::Png)
+        check_png_chunks(file);
     check(static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0)));
     image.rgb.reset(stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, 3));
     if (!image.rgb)

@@ -27,8 +27,8 @@ for target in "${targets[@]}"; do
     fi
     max_len=16384
     case $target in obj | mtl | off | stl | layers | lights | command_line) max_len=4096 ;; esac
-    if "tests/fuzz/fuzz_$target" "corpus/$target" "$here/corpus/$target" "$TMPDIR/seeds" -max_total_time="$seconds" -timeout=10 \
-        -rss_limit_mb=1024 -max_len="$max_len" -dict="$here/dictionaries/$target.dict" -artifact_prefix="found/$target-" \
+    if "tests/fuzz/fuzz_$target" "$PWD/corpus/$target" "$here/corpus/$target" "$TMPDIR/seeds" -max_total_time="$seconds" -timeout=10 \
+        -rss_limit_mb=1024 -max_len="$max_len" -dict="$here/dictionaries/$target.dict" -artifact_prefix="$PWD/found/$target-" \
         -print_final_stats=1 >"log/$target" 2>&1; then
         printf '%-14s %s, %s\n' "$target" "$(awk '/number_of_executed_units/ {print $2 " runs"}' "log/$target")" \
             "$(grep -oE 'cov: [0-9]+' "log/$target" | tail -n 1)"
