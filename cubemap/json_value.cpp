@@ -161,7 +161,8 @@ JsonValue JsonReader::parse(std::span<const std::byte> text) const {
 }
 
 void JsonReader::refuse(int line, std::string_view expected, std::string_view got) const {
-    throw std::runtime_error(fmt::format("{}:{}: expected {}, got {}", name_, line, expected, got));
+    // Both may quote the file: a name, or all that the parser read since.
+    throw std::runtime_error(fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got));
 }
 
 double JsonReader::number(const JsonValue& value, std::string_view what) const {

@@ -22,6 +22,7 @@
 #include <stb/stb_image.h>
 
 #include "mesh/jpeg_decoder.h"
+#include "mesh/text_reader.h"
 
 namespace relumine::mesh {
 
@@ -136,8 +137,9 @@ DecodedImage decode_image(std::span<const std::byte> file) {
     check(static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0)));
     image.rgb.reset(stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, 3));
     if (!image.rgb)
-        throw std::runtime_error(fmt::format("expected a whole image of {} x {} pixels, got broken data ({})",
-                                             image.width, image.height, stbi_failure_reason()));
+        throw std::runtime_error(fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
+                                             image.width, image.height,
+                                             excerpt(stbi_failure_reason()))); // may quote the file
     return image;
 }
 
