@@ -147,10 +147,10 @@ private:
         } else if (name == "chunkCount" && type == "int") {
             part.num_chunks = number();
         } else if (name == "compression" && type == "compression") {
-            char compression = 0;
-            read(&compression, 1);
-            if (compression >= 0 && static_cast<std::size_t>(compression) < RowsPerBlock.size())
-                part.rows_per_block = RowsPerBlock[static_cast<std::size_t>(compression)];
+            unsigned char compression = 0;
+            read(reinterpret_cast<char*>(&compression), 1);
+            if (compression < RowsPerBlock.size())
+                part.rows_per_block = RowsPerBlock[compression];
         } else if (type == "chlist") {
             part.bytes_per_pixel = read_channels(size);
         } else if (type == "stringvector") {

@@ -55,7 +55,7 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
     const std::uint64_t num_pixels = width * height;
     switch (format) {
     case Format::Png: // deflate packs at most 1032 to 1, of pixels of one bit
-        return num_pixels / (8 * 1032);
+        return num_pixels / 1032 / 8;
     case Format::
         Jpeg: // a bit for each block of 64, and chroma may be sampled four times as coarsely each way
         return num_pixels / 1024;
