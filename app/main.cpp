@@ -1,23 +1,23 @@
 #include <cstdio>
 #include <exception>
-#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include "app/commands.h"
+#include "app/program.h"
 #include "prt/precompute.h"
 
 namespace {
 
-/// One line, whatever the library's message looked like.
+/// One line of plain text, whatever the library's message looked like: what a file holds may be quoted in it.
 std::string one_line(std::string message) {
     while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
         message.pop_back();
     for (char& c : message)
-        if (c == '\n' || c == '\r')
+        if ((c >= 0 && c < ' ') || c == '\x7f')
             c = ' ';
     return message;
 }
@@ -31,33 +31,7 @@ int main(int argc, char** argv) {
                      "failed, 2: wrong usage.",
                      "relumine"};
     program.set_version_flag("--version", "relumine " RELUMINE_VERSION);
-    program.require_subcommand(1);
-    app::add_precompute(program, session);
-    app::add_relight(program, session);
-    app::add_animate(program, session);
-    app::add_edit(program, session);
-    app::add_verify(program, session);
-    app::add_lights(program, session);
-    app::add_info(program, session);
-    app::add_generate(program, session);
-    app::add_env(program, session);
-    app::add_view(program, session);
-
-    // A script's unset variable must not read as 0 or as the current folder.
-    const CLI::Validator not_empty(
-        [](const std::string& text) {
-            return text.empty() ? std::string("expected a value, got ''") : std::string();
-        },
-        "");
-    const std::function<void(CLI::App&)> refuse_empty = [&](CLI::App& app) {
-        for (CLI::App* command : app.get_subcommands({})) {
-            for (CLI::Option* option : command->get_options())
-                if (option->get_expected_min() > 0)
-                    option->check(not_empty);
-            refuse_empty(*command);
-        }
-    };
-    refuse_empty(program);
+    app::add_commands(program, session);
 
     // The subcommand runs after parsing, so that wrong usage and failed work cannot be confused.
     std::unique_ptr<tbb::global_control> thread_limit;

@@ -16,13 +16,16 @@
 #include <ImfPartType.h>
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
 #include <ImfTileDescription.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <tbb/parallel_for.h>
 
+#include "cubemap/exr_header.h"
 #include "cubemap/image_file.h"
 #include "cubemap/image_layout.h"
+#include "files/output_file.h"
 
 namespace relumine::cubemap {
 
@@ -117,6 +120,7 @@ public:
 
     ImageFile decode() {
         MemoryInput stream(bytes_);
+        check_exr_header(stream, bytes_.size());
         Imf::MultiPartInputFile file(stream, 0);
         choose_part(file);
         const Imf::Header& header = file.header(part_);
@@ -137,7 +141,9 @@ public:
 
     /// The size that decode() would give; the header only.
     ImageSize size(const std::filesystem::path& path) {
-        Imf::MultiPartInputFile file(path.c_str(), 0);
+        Imf::StdIFStream stream(path.c_str());
+        check_exr_header(stream, files::size(path));
+        Imf::MultiPartInputFile file(stream, 0);
         choose_part(file);
         const Imf::Header& header = file.header(part_);
         const Window inner = window(header.dataWindow());

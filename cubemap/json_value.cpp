@@ -161,7 +161,11 @@ JsonValue JsonReader::parse(std::span<const std::byte> text) const {
 }
 
 void JsonReader::refuse(int line, std::string_view expected, std::string_view got) const {
-    throw std::runtime_error(fmt::format("{}:{}: expected {}, got {}", name_, line, expected, got));
+    // Both may quote the file: a name, a text, or all that the parser read since.
+    std::string message = fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got);
+    std::replace_if(
+        message.begin(), message.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+    throw std::runtime_error(message);
 }
 
 double JsonReader::number(const JsonValue& value, std::string_view what) const {

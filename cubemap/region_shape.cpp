@@ -151,9 +151,8 @@ double RectangleShape::solid_angle_of_picture(const glm::dvec3& w) const {
     return 4.0 * half_.x * half_.y * depth * depth * depth;
 }
 
-template<typename Arcs>
-LassoRamps<Arcs>::LassoRamps(const Lasso& lasso) requires std::same_as<Arcs, ArcTree>
-    : outline_(unit_vectors(lasso.points), true) {
+template<>
+LassoRamps<ArcTree>::LassoRamps(const Lasso& lasso) : outline_(unit_vectors(lasso.points), true) {
     const glm::dvec3 mean = mean_direction(lasso.points);
     const glm::dvec3 off = std::abs(mean.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
     const glm::dvec3 first = glm::normalize(glm::cross(off, mean));
@@ -221,9 +220,8 @@ LassoRamps<NearArcs> LassoRamps<Arcs>::within(const glm::dvec3& w, double chord_
 template class LassoRamps<ArcTree>;
 template class LassoRamps<NearArcs>;
 
-template<typename Arcs>
-StrokeRamps<Arcs>::StrokeRamps(const Stroke& stroke) requires std::same_as<Arcs, ArcTree>
-    : line_(unit_vectors(stroke.points), false) {
+template<>
+StrokeRamps<ArcTree>::StrokeRamps(const Stroke& stroke) : line_(unit_vectors(stroke.points), false) {
     size_.outer = chord(stroke.radius_degrees);
     size_.inner = chord(stroke.radius_degrees * (1.0 - stroke.softness));
     size_.squared_outer = size_.outer * size_.outer;

@@ -9,7 +9,6 @@
 #pragma once
 
 #include <array>
-#include <concepts>
 #include <cstddef>
 #include <optional>
 #include <variant>
@@ -92,7 +91,7 @@ class LassoRamps {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    explicit LassoRamps(const Lasso& lasso) requires std::same_as<Arcs, ArcTree>;
+    explicit LassoRamps(const Lasso& lasso); ///< only with ArcTree
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
@@ -113,6 +112,8 @@ private:
     std::optional<bool>
         side_; ///< of all directions that may be asked for, where the outline is not among them
 };
+template<>
+LassoRamps<ArcTree>::LassoRamps(const Lasso& lasso);
 using LassoShape = LassoRamps<ArcTree>;
 
 template<typename Arcs>
@@ -120,7 +121,7 @@ class StrokeRamps {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    explicit StrokeRamps(const Stroke& stroke) requires std::same_as<Arcs, ArcTree>;
+    explicit StrokeRamps(const Stroke& stroke); ///< only with ArcTree
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
@@ -138,6 +139,8 @@ private:
     StrokeSize size_;
     Arcs line_;
 };
+template<>
+StrokeRamps<ArcTree>::StrokeRamps(const Stroke& stroke);
 using StrokeShape = StrokeRamps<ArcTree>;
 
 using RegionShape = std::variant<DiscShape, RectangleShape, LassoShape, StrokeShape>;

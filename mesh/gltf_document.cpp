@@ -163,7 +163,7 @@ const Json& child(const Json& object, const char* key) {
 }
 
 Document::Document(std::span<const std::byte> file, std::filesystem::path folder)
-    : folder_(std::move(folder)), json_text_(as_text(file)) {
+    : folder_(std::move(folder)), file_bytes_(file.size()), json_text_(as_text(file)) {
     if (json_text_.starts_with("glTF"))
         split_glb(file);
     try {
@@ -178,6 +178,13 @@ Document::Document(std::span<const std::byte> file, std::filesystem::path folder
         fail("glTF version 2", excerpt(version));
     check_extensions();
     buffers_.resize(count("buffers"));
+}
+
+std::uint64_t Document::num_bytes() const {
+    std::uint64_t result = file_bytes_;
+    for (const auto& buffer : buffers_)
+        result += buffer ? buffer->size() : 0;
+    return result;
 }
 
 /// Header, JSON chunk, binary chunk; what follows is for extensions.

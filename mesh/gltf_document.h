@@ -42,6 +42,8 @@ public:
     Document(std::span<const std::byte> file, std::filesystem::path folder);
 
     [[nodiscard]] const Json& root() const { return root_; }
+    /// Of the file and of the buffers beside it that were needed so far.
+    [[nodiscard]] std::uint64_t num_bytes() const;
     /// Element of one of the document's arrays: "accessors", "nodes" ...
     [[nodiscard]] const Json& element(const char* array, std::uint64_t index) const;
     [[nodiscard]] std::size_t count(const char* array) const { return child(root_, array).size(); }
@@ -58,6 +60,7 @@ private:
     [[nodiscard]] std::span<const std::byte> buffer(std::uint64_t index);
 
     std::filesystem::path folder_;
+    std::uint64_t file_bytes_;
     std::string_view json_text_;
     std::optional<std::span<const std::byte>> chunk_; ///< the binary one of a .glb
     Json root_;

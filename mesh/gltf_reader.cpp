@@ -2,6 +2,7 @@
 //
 // A vertex stays a vertex for each node that shows it; points and lines are skipped; skins and morph targets are as the file
 // stores them, at rest (a skinned mesh ignores its node's place, as the format has it).
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -68,6 +69,7 @@ private:
     [[nodiscard]] std::optional<Primitive> primitive(const Json& description);
     [[nodiscard]] std::vector<Triangle> triangles(const Json& description, std::uint64_t mode,
                                                   std::size_t num_vertices);
+    void count(const Primitive& primitive);
     void append(const Primitive& primitive, const glm::dmat4& transform, std::uint32_t group);
     [[nodiscard]] std::uint32_t group(const Json& node, std::uint64_t mesh);
     [[nodiscard]] std::uint32_t default_material();
@@ -77,6 +79,8 @@ private:
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
     std::optional<std::uint32_t> default_material_;
     std::map<std::string, std::uint32_t> group_indices_;
+    std::uint64_t num_elements_ =
+        0; ///< vertices and triangles that primitives and nodes made of the file's bytes
     PolygonSoup soup_;
     bool has_colors_ = false, has_uvs_ = false;
 };
@@ -202,8 +206,10 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
     if (!mesh) {
         mesh.emplace();
         for (const Json& item : gltf::child(description, "primitives"))
-            if (std::optional<Primitive> read = primitive(item))
+            if (std::optional<Primitive> read = primitive(item)) {
+                count(*read);
                 mesh->push_back(std::move(*read));
+            }
     }
     return *mesh;
 }
@@ -220,6 +226,17 @@ std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
     if (is_new)
         soup_.groups.push_back(name);
     return place->second;
+}
+
+/// Nodes repeat meshes, primitives repeat accessors: without a limit, 64 KB of glTF make thousands of millions of vertices.
+void GltfReader::count(const Primitive& primitive) {
+    constexpr std::uint64_t AlwaysAllowed = std::uint64_t{1} << 20, PerByte = 64;
+    const std::uint64_t limit = std::max(AlwaysAllowed, PerByte * document_.num_bytes());
+    num_elements_ += primitive.positions.size() + primitive.triangles.size();
+    if (num_elements_ > limit)
+        throw std::runtime_error(fmt::format(
+            "expected at most {} vertices and triangles of {} bytes with all repetitions, got more", limit,
+            document_.num_bytes()));
 }
 
 void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform, std::uint32_t group) {
@@ -276,8 +293,10 @@ PolygonSoup GltfReader::read() {
         const glm::dmat4 transform = visit.parent * local_transform(node);
         if (node.contains("mesh")) {
             const std::uint64_t index = gltf::whole(node, "mesh");
-            for (const Primitive& primitive : mesh(index))
+            for (const Primitive& primitive : mesh(index)) {
+                count(primitive);
                 append(primitive, node.contains("skin") ? glm::dmat4(1.0) : transform, group(node, index));
+            }
         }
         const Json& children = gltf::child(node, "children");
         for (std::size_t i = children.size(); i-- > 0;)

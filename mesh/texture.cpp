@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
-#include <memory>
-#include <stdexcept>
 
-#include <fmt/format.h>
 #include <glm/common.hpp>
-#include <stb/stb_image.h> // Debian's libstb is compiled
+
+#include "mesh/image_decoder.h"
 
 namespace relumine::mesh {
 
@@ -63,35 +60,14 @@ Pair neighbours(float coordinate, std::uint32_t size, Wrap wrap) {
 } // namespace
 
 Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
-    constexpr int MaxEdge = 16384;
-    if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        throw std::runtime_error(fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
-    const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
-    const int num_bytes = static_cast<int>(file.size());
-    int width = 0, height = 0, channels = 0;
-    if (file.empty() || stbi_info_from_memory(bytes, num_bytes, &width, &height, &channels) == 0)
-        throw std::runtime_error(fmt::format(
-            "expected a PNG, JPEG, BMP or TGA image, got {} bytes of something else", file.size()));
-    if (width < 1 || height < 1 || width > MaxEdge || height > MaxEdge)
-        throw std::runtime_error(fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
-                                             MaxEdge, width, height));
-    // Deflate packs at most 1032 to 1, of pixels of one bit: what declares more is broken, and would only cost memory.
-    const std::uint64_t num_pixels = static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height);
-    if (num_pixels / 16384 > file.size())
-        throw std::runtime_error(
-            fmt::format("expected the data of {} x {} pixels, got {} bytes", width, height, file.size()));
-    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
-        stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, 3), stbi_image_free);
-    if (!pixels)
-        throw std::runtime_error(fmt::format("expected a whole image of {} x {} pixels, got broken data ({})",
-                                             width, height, stbi_failure_reason()));
+    const DecodedImage image = decode_image(file);
     Texture texture;
-    texture.width = static_cast<std::uint32_t>(width);
-    texture.height = static_cast<std::uint32_t>(height);
-    texture.texels.resize(num_pixels);
+    texture.width = image.width;
+    texture.height = image.height;
+    texture.texels.resize(std::size_t{texture.width} * texture.height);
     for (std::size_t row = 0; row < texture.height; ++row) {
         const std::size_t from = origin == VOrigin::Top ? row : texture.height - 1 - row;
-        std::memcpy(texture.texels.data() + row * texture.width, pixels.get() + from * texture.width * 3,
+        std::memcpy(texture.texels.data() + row * texture.width, image.rgb.get() + from * texture.width * 3,
                     std::size_t{texture.width} * 3);
     }
     return texture;

@@ -30,7 +30,7 @@ struct Texture {
 
 /// Decodes a PNG, JPEG, BMP or TGA file; grey becomes RGB, alpha is dropped, 16 bits become 8. `origin` is what the mesh's uvs
 /// count from. Throws std::runtime_error "expected X, got Y" for what is no such image, is broken, or declares more than
-/// 16384 x 16384 pixels.
+/// 16384 x 16384 pixels or than its bytes can hold (mesh/image_decoder.h).
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> file, VOrigin origin);
 
 /// The texture's value at a uv of the mesh, each channel 0..1: bilinear between texel centres, which lie at (i + 0.5) / width.

@@ -21,6 +21,9 @@ constexpr float WidestPatch = 1.1f;
 
 /// Coordinates beyond which triple products overflow, in this file's tests or in the exact tracer's, whose answers are then its own.
 constexpr float LargestReach = 1e12f;
+/// Nor in a scene so far from the origin, in units of its extent: its coordinates have few bits left, origins lie a few spacings of floats
+/// above their surface, and the ray tracer has been seen to hit what the bounds here exclude.
+constexpr float FarAway = 256.0f;
 
 /// Sum of the absolute components.
 float norm_1(const glm::vec3& v) {
@@ -135,7 +138,8 @@ void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& 
                               std::span<std::uint64_t> rays) const {
     const TriangleTree& tree = impl_->tree;
     const PatchPlane plane = patch_plane(patch);
-    if (!plane.narrow) {
+    const glm::vec3 place = glm::abs(tree.centre);
+    if (!plane.narrow || std::max({place.x, place.y, place.z}) > FarAway * tree.extent) {
         impl_->exact.clear_blocked(block, patch, rays);
         return;
     }

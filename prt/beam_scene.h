@@ -22,7 +22,8 @@ namespace relumine::prt {
 ///
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result is beyond its bound. A ray hits a
 /// triangle for certain, misses all of them for certain, or is in doubt (it passes an edge within some 1e-6 of its length), and
-/// then `exact` is asked. So are wide patches and crowded shafts, where a beam does not pay.
+/// then `exact` is asked. So are wide patches and crowded shafts, where a beam does not pay,
+/// and all rays of a scene that is very far from the origin.
 class BeamScene final : public Blockers {
 public:
     /// `exact` traces the same mesh's triangles and must outlive this; the mesh may go. About 250 bytes per triangle.

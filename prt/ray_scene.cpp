@@ -149,7 +149,12 @@ std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec
 }
 
 float automatic_bias(const mesh::TriangleMesh& blockers) {
-    return 1e-4f * mesh::bounds(blockers).diagonal();
+    const mesh::Bounds bounds = mesh::bounds(blockers);
+    float largest = 0.0f;
+    for (int axis = 0; axis < 3; ++axis)
+        largest = std::max({largest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
+    // A sum is rounded by up to half a spacing on each axis; the second half of the four is for the triangles' own rounding.
+    return std::max(1e-4f * bounds.diagonal(), 4.0f * std::numeric_limits<float>::epsilon() * largest);
 }
 
 } // namespace relumine::prt

@@ -45,7 +45,8 @@ private:
 };
 
 /// The bias used where none is given: 1e-4 of the blockers' bounding-box diagonal. That is a thousand times the spacing of floats
-/// at the box's size, and well below the edge length of a mesh of a million triangles.
+/// at the box's size, and well below the edge length of a mesh of a million triangles. Far from the origin, where floats are so sparse
+/// that such a bias would be rounded away and every surface would block its own light, it is four of their spacings.
 [[nodiscard]] float automatic_bias(const mesh::TriangleMesh& blockers);
 
 } // namespace relumine::prt

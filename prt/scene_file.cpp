@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -12,7 +13,6 @@
 #include "files/output_file.h"
 #include "prt/glossy_sections.h"
 #include "prt/receiver_sections.h"
-#include "prt/section_file.h"
 #include "prt/section_reader.h"
 
 namespace relumine::prt {
@@ -207,7 +207,11 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
 }
 
 Scene load_scene(const std::filesystem::path& path) {
-    return SceneReader(path, read_sections(path)).scene();
+    return scene_of(path, read_sections(path));
+}
+
+Scene scene_of(const std::filesystem::path& path, Sections&& sections) {
+    return SceneReader(path, std::move(sections)).scene();
 }
 
 std::uint64_t file_hash(const std::filesystem::path& path) {

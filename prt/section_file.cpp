@@ -4,6 +4,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <memory>
+#include <new>
 #include <stdexcept>
 #include <string_view>
 
@@ -124,6 +126,9 @@ private:
                 entry.offset <= bytes_.size() && entry.stored_size <= bytes_.size() - entry.offset;
             if (!inside || entry.size / MaxCompressionRatio > entry.stored_size)
                 fail("sections inside the file", "a damaged section table");
+            const std::string own_name = name(entry); // goes into messages
+            if (!std::all_of(own_name.begin(), own_name.end(), [](char c) { return c > ' ' && c <= '~'; }))
+                fail("names of sections", "a damaged section table");
         }
         return table;
     }
@@ -138,11 +143,37 @@ private:
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
         if (ZSTD_getFrameContentSize(stored, entry.stored_size) != entry.size)
             fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+        // What is hardly believable is allocated as it comes, so that a lie costs nothing.
+        constexpr std::uint64_t Cheap = std::uint64_t{1} << 26, BelievableRatio = 256;
+        if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
+            return content_piecewise(entry, Cheap);
         std::vector<std::byte> result(entry.size);
         const std::size_t size = ZSTD_decompress(result.data(), result.size(), stored, entry.stored_size);
         if (ZSTD_isError(size) != 0 || size != entry.size)
             fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
         return result;
+    }
+
+    std::vector<std::byte> content_piecewise(const SectionEntry& entry, std::uint64_t first_size) const {
+        const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
+                                                                              ZSTD_freeDCtx);
+        if (!context)
+            throw std::bad_alloc();
+        ZSTD_inBuffer in{.src = bytes_.data() + entry.offset, .size = entry.stored_size, .pos = 0};
+        std::vector<std::byte> result(std::min(first_size, entry.size));
+        for (std::size_t done = 0;;) {
+            ZSTD_outBuffer out{.dst = result.data(), .size = result.size(), .pos = done};
+            const std::size_t consumed = in.pos;
+            const std::size_t state = ZSTD_decompressStream(context.get(), &out, &in);
+            if (state == 0 && out.pos == entry.size && in.pos == in.size)
+                return result;
+            const bool has_progress = out.pos > done || in.pos > consumed;
+            if (ZSTD_isError(state) != 0 || state == 0 || !has_progress)
+                fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+            done = out.pos;
+            if (done == result.size() && done < entry.size)
+                result.resize(std::min(2 * result.size(), entry.size));
+        }
     }
 
     const std::filesystem::path& path_;

@@ -352,6 +352,28 @@ TEST(ExrFile, DeclaredSizesBeyondTheFileAreRefusedAtOnce) {
     }
 }
 
+TEST(ExrFile, WhatTheHeaderDeclaresIsInTheFileOrRefused) {
+    const TemporaryFolder folder;
+    const std::vector<std::byte> good = encode_exr(black_image(Layout::LatLong, Sampling::Borders, 18));
+    const std::string text(reinterpret_cast<const char*>(good.data()), good.size());
+    // Puts a number at an offset behind an attribute's name; both ways in say what is wrong, before memory is allocated.
+    const auto expect_refused = [&](std::string_view attribute, std::size_t offset, std::uint32_t value,
+                                    std::string_view reason) {
+        std::vector<std::byte> bad = good;
+        std::memcpy(&bad[text.find(attribute) + attribute.size() + offset], &value, sizeof value);
+        const std::string message = message_of([&] { (void)decode_exr(bad, "name"); });
+        EXPECT_NE(message.find(reason), std::string::npos) << message;
+        std::ofstream(folder / "bad.exr", std::ios::binary)
+            .write(reinterpret_cast<const char*>(bad.data()), static_cast<std::streamsize>(bad.size()));
+        EXPECT_NE(message_of([&] { (void)exr_size(folder / "bad.exr"); }).find(reason), std::string::npos);
+    };
+    using std::string_view_literals::operator""sv;
+    expect_refused("screenWindowWidth\0float\0"sv, 0, 0x70000000, "an attribute of 1879048192 bytes");
+    expect_refused("screenWindowWidth\0float\0"sv, 0, 0xffffffff, "an attribute of 4294967295 bytes");
+    expect_refused("dataWindow\0box2i\0"sv, 4 + 12, 0x7ffffffe, "a table of 134217728 or more chunks");
+    expect_refused("dataWindow\0box2i\0"sv, 4 + 8, 0x7ffffffe, "blocks of 412316860224 bytes");
+}
+
 TEST(ExrFile, TruncationsAreRefusedAndCorruptionsDoNoHarm) {
     const TemporaryFolder folder;
     std::vector<std::vector<std::byte>> files;

@@ -1,6 +1,6 @@
 // Every truncation and every single changed byte of a small file of each format: the readers must refuse the result or read a
 // valid mesh, quickly.
-#include <chrono>
+#include <ctime>
 #include <functional>
 
 #include "tests/mesh/mesh_files.h"
@@ -75,7 +75,7 @@ std::vector<Sample> samples() {
 
 /// Loads; says whether that was refused. Whatever is accepted must be valid.
 bool is_refused(const Sample& sample, std::string_view content) {
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = std::clock();
     bool refused = false;
     try {
         EXPECT_EQ(defect(sample.load(content, NormalSource::File)), "") << sample.name;
@@ -83,7 +83,7 @@ bool is_refused(const Sample& sample, std::string_view content) {
         refused = true;
         EXPECT_EQ(std::string_view(error.what()).find('\n'), std::string_view::npos);
     }
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1)) << sample.name;
+    EXPECT_LT(std::clock() - start, 20 * CLOCKS_PER_SEC) << sample.name;
     return refused;
 }
 

@@ -375,6 +375,26 @@ TEST_F(GltfTest, RefusesWhatItWouldMisread) {
 }
 
 /// Deep nesting, which recursion would not survive.
+TEST_F(GltfTest, RepetitionHasALimit) {
+    // 6 vertices and triangles, times primitives, times nodes.
+    const auto repeated = [](std::size_t num_primitives, std::size_t num_nodes) {
+        Model model = square();
+        Json& primitives = model.json["meshes"][0]["primitives"];
+        primitives = Json::array();
+        for (std::size_t i = 0; i < num_primitives; ++i)
+            primitives.push_back({{"attributes", {{"POSITION", 0}}}, {"indices", 2}});
+        model.json["nodes"] = Json::array();
+        model.json["scenes"][0]["nodes"] = Json::array();
+        for (std::size_t i = 0; i < num_nodes; ++i) {
+            model.json["nodes"].push_back({{"mesh", 0}});
+            model.json["scenes"][0]["nodes"].push_back(i);
+        }
+        return model.embedded();
+    };
+    EXPECT_EQ(gltf(repeated(50, 500)).num_vertices(), 4u * 50 * 500);
+    expect_refusal([&] { return gltf(repeated(2000, 1000)); }, "vertices and triangles of");
+}
+
 TEST_F(GltfTest, DeepFilesAreRefusedOrRead) {
     std::string deep(200000, '[');
     deep += std::string(200000, ']');

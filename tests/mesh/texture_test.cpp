@@ -95,5 +95,57 @@ TEST(Texture, RefusesWhatIsNoImage) {
         }
 }
 
+/// A BMP or TGA file of 3 x 2 pixels by the writer.
+template<typename Writer>
+std::string written(const Writer& writer) {
+    const std::vector<Rgb8> pixels = {Red, Green, Blue, Gray, Red, Red};
+    std::string file;
+    const auto append = [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    };
+    writer(append, &file, 3, 2, 3, pixels.data());
+    return file;
+}
+
+TEST(Texture, WhatAShortFileLacksIsNotMadeUp) {
+    stbi_write_tga_with_rle = 0;
+    for (const std::string& file : {written(stbi_write_bmp_to_func), written(stbi_write_tga_to_func)}) {
+        EXPECT_EQ(decoded(file).texels, (std::vector<Rgb8>{Red, Green, Blue, Gray, Red, Red}));
+        for (std::size_t missing = 1; missing <= 18; ++missing)
+            expect_refusal([&] { return decoded(file.substr(0, file.size() - missing)); },
+                           "expected the data of 3 x 2 pixels");
+    }
+}
+
+TEST(Texture, JpegsAreReadWholeOrRefused) {
+    std::string file;
+    const auto append = [](void* to, void* data, int size) {
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+    };
+    const std::vector<Rgb8> orange(40 * 24, {250, 130, 10});
+    stbi_write_jpg_to_func(append, &file, 40, 24, 3, orange.data(), 95);
+    const Texture texture = decoded(file);
+    EXPECT_EQ(texture.width, 40u);
+    EXPECT_EQ(texture.height, 24u);
+    for (const Rgb8& texel : texture.texels)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            ASSERT_NEAR(texel[channel], orange[0][channel], 3.0);
+    std::vector<std::uint8_t> gray(40 * 24, 77);
+    file.clear();
+    stbi_write_jpg_to_func(append, &file, 40, 24, 1, gray.data(), 95);
+    EXPECT_NEAR(decoded(file).texels.back()[2], 77.0, 2.0);
+    for (std::size_t end = 4; end < file.size(); ++end)
+        expect_refusal([&] { return decoded(file.substr(0, end)); }, "broken data (");
+    file[file.find("\xff\xc0") + 5] = 0x7f; // 32536 rows
+    expect_refusal([&] { return decoded(file); }, "expected an image of at most 16384 x 16384 pixels");
+}
+
+TEST(Texture, OtherFormatsAreNotEvenTried) {
+    for (const std::string file :
+         {"P52\n5252\n5222P", "P6 2 2 255 ............", "GIF89a........................",
+          "8BPS......................", "#?RADIANCE\n\n-Y 1 +X 1\n...."})
+        expect_refusal([&] { return decoded(file); }, "of something else");
+}
+
 } // namespace
 } // namespace relumine::mesh

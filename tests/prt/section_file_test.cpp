@@ -227,6 +227,31 @@ TEST_F(SectionFileTest, RefusesForgedTables) {
     });
 }
 
+TEST_F(SectionFileTest, WhatIsHardlyBelievableIsReadPiecewise) {
+    // 3000 times its stored size: true, so it is read; a frame that lies is refused.
+    std::vector<std::byte> zeros((std::size_t{1} << 27) + 12345);
+    zeros.back() = std::byte{1};
+    write_sections(file_, {{"zeros", zeros}});
+    EXPECT_TRUE(read_sections(file_).at("zeros") == zeros);
+
+    std::vector<std::byte> lie = files::read(file_);
+    const auto offset = value_at<std::uint64_t>(lie, HeaderSize + OffsetAt);
+    const std::uint64_t claimed = 0x60000000; // 1.5 GB
+    // zstd's magic number, a frame header with nothing but the size in four bytes, five bytes of one last raw block.
+    std::vector<std::byte> frame = text(std::string("\x28\xb5\x2f\xfd\xa0????\x29\0\0hello", 17));
+    put(frame, 5, static_cast<std::uint32_t>(claimed));
+    frame.resize(20000); // so that the ratio is below the largest
+    lie.resize(offset);
+    lie.insert(lie.end(), frame.begin(), frame.end());
+    put(lie, FileSizeAt, std::uint64_t{lie.size()});
+    put(lie, HeaderSize + StoredSizeAt, std::uint64_t{frame.size()});
+    put(lie, HeaderSize + SizeAt, claimed);
+    put(lie, HeaderSize + ChecksumAt, XXH64(frame.data(), frame.size(), 0));
+    sign(lie);
+    write(lie);
+    expect_refused("expected zstd data, got a damaged section 'zeros'");
+}
+
 TEST_F(SectionFileTest, UnwritablePlacesLeaveNothing) {
     const fs::path missing = folder_ / "missing" / "scene.prt";
     scenes::expect_refused(missing, "cannot write", [&] { write_sections(missing, examples()); });

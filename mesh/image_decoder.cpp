@@ -1,0 +1,146 @@
+// stb_image is compiled here, for three formats. Debian's library has ten: fourteen bytes that begin like a PNM picture end the
+// program there, and what a short file lacks is read as whatever the memory held. Its JPEG decoder writes beyond its tables when a
+// file declares too many Huffman codes; libjpeg does not.
+#include "mesh/image_decoder.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_ONLY_BMP
+#define STBI_ONLY_PNG
+#define STBI_ONLY_TGA
+#include <stb/stb_image.h>
+
+#include "mesh/jpeg_decoder.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+enum class Format { Png, Jpeg, Bmp, Tga };
+
+/// TGA files say nothing of themselves: what is none of the others.
+Format format_of(std::span<const std::byte> file) {
+    const auto begins_with = [&](std::string_view magic) {
+        return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
+    };
+    return begins_with("\x89PNG")        ? Format::Png
+           : begins_with("\xff\xd8\xff") ? Format::Jpeg
+           : begins_with("BM")           ? Format::Bmp
+                                         : Format::Tga;
+}
+
+/// An unsigned number, low byte first; 0 beyond the end.
+std::uint64_t number_at(std::span<const std::byte> file, std::size_t at, std::size_t num_bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < num_bytes && at + i < file.size(); ++i)
+        value |= std::to_integer<std::uint64_t>(file[at + i]) << (8 * i);
+    return value;
+}
+
+/// Bytes that the rows of an image of this size need at least.
+std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::uint64_t width,
+                          std::uint64_t height) {
+    const std::uint64_t num_pixels = width * height;
+    switch (format) {
+    case Format::Png: // deflate packs at most 1032 to 1, of pixels of one bit
+        return num_pixels / 1032 / 8;
+    case Format::
+        Jpeg: // a bit for each block of 64, and chroma may be sampled four times as coarsely each way
+        return num_pixels / 1024;
+    case Format::Bmp: { // never compressed where stb_image reads it; rows end at multiples of four bytes
+        const std::uint64_t data = number_at(file, 10, 4);
+        const std::uint64_t bits = number_at(file, number_at(file, 14, 4) == 12 ? 24 : 28, 2);
+        return data + (width * bits + 31) / 32 * 4 * height;
+    }
+    case Format::Tga: {
+        const std::uint64_t kind = number_at(file, 2, 1), bits = number_at(file, 16, 1);
+        const std::uint64_t num_bytes = num_pixels * ((bits + 7) / 8);
+        return (kind & 8) != 0 ? num_pixels / 64 : 18 + num_bytes; // runs of 128 take two bytes or more
+    }
+    }
+    return 0;
+}
+
+/// stb_image allocates for what a chunk declares before it reads it.
+void check_png_chunks(std::span<const std::byte> file) {
+    constexpr std::size_t Signature = 8, Around = 12; // length, type, checksum
+    const auto length_at = [&](std::size_t at) {      // high byte first
+        std::uint64_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            length = length << 8 | std::to_integer<std::uint64_t>(file[at + i]);
+        return length;
+    };
+    for (std::size_t at = Signature; at + Around <= file.size();) {
+        const std::uint64_t length = length_at(at);
+        if (length > file.size() - at - Around)
+            throw std::runtime_error(
+                fmt::format("expected PNG chunks inside the file, got one of {} bytes", length));
+        if (std::memcmp(file.data() + at + 4, "IEND", 4) == 0)
+            return;
+        at += Around + length;
+    }
+    throw std::runtime_error("expected a PNG image with its end, got none");
+}
+
+void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint64_t height) {
+    if (width < 1 || height < 1 || width > MaxImageEdge || height > MaxImageEdge)
+        throw std::runtime_error(fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
+                                             MaxImageEdge, width, height));
+    const std::uint64_t num_pixels = width * height;
+    const std::uint64_t of_large = num_pixels > MaxCheapPixels ? num_pixels / 128 : 0;
+    if (std::max(of_large, least_bytes(format_of(file), file, width, height)) > file.size())
+        throw std::runtime_error(
+            fmt::format("expected the data of {} x {} pixels, got {} bytes", width, height, file.size()));
+}
+
+} // namespace
+
+DecodedImage decode_image(std::span<const std::byte> file) {
+    if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw std::runtime_error(fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
+    DecodedImage image{.rgb = {nullptr, std::free}};
+    const auto check = [&](std::uint32_t width, std::uint32_t height) {
+        check_size(file, width, height);
+        image.width = width;
+        image.height = height;
+    };
+    if (format_of(file) == Format::Jpeg) {
+        decode_jpeg(file, [&](std::uint32_t width, std::uint32_t height) {
+            check(width, height);
+            image.rgb.reset(static_cast<std::uint8_t*>(std::malloc(std::size_t{width} * height * 3)));
+            if (!image.rgb)
+                throw std::bad_alloc();
+            return image.rgb.get();
+        });
+        return image;
+    }
+    const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
+    const int num_bytes = static_cast<int>(file.size());
+    int width = 0, height = 0, channels = 0;
+    if (file.empty() || stbi_info_from_memory(bytes, num_bytes, &width, &height, &channels) == 0)
+        throw std::runtime_error(fmt::format(
+            "expected a PNG, JPEG, BMP or TGA image, got {} bytes of something else", file.size()));
+    if (format_of(file) == Format::Png)
+        check_png_chunks(file);
+    check(static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0)));
+    image.rgb.reset(stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, 3));
+    if (!image.rgb)
+        throw std::runtime_error(fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
+                                             image.width, image.height,
+                                             excerpt(stbi_failure_reason()))); // may quote the file
+    return image;
+}
+
+} // namespace relumine::mesh

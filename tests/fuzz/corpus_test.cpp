@@ -1,0 +1,70 @@
+// All inputs of the corpus through the fuzz targets: what was found once stays mended. A crash or a broken promise ends the
+// program, and names the file.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/fuzz/fuzz.h"
+
+// As CMakeLists.txt lists them; each is compiled with an entry point of its own name.
+#define RELUMINE_FUZZ_TARGETS(X)                                                                             \
+    X(command_line)                                                                                          \
+    X(exr) X(gltf) X(hdr) X(layers) X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture)
+
+#define RELUMINE_DECLARE(name)                                                                               \
+    extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);
+RELUMINE_FUZZ_TARGETS(RELUMINE_DECLARE)
+
+namespace relumine::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Target {
+    std::string name;
+    int (*run)(const std::uint8_t* data, std::size_t size);
+};
+
+std::vector<Target> targets() {
+#define RELUMINE_LIST(name) {#name, relumine_fuzz_##name},
+    return {RELUMINE_FUZZ_TARGETS(RELUMINE_LIST)};
+}
+
+std::vector<fs::path> files_below(const fs::path& folder) {
+    std::vector<fs::path> result;
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (entry.is_regular_file())
+            result.push_back(entry.path());
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+class Corpus : public testing::TestWithParam<Target> {};
+
+TEST_P(Corpus, IsReadOrRefused) {
+    const std::vector<fs::path> files = files_below(fs::path(RELUMINE_FUZZ_CORPUS) / GetParam().name);
+    ASSERT_FALSE(files.empty());
+    num_accepted = 0;
+    for (const fs::path& path : files) {
+        std::ifstream stream(path, std::ios::binary);
+        const std::vector<char> content(std::istreambuf_iterator<char>(stream), {});
+        const std::size_t before = num_accepted;
+        std::fprintf(stderr, "%s", path.c_str()); // the last one is the culprit
+        EXPECT_EQ(GetParam().run(reinterpret_cast<const std::uint8_t*>(content.data()), content.size()), 0);
+        std::fprintf(stderr, ": %s\n", num_accepted > before ? "read" : "refused");
+    }
+    // Otherwise the seeds are of an old format, and fuzzing would begin at nothing.
+    EXPECT_GT(num_accepted, 0u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets()),
+                         [](const auto& each) { return each.param.name; });
+
+} // namespace
+} // namespace relumine::fuzz

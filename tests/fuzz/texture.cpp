@@ -1,0 +1,21 @@
+#include <cmath>
+
+#include "mesh/texture.h"
+#include "tests/fuzz/fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    using namespace relumine;
+    const auto texture =
+        fuzz::accepted([&] { return mesh::decode_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
+    if (!texture)
+        return 0;
+    fuzz::require(texture->texels.size() == std::size_t{texture->width} * texture->height,
+                  "a texture has all its texels");
+    for (const float u : {0.0f, 1.0f, -0.3f, 1e30f, NAN})
+        for (const mesh::Wrap wrap : {mesh::Wrap::Repeat, mesh::Wrap::Clamp, mesh::Wrap::Mirror}) {
+            const glm::vec3 color =
+                mesh::sample(*texture, {.is_srgb = true, .wrap = {wrap, wrap}}, {u, 0.7f});
+            fuzz::require(color.r >= 0.0f && color.r <= 1.0f, "a texture's colours are 0 to 1");
+        }
+    return 0;
+}

@@ -1,0 +1,114 @@
+// The same input gives the same file: with any number of threads, in a second run, and, for a scene without rays in doubt, on other
+// processors. docs/robustness.md says what is promised.
+#include <filesystem>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+#include "files/output_file.h"
+#include "prt/beam_scene.h"
+#include "prt/glossy_precompute.h"
+#include "prt/precompute.h"
+#include "prt/ray_scene.h"
+#include "prt/scene_file.h"
+#include "prt/section_file.h"
+#include "tests/prt/every_target.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+enum class Shine { Diffuse, Glossy };
+
+/// Hard and soft shadows; with highlights of GGX of several widths. Made without sines and powers, which C libraries round in
+/// their own way.
+Scene precomputed(Shine shine) {
+    Scene scene;
+    scene.mesh = scenes::sphere_and_box_on_floor();
+    scene.receivers = vertex_receivers(scene.mesh);
+    const RayScene rays(scene.mesh);
+    const BeamScene beams(scene.mesh, rays);
+    const PrecomputeOptions options{
+        .tolerance = 0.02f, .face_resolution = 64, .bias = automatic_bias(scene.mesh)};
+    if (shine == Shine::Glossy) {
+        look_from(scene.receivers, {1.5f, 2.5f, 3.0f});
+        for (std::size_t i = 0; i < scene.receivers.size(); ++i)
+            scene.receivers.surfaces.push_back({.specular = glm::vec3(0.04f, 0.3f, 0.9f),
+                                                .highlight = i % 3 == 2 ? Highlight::None : Highlight::Ggx,
+                                                .shape = i % 3 == 0 ? 0.25f : 0.5f});
+    }
+    scene.transfer = precompute(scene.receivers, beams, options);
+    if (shine == Shine::Glossy) {
+        scene.transfer.glossy = precompute_glossy(
+            scene.receivers, rays, scene.transfer,
+            {.tolerance = 0.1f, .face_resolution = options.face_resolution, .bias = options.bias});
+        set_surfaces(scene.transfer, scene.receivers);
+    }
+    scene.settings = {.tolerance = options.tolerance,
+                      .min_level = options.min_level,
+                      .face_resolution = options.face_resolution,
+                      .bias = options.bias};
+    return scene;
+}
+
+class Determinism : public testing::TestWithParam<Shine> {
+protected:
+    ~Determinism() override { std::filesystem::remove(path_); }
+
+    [[nodiscard]] std::vector<std::byte> file() const {
+        save_scene(path_, precomputed(GetParam()));
+        return files::read(path_);
+    }
+    /// Of what is in the file: how zstd packs it may change with its version.
+    [[nodiscard]] std::string hash() const {
+        save_scene(path_, precomputed(GetParam()));
+        std::string all;
+        for (const auto& [name, content] : read_sections(path_)) {
+            all += fmt::format("{} {}\n", name, content.size());
+            all.append(reinterpret_cast<const char*>(content.data()), content.size());
+        }
+        return fmt::format("{:016x}", XXH64(all.data(), all.size(), 0));
+    }
+    /// Sets from AVX2 on fuse products and sums, which shows in the last bits of highlights.
+    [[nodiscard]] static std::string expected_hash(std::int64_t target) {
+        const bool is_fused = target <= HWY_AVX2; // better sets have lower numbers
+        return GetParam() == Shine::Diffuse ? "ccb435ef51e1c198"
+               : is_fused                   ? "2dc43f9f13133b3e"
+                                            : "47fab8f885939335";
+    }
+
+private:
+    std::filesystem::path path_ =
+        std::filesystem::path(testing::TempDir()) / fmt::format("relumine_determinism_{}.prt", ::getpid());
+};
+
+TEST_P(Determinism, TheSameBytesForAnyNumberOfThreadsAndASecondRun) {
+    const std::vector<std::byte> first = file();
+    for (const int num_threads : {1, 2, 8, 8}) {
+        // More than the processor has, if need be.
+        const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(num_threads));
+        tbb::task_arena arena(num_threads);
+        EXPECT_TRUE(arena.execute([&] { return file(); }) == first) << num_threads;
+    }
+}
+
+TEST_P(Determinism, TheSameContentOnEveryInstructionSet) {
+#if !HWY_ARCH_X86
+    GTEST_SKIP() << "the hashes are of x86 processors";
+#endif
+    scenes::on_every_target([&](std::int64_t target) { EXPECT_EQ(hash(), expected_hash(target)); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Shine, Determinism, testing::Values(Shine::Diffuse, Shine::Glossy),
+                         [](const auto& each) {
+                             return each.param == Shine::Diffuse ? "Diffuse" : "Glossy";
+                         });
+
+} // namespace
+} // namespace relumine::prt
