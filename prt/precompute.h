@@ -8,6 +8,7 @@
 #include <stop_token>
 
 #include "prt/blockers.h"
+#include "prt/checkpoint.h"
 #include "prt/receivers.h"
 #include "prt/transfer.h"
 
@@ -26,6 +27,13 @@ struct PrecomputeOptions {
         1024; ///< R, 1..16384: cells stop at single texels of a 6 x R x R environment
     float bias =
         0.0f; ///< lift of the rays' origins along the normal, in the mesh's unit; see automatic_bias()
+    /// Planes of visibility that may live at once, one bit per receiver and direction. With less, directions on borders between
+    /// batches of cells are traced more than once; the result is the same. About 250 planes live in any case.
+    std::uint64_t plane_bytes = std::uint64_t{512} << 20;
+    Checkpoint* checkpoint = nullptr; ///< where the work is left now and then, and taken up
+    bool more_follows = false;        ///< other work follows: leave a last checkpoint of this
+    std::optional<std::uint64_t> samples_per_step =
+        {};                    ///< for tests: work between two looks at the checkpoint
     std::stop_token stop = {}; ///< polled a few times a second or more often
     std::function<void(double)> on_progress =
         {}; ///< estimated fraction in [0, 1], never falling; one call at a time
@@ -33,7 +41,7 @@ struct PrecomputeOptions {
 
 struct PrecomputeStatistics {
     std::uint64_t num_clusters = 0;
-    std::uint64_t num_directions = 0; ///< distinct sample directions on the sphere
+    std::uint64_t num_directions = 0; ///< sample directions traced; each once unless plane_bytes were few
     std::uint64_t num_samples = 0;    ///< (receiver, direction) pairs decided: receivers times directions
     std::uint64_t num_rays = 0;       ///< those above the receiver's horizon, which were traced
     std::uint32_t deepest_level = 0;
@@ -46,8 +54,8 @@ struct Cancelled : std::exception {
 };
 
 /// Clusters all directions of the sphere by their light transfer to the receivers [JN, Section 4]. Each sample direction is
-/// traced once for each receiver. Parallel over receivers (TBB); the result is the same bit by bit for any number of
-/// threads. Memory: the result twice, and one bit per receiver and direction of the level in work.
+/// traced once for each receiver, where plane_bytes allow. Parallel over receivers (TBB); the result is the same bit by bit for any
+/// number of threads, and whether or not it was taken up from a checkpoint. Memory: the result twice, and plane_bytes.
 /// Throws std::invalid_argument for options out of range or no receivers, Cancelled when stopped.
 [[nodiscard]] Transfer precompute(const Receivers& receivers, const Blockers& blockers,
                                   const PrecomputeOptions& options = {},

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <bit>
 #include <limits>
+#include <unordered_set>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -48,7 +49,8 @@ private:
 
 struct VisibilityPlanes::Patch {
     DirectionPatch directions;
-    std::array<std::uint64_t*, DirectionPatch::Size> planes{};
+    std::array<LatticePoint, DirectionPatch::Size> points{};
+    std::array<std::uint64_t*, DirectionPatch::Size> planes{}; ///< from the start of the patch's step on
 };
 
 VisibilityPlanes::VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
@@ -56,14 +58,13 @@ VisibilityPlanes::VisibilityPlanes(std::span<const glm::vec3> origins, const Nor
     : origins_(origins), normals_(normals), blockers_(blockers) {}
 
 std::vector<VisibilityPlanes::Patch> VisibilityPlanes::new_patches(std::span<const LatticePoint> points,
-                                                                   double patch_width) {
+                                                                   double patch_width) const {
     std::vector<Patch> patches;
+    std::unordered_set<LatticePoint> seen;
     Extent extent;
     for (const LatticePoint point : points) {
-        const auto [entry, is_new] = planes_.try_emplace(point);
-        if (!is_new)
+        if (knows(point) || !seen.insert(point).second)
             continue;
-        entry->second.resize(normals_.num_words());
         Extent with_point = extent;
         with_point.include(place_on_cube(point));
         if (patches.empty() || patches.back().directions.full() || with_point.side() > patch_width) {
@@ -73,20 +74,40 @@ std::vector<VisibilityPlanes::Patch> VisibilityPlanes::new_patches(std::span<con
         }
         extent = with_point;
         Patch& patch = patches.back();
-        patch.planes[patch.directions.num_directions] = entry->second.data();
+        patch.points[patch.directions.num_directions] = point;
         patch.directions.add(direction(point));
-        ++num_directions_;
     }
     return patches;
 }
 
 void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_width,
-                             const std::function<void(double)>& on_progress) {
+                             const std::function<void(double)>& on_progress, const TraceSteps& steps) {
+    std::vector<Patch> patches = new_patches(points, patch_width);
+    const std::uint64_t samples_per_patch = std::max<std::size_t>(origins_.size(), 1) * DirectionPatch::Size;
+    const auto patches_per_step = static_cast<std::size_t>(
+        std::clamp<std::uint64_t>(steps.samples_per_step / samples_per_patch, 1, patches.size() + 1));
+    const std::size_t num_rows = (normals_.num_words() + WordsPerTask - 1) / WordsPerTask;
+    const auto num_tasks = [&](std::size_t num_patches) {
+        return num_rows * ((num_patches + PatchesPerTask - 1) / PatchesPerTask);
+    };
+    std::size_t num_all = 0;
+    for (std::size_t begin = 0; begin < patches.size(); begin += patches_per_step)
+        num_all += num_tasks(std::min(patches_per_step, patches.size() - begin));
+    std::atomic<std::size_t> num_done = 0;
+    for (std::size_t begin = 0; begin < patches.size(); begin += patches_per_step) {
+        if (begin != 0 && steps.between)
+            steps.between();
+        const std::size_t size = std::min(patches_per_step, patches.size() - begin);
+        trace_step(std::span(patches).subspan(begin, size),
+                   [&] { on_progress(static_cast<double>(++num_done) / static_cast<double>(num_all)); });
+    }
+}
+
+void VisibilityPlanes::trace_step(std::span<Patch> patches, const std::function<void()>& on_task) {
     const std::size_t num_words = normals_.num_words();
-    const std::vector<Patch> patches = new_patches(points, patch_width);
     const std::size_t num_rows = (num_words + WordsPerTask - 1) / WordsPerTask;
     const std::size_t num_columns = (patches.size() + PatchesPerTask - 1) / PatchesPerTask;
-    std::atomic<std::size_t> num_done = 0;
+    std::atomic<std::uint64_t> num_rays_of_step = 0;
     const auto trace_task = [&](std::size_t row, std::size_t column) {
         const std::size_t begin = row * WordsPerTask;
         const std::size_t end = std::min(begin + WordsPerTask, num_words);
@@ -95,16 +116,42 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_
         for (std::size_t word = begin; word < end; word += WordsPerBlock)
             for (std::size_t patch = column * PatchesPerTask; patch < last_patch; ++patch)
                 num_rays += trace_block(word, patches[patch]);
-        num_rays_ += num_rays;
-        on_progress(static_cast<double>(++num_done) / static_cast<double>(num_rows * num_columns));
+        num_rays_of_step += num_rays;
+        on_task();
     };
-    tbb::parallel_for(tbb::blocked_range2d<std::size_t>(0, num_rows, 1, 0, num_columns, 1),
-                      [&](const tbb::blocked_range2d<std::size_t>& tasks) {
-                          for (std::size_t row = tasks.rows().begin(); row < tasks.rows().end(); ++row)
-                              for (std::size_t column = tasks.cols().begin(); column < tasks.cols().end();
-                                   ++column)
-                                  trace_task(row, column);
-                      });
+    const auto for_each_direction = [&](const auto& action) {
+        for (Patch& patch : patches)
+            for (std::size_t j = 0; j < patch.directions.num_directions; ++j)
+                action(patch.points[j], patch.planes[j]);
+    };
+    try {
+        for_each_direction([&](LatticePoint point, std::uint64_t*& plane) {
+            std::vector<std::uint64_t>& words = planes_[point];
+            words.resize(num_words);
+            plane = words.data();
+        });
+        tbb::parallel_for(tbb::blocked_range2d<std::size_t>(0, num_rows, 1, 0, num_columns, 1),
+                          [&](const tbb::blocked_range2d<std::size_t>& tasks) {
+                              for (std::size_t row = tasks.rows().begin(); row < tasks.rows().end(); ++row)
+                                  for (std::size_t column = tasks.cols().begin(); column < tasks.cols().end();
+                                       ++column)
+                                      trace_task(row, column);
+                          });
+    } catch (...) {
+        for_each_direction([&](LatticePoint point, std::uint64_t*) { planes_.erase(point); });
+        throw;
+    }
+    for_each_direction([&](LatticePoint, std::uint64_t*) { ++num_directions_; });
+    num_rays_ += num_rays_of_step;
+}
+
+std::vector<LatticePoint> VisibilityPlanes::points() const {
+    std::vector<LatticePoint> points;
+    points.reserve(planes_.size());
+    for (const auto& [point, plane] : planes_)
+        points.push_back(point);
+    std::sort(points.begin(), points.end());
+    return points;
 }
 
 std::uint64_t VisibilityPlanes::trace_block(std::size_t first_word, const Patch& patch) const {
