@@ -1,7 +1,6 @@
 #include "app/frame_record.h"
 
 #include <cstdio>
-#include <fstream>
 #include <span>
 #include <sstream>
 #include <stdexcept>
@@ -73,11 +72,7 @@ bool FrameRecord::is_done(std::int64_t number, const std::filesystem::path& inpu
 void FrameRecord::add(std::int64_t number, const std::filesystem::path& input,
                       const std::filesystem::path& output) {
     const std::string line = line_of(input, output);
-    std::ofstream file(path_, std::ios::app);
-    file << number << ' ' << line << '\n';
-    file.flush();
-    if (!file)
-        throw std::runtime_error(fmt::format("{}: cannot write", path_.string()));
+    files::append_text(path_, fmt::format("{} {}\n", number, line));
     done_[number] = line;
 }
 

@@ -1,12 +1,15 @@
 #include "files/output_file.h"
 
+#include <algorithm>
 #include <cerrno>
-#include <cstring>
+#include <cstdlib>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -14,34 +17,39 @@ namespace relumine::files {
 
 namespace {
 
-/// A POSIX file descriptor that closes itself.
-struct Descriptor {
-    int fd;
-    explicit Descriptor(int descriptor) : fd(descriptor) {}
-    ~Descriptor() {
-        if (fd >= 0)
-            ::close(fd);
-    }
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
-};
-
-[[noreturn]] void fail(const std::filesystem::path& path, const char* action, int error) {
-    throw std::runtime_error(fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error)));
-}
-
 /// Opens for reading and states the size; refuses everything that is not a regular file.
-std::pair<int, std::size_t> open_for_reading(const std::filesystem::path& path) {
+std::pair<Descriptor, std::size_t> open_for_reading(const std::filesystem::path& path) {
     // Without O_NONBLOCK, opening a pipe would wait for a writer.
-    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-    if (fd < 0)
+    Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    if (!file.is_open())
         fail(path, "read", errno);
     struct stat status {};
-    if (::fstat(fd, &status) != 0 || !S_ISREG(status.st_mode)) {
-        ::close(fd);
+    if (::fstat(file.get(), &status) != 0 || !S_ISREG(status.st_mode))
         throw std::runtime_error(fmt::format("{}: cannot read: not a regular file", path.string()));
+    return {std::move(file), static_cast<std::size_t>(status.st_size)};
+}
+
+/// Where a write to `path` ends up: a symbolic link's target, which need not exist.
+std::filesystem::path followed(const std::filesystem::path& path) {
+    constexpr int MaxLinks = 40; // as Linux
+    std::filesystem::path place = path;
+    for (int i = 0; i < MaxLinks; ++i) {
+        std::error_code error;
+        const std::filesystem::path next = std::filesystem::read_symlink(place, error);
+        if (error)
+            return place;
+        place = next.is_absolute() ? next : place.parent_path() / next;
     }
-    return {fd, static_cast<std::size_t>(status.st_size)};
+    fail(path, "write", ELOOP);
+}
+
+/// Whether an open and locked file is this process's alone to write: still there under its name, and no one else's.
+bool is_own(int file, const std::filesystem::path& name) {
+    struct stat opened {};
+    struct stat named {};
+    return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 && S_ISREG(opened.st_mode) &&
+           opened.st_nlink == 1 && opened.st_uid == ::geteuid() && opened.st_ino == named.st_ino &&
+           opened.st_dev == named.st_dev;
 }
 
 } // namespace
@@ -54,46 +62,77 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
             fail(target_, "write", EISDIR);
         throw std::runtime_error(fmt::format("{}: cannot write: not a regular file", target_.string()));
     }
-    // mkstemp chooses a name that no other process has; the extension is kept for writers that look at it.
-    const std::string extension = target_.extension().string();
+    place_ = followed(target_);
+    open_temporary();
+}
+
+// A name has a number, and is taken by the process that has locked it. What a killed process left is not locked: it is taken over, so that
+// nothing piles up. The extension is kept for writers that look at it.
+void OutputFile::open_temporary() {
+    constexpr int MaxWriters = 1000; // of one target at the same time
+    const std::string extension = place_.extension().string();
+    for (int i = 0; i < MaxWriters; ++i) {
+        const std::filesystem::path name =
+            place_.parent_path() / fmt::format(".{}.writing-{}{}", place_.stem().string(), i, extension);
+        Descriptor file(::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+        if (!file.is_open()) {
+            if (errno == ELOOP || errno == EISDIR || (errno == EACCES && ::access(name.c_str(), F_OK) == 0))
+                continue; // someone else's
+            fail(target_, "write", errno);
+        }
+        if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
+            if (errno == EWOULDBLOCK)
+                continue;
+            break; // a file system without locks
+        }
+        if (!is_own(file.get(), name)) {
+            // It was renamed or removed before it was locked: the name is free again.
+            if (::access(name.c_str(), F_OK) != 0)
+                --i;
+            continue;
+        }
+        if (::ftruncate(file.get(), 0) != 0)
+            fail(target_, "write", errno);
+        temporary_ = name;
+        file_ = std::move(file);
+        return;
+    }
+    // Names that no other process has.
     std::string name =
-        (target_.parent_path() / fmt::format(".{}.XXXXXX{}", target_.stem().string(), extension)).string();
-    const Descriptor file(::mkstemps(name.data(), static_cast<int>(extension.size())));
-    if (file.fd < 0)
+        (place_.parent_path() / fmt::format(".{}.XXXXXX{}", place_.stem().string(), extension)).string();
+    file_ = Descriptor(::mkstemps(name.data(), static_cast<int>(extension.size())));
+    if (!file_.is_open())
         fail(target_, "write", errno);
     temporary_ = name;
-    // mkstemp makes private files; an output has the permissions any other program would give it.
-    const mode_t mask = ::umask(0);
-    ::umask(mask);
-    ::fchmod(file.fd, 0666 & ~mask);
 }
 
 OutputFile::~OutputFile() {
     if (!committed_)
-        ::unlink(temporary_.c_str());
+        ::unlink(temporary_.c_str()); // before the lock goes with the descriptor
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
-    const Descriptor file(::open(temporary_.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC));
-    if (file.fd < 0)
+    if (::ftruncate(file_.get(), 0) != 0)
         fail(target_, "write", errno);
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(file.fd, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR)
-            continue;
-        if (written <= 0)
-            fail(target_, "write", written < 0 ? errno : ENOSPC);
-        bytes = bytes.subspan(static_cast<std::size_t>(written));
-    }
+    size_ = 0;
+    expect(bytes.size());
+    append(bytes);
+}
+
+void OutputFile::append(std::span<const std::byte> bytes) {
+    write_at(target_, file_.get(), size_, bytes,
+             std::max<std::uint64_t>(expected_size_, size_ + bytes.size()), 0);
+    size_ += bytes.size();
 }
 
 void OutputFile::commit() {
-    const Descriptor file(::open(temporary_.c_str(), O_RDONLY | O_CLOEXEC));
-    if (file.fd < 0 || ::fsync(file.fd) != 0)
-        fail(target_, "write", errno);
-    if (::rename(temporary_.c_str(), target_.c_str()) != 0)
+    // Some file systems say only now that there is no room.
+    if (::fsync(file_.get()) != 0)
+        fail_to_write(target_, errno, std::max(expected_size_, size_), file_.get());
+    if (::rename(temporary_.c_str(), place_.c_str()) != 0)
         fail(target_, "write", errno);
     committed_ = true;
+    sync_folder(folder_of(place_));
 }
 
 void save_text(const std::filesystem::path& path, std::string_view text) {
@@ -102,13 +141,21 @@ void save_text(const std::filesystem::path& path, std::string_view text) {
     file.commit();
 }
 
+void append_text(const std::filesystem::path& path, std::string_view text) {
+    const Descriptor file(::open(path.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC, 0666));
+    struct stat status {};
+    if (!file.is_open() || ::fstat(file.get(), &status) != 0)
+        fail(path, "write", errno);
+    const auto size = static_cast<std::uint64_t>(status.st_size);
+    write_at(path, file.get(), size, std::as_bytes(std::span(text)), text.size(), size);
+}
+
 std::vector<std::byte> read(const std::filesystem::path& path) {
-    const auto [fd, num_bytes] = open_for_reading(path);
-    const Descriptor file(fd);
+    const auto [file, num_bytes] = open_for_reading(path);
     std::vector<std::byte> bytes(num_bytes);
     std::size_t done = 0;
     while (done < num_bytes) {
-        const ssize_t got = ::read(file.fd, bytes.data() + done, num_bytes - done);
+        const ssize_t got = ::read(file.get(), bytes.data() + done, num_bytes - done);
         if (got < 0 && errno == EINTR)
             continue;
         if (got < 0)
@@ -122,8 +169,7 @@ std::vector<std::byte> read(const std::filesystem::path& path) {
 }
 
 std::size_t size(const std::filesystem::path& path) {
-    const auto [fd, num_bytes] = open_for_reading(path);
-    const Descriptor file(fd);
+    const auto [file, num_bytes] = open_for_reading(path);
     return num_bytes;
 }
 

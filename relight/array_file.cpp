@@ -1,7 +1,6 @@
 #include "relight/array_file.h"
 
 #include <bit>
-#include <cerrno>
 #include <cstring>
 #include <limits>
 #include <regex>
@@ -48,31 +47,22 @@ void save_npy(const std::filesystem::path& path, std::span<const glm::vec3> valu
 }
 
 NpyFrames::NpyFrames(const std::filesystem::path& path, std::size_t num_frames, std::size_t num_values)
-    : file_(path), stream_(file_.temporary(), std::ios::binary | std::ios::trunc), frames_left_(num_frames),
-      num_values_(num_values) {
+    : file_(path), frames_left_(num_frames), num_values_(num_values) {
     const std::string header = npy_header(fmt::format("({}, {}, 3)", num_frames, num_values));
-    stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
+    file_.expect(header.size() + num_frames * num_values * sizeof(glm::vec3));
+    file_.append(std::as_bytes(std::span(header)));
 }
 
 void NpyFrames::append(std::span<const glm::vec3> values) {
     if (values.size() != num_values_ || frames_left_ == 0)
         throw std::invalid_argument("expected as many values and frames as were stated");
     --frames_left_;
-    stream_.write(reinterpret_cast<const char*>(values.data()),
-                  static_cast<std::streamsize>(values.size_bytes()));
-    stream_.flush();
-    if (!stream_)
-        throw std::runtime_error(
-            fmt::format("{}: cannot write: {}", file_.target().string(), std::strerror(errno)));
+    file_.append(std::as_bytes(values));
 }
 
 void NpyFrames::commit() {
     if (frames_left_ != 0)
         throw std::invalid_argument("expected all frames before the file is complete");
-    stream_.close();
-    if (!stream_)
-        throw std::runtime_error(
-            fmt::format("{}: cannot write: {}", file_.target().string(), std::strerror(errno)));
     file_.commit();
 }
 

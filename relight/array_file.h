@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
 #include <span>
 #include <vector>
 
@@ -28,7 +27,6 @@ public:
 
 private:
     files::OutputFile file_;
-    std::ofstream stream_;
     std::size_t frames_left_;
     std::size_t num_values_;
 };

@@ -1,13 +1,20 @@
 #include "files/output_file.h"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace relumine::files {
 namespace {
@@ -75,24 +82,181 @@ TEST_F(OutputFileTest, NamesTheTargetWhenItCannotBeWritten) {
     EXPECT_THROW(OutputFile{folder_}, std::runtime_error);
 }
 
-TEST_F(OutputFileTest, FullDiskIsReportedAndTheOldFileStays) {
-    if (!fs::exists("/dev/full"))
-        GTEST_SKIP() << "this system has no /dev/full";
+/// Runs in a process of its own that may write files of `max_bytes`, as a user without rights can have it; returns its message.
+std::string written_under_a_limit(const fs::path& target, std::size_t num_bytes, rlim_t max_bytes) {
+    std::array<int, 2> pipe{};
+    EXPECT_EQ(::pipe(pipe.data()), 0);
+    const pid_t child = ::fork();
+    if (child == 0) {
+        ::signal(SIGXFSZ, SIG_IGN);
+        const struct rlimit limit = {max_bytes, max_bytes};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        std::string message = "nothing thrown";
+        try {
+            OutputFile file(target);
+            file.write(std::vector<std::byte>(num_bytes));
+            file.commit();
+        } catch (const std::runtime_error& error) {
+            message = error.what();
+        }
+        static_cast<void>(::write(pipe[1], message.data(), message.size()) == 0);
+        ::_exit(0);
+    }
+    ::close(pipe[1]);
+    std::string message(1000, ' ');
+    message.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::read(pipe[0], message.data(), 1000))));
+    ::close(pipe[0]);
+    ::waitpid(child, nullptr, 0);
+    return message;
+}
+
+TEST_F(OutputFileTest, ALimitIsReportedWithTheBytesNeededAndTheOldFileStays) {
     const fs::path target = folder_ / "out.txt";
     std::ofstream(target) << "old";
-    {
+    EXPECT_EQ(written_under_a_limit(target, 10000, 4096),
+              target.string() + ": cannot write: File too large: 10000 bytes needed, 4096 allowed");
+    EXPECT_EQ(read(target), bytes_of("old"));
+    EXPECT_EQ(num_files(), 1u);
+    EXPECT_EQ(written_under_a_limit(target, 4096, 4096), "nothing thrown");
+    EXPECT_EQ(size(target), 4096u);
+}
+
+/// A file system of 64 KiB, where the system lets us have one.
+class FullDiskTest : public OutputFileTest {
+protected:
+    void SetUp() override {
+        OutputFileTest::SetUp();
+        mounted_ = ::mount("tmpfs", folder_.c_str(), "tmpfs", 0, "size=64k") == 0;
+        if (!mounted_)
+            GTEST_SKIP() << "a small file system cannot be mounted here: " << std::strerror(errno);
+    }
+    void TearDown() override {
+        if (mounted_)
+            ::umount(folder_.c_str());
+        OutputFileTest::TearDown();
+    }
+
+private:
+    bool mounted_ = false;
+};
+
+TEST_F(FullDiskTest, TheBytesNeededAndThoseFreeAreNamedAndTheOldFileStays) {
+    const fs::path target = folder_ / "out.txt";
+    std::ofstream(target) << "old"; // takes a page of 4 KiB
+    try {
         OutputFile file(target);
-        fs::remove(file.temporary());
-        fs::create_symlink("/dev/full", file.temporary());
-        try {
-            file.write(bytes_of("new"));
-            FAIL() << "a full disk went unnoticed";
-        } catch (const std::runtime_error& error) {
-            EXPECT_NE(std::string(error.what()).find("out.txt: cannot write: No space left"),
-                      std::string::npos);
-        }
+        file.write(std::vector<std::byte>(100000));
+        FAIL() << "a full disk went unnoticed";
+    } catch (const std::runtime_error& error) {
+        EXPECT_EQ(error.what(),
+                  target.string() +
+                      ": cannot write: No space left on device: 100000 bytes needed, 61440 free");
     }
     EXPECT_EQ(read(target), bytes_of("old"));
+    EXPECT_EQ(num_files(), 1u);
+}
+
+TEST_F(OutputFileTest, AppendsPieceByPiece) {
+    const fs::path target = folder_ / "out.txt";
+    OutputFile file(target);
+    file.append(bytes_of("one "));
+    file.append(bytes_of("two"));
+    file.commit();
+    EXPECT_EQ(read(target), bytes_of("one two"));
+    append_text(target, " three");
+    EXPECT_EQ(read(target), bytes_of("one two three"));
+}
+
+TEST_F(OutputFileTest, FollowsLinks) {
+    fs::create_directory(folder_ / "far");
+    std::ofstream(folder_ / "far" / "real.txt") << "old";
+    fs::create_symlink("far/real.txt", folder_ / "near.txt");
+    fs::create_symlink("near.txt", folder_ / "link.txt");
+    save_text(folder_ / "link.txt", "new");
+    EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+    EXPECT_TRUE(fs::is_symlink(folder_ / "near.txt"));
+    EXPECT_FALSE(fs::is_symlink(folder_ / "far" / "real.txt"));
+    EXPECT_EQ(read(folder_ / "far" / "real.txt"), bytes_of("new"));
+    // To nothing yet.
+    fs::create_symlink(folder_ / "far" / "other.txt", folder_ / "dangling.txt");
+    save_text(folder_ / "dangling.txt", "made");
+    EXPECT_TRUE(fs::is_symlink(folder_ / "dangling.txt"));
+    EXPECT_EQ(read(folder_ / "far" / "other.txt"), bytes_of("made"));
+    // In a circle.
+    fs::create_symlink("b", folder_ / "a");
+    fs::create_symlink("a", folder_ / "b");
+    EXPECT_THROW(save_text(folder_ / "a", "x"), std::runtime_error);
+}
+
+TEST_F(OutputFileTest, TakesOverWhatAKilledProcessLeft) {
+    const fs::path target = folder_ / "out.txt";
+    for (int i = 0; i < 5; ++i) {
+        const pid_t child = ::fork();
+        if (child == 0) {
+            OutputFile file(target);
+            file.write(bytes_of("half a fi"));
+            ::kill(::getpid(), SIGKILL);
+        }
+        ::waitpid(child, nullptr, 0);
+        EXPECT_EQ(num_files(), 1u);
+        EXPECT_FALSE(fs::exists(target));
+    }
+    save_text(target, "whole");
+    EXPECT_EQ(read(target), bytes_of("whole"));
+    EXPECT_EQ(num_files(), 1u);
+}
+
+TEST_F(OutputFileTest, WritersOfOneTargetDoNotMeet) {
+    const fs::path target = folder_ / "out.txt";
+    OutputFile first(target);
+    OutputFile second(target);
+    EXPECT_NE(first.temporary(), second.temporary());
+    first.write(bytes_of("first"));
+    second.write(bytes_of("second"));
+    second.commit();
+    first.commit();
+    EXPECT_EQ(read(target), bytes_of("first"));
+    EXPECT_EQ(num_files(), 1u);
+}
+
+TEST_F(OutputFileTest, OneOfManyProcessesWinsWhole) {
+    const fs::path target = folder_ / "out.txt";
+    constexpr std::size_t NumProcesses = 4;
+    std::vector<pid_t> children;
+    for (std::size_t i = 0; i < NumProcesses; ++i) {
+        children.push_back(::fork());
+        if (children.back() == 0) {
+            int failures = 0;
+            for (int round = 0; round < 50; ++round) {
+                try {
+                    OutputFile file(target);
+                    file.write(std::vector<std::byte>(10000 + i, static_cast<std::byte>(i)));
+                    file.commit();
+                } catch (const std::exception&) {
+                    ++failures;
+                }
+            }
+            ::_exit(failures == 0 ? 0 : 1);
+        }
+    }
+    const auto expect_whole = [&] {
+        const std::vector<std::byte> bytes = read(target);
+        ASSERT_GE(bytes.size(), 10000u);
+        const std::size_t writer = bytes.size() - 10000;
+        ASSERT_LT(writer, NumProcesses);
+        ASSERT_TRUE(std::all_of(bytes.begin(), bytes.end(),
+                                [&](std::byte b) { return b == static_cast<std::byte>(writer); }));
+    };
+    while (!fs::exists(target)) {
+    }
+    for (int i = 0; i < 50; ++i)
+        expect_whole();
+    for (const pid_t child : children) {
+        int status = -1;
+        ::waitpid(child, &status, 0);
+        EXPECT_EQ(status, 0);
+    }
+    expect_whole();
     EXPECT_EQ(num_files(), 1u);
 }
 
