@@ -14,6 +14,7 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "mesh/load.h"
+#include "prt/scene_check.h"
 #include "prt/scene_file.h"
 
 namespace relumine::app {
@@ -24,6 +25,7 @@ struct Options {
     std::string path;
     std::string layout;
     std::string picture;
+    bool check = false;
 };
 
 nlohmann::json array(const glm::dvec3& v) {
@@ -50,7 +52,9 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
 }
 
 void describe_scene(const Options& options, const Session& session) {
-    const prt::Scene scene = prt::load_scene(options.path);
+    const prt::Scene scene = prt::load_scene(options.path); // which checks all that it needs
+    if (options.check)
+        prt::check_scene(scene, options.path);
     const prt::SceneSettings& settings = scene.settings;
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const auto file_bytes = std::filesystem::file_size(options.path);
@@ -68,7 +72,8 @@ void describe_scene(const Options& options, const Session& session) {
         settings.floor_vertices == 0 ? "none" : fmt::format("{0} x {0}", settings.floor_vertices)));
     session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs", counts.num_mixed(),
                             counts.num_blocks() * counts.num_leaves));
-    session.say(fmt::format("file                {:.1f} MB", static_cast<double>(file_bytes) * 1e-6));
+    session.say(fmt::format("file                {:.1f} MB{}", static_cast<double>(file_bytes) * 1e-6,
+                            options.check ? ", checked: whole and sound" : ""));
     nlohmann::json result = {{"kind", "scene"},
                              {"vertices", scene.mesh.num_vertices()},
                              {"triangles", scene.mesh.num_triangles()},
@@ -81,6 +86,8 @@ void describe_scene(const Options& options, const Session& session) {
                              {"bias", settings.bias},
                              {"floor", settings.floor_vertices},
                              {"file_bytes", file_bytes}};
+    if (options.check)
+        result["checked"] = true;
     if (settings.epsilon)
         result["epsilon"] = *settings.epsilon;
     else
@@ -173,6 +180,9 @@ void run(const Options& options, const Session& session) {
         throw std::runtime_error(fmt::format(
             "{}: expected an environment (.exr or .hdr) to draw with --picture, got something else",
             options.path));
+    if (options.check && extension != ".prt")
+        throw std::runtime_error(
+            fmt::format("{}: expected a scene (.prt) to --check, got something else", options.path));
     if (extension == ".prt")
         describe_scene(options, session);
     else if (is_environment)
@@ -192,6 +202,10 @@ void add_info(CLI::App& program, Session& session) {
         ->check(CLI::IsMember(layout_names()));
     command.add_option("--picture", options->picture,
                        "draw an environment: lat-long .png with the axes and the sun marked");
+    command.add_flag(
+        "--check", options->check,
+        "verify a scene: all checksums, sections and what must hold between them; exit code 1 and "
+        "one line when something is wrong");
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

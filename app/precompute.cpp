@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/checkpoint_options.h"
 #include "app/commands.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
@@ -15,6 +16,8 @@
 #include "mesh/floor.h"
 #include "mesh/load.h"
 #include "prt/beam_scene.h"
+#include "prt/fingerprint.h"
+#include "prt/glossy_precompute.h"
 #include "prt/ray_scene.h"
 #include "prt/scene_file.h"
 
@@ -32,8 +35,50 @@ struct Options {
     std::optional<float> bias;
     ReceiverOptions receivers;
     SurfaceOptions surfaces;
+    CheckpointOptions checkpoint;
     prt::PrecomputeOptions precompute;
 };
+
+/// Both parts of the transfer. `rays` and all it is made of go before the scene is written, which needs memory of its own.
+void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& precompute,
+             std::unique_ptr<prt::CheckpointFile>& checkpoint, prt::PrecomputeStatistics& statistics,
+             Session& session, nlohmann::json& report) {
+    const prt::RayScene rays(scene.mesh);
+    options.receivers.apply(scene, rays, options.mesh, session, report);
+    options.surfaces.apply(scene, session);
+    session.poll();
+    const bool is_glossy = prt::has_highlights(scene.receivers);
+    checkpoint = options.checkpoint.open(
+        options.output,
+        prt::fingerprint(scene.mesh, scene.receivers, precompute,
+                         is_glossy ? std::optional(options.surfaces.glossy_tolerance()) : std::nullopt),
+        session);
+    precompute.checkpoint = checkpoint.get();
+    precompute.more_follows = is_glossy;
+    {
+        std::optional<prt::BeamScene> beams;
+        if (options.engine == "beam")
+            beams.emplace(scene.mesh, rays);
+        const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
+        scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
+        session.end_progress();
+    }
+    options.surfaces.precompute_highlights(scene, rays, precompute, session, report);
+}
+
+std::uint64_t save(const Options& options, prt::Scene& scene, const prt::PrecomputeOptions& precompute) {
+    scene.settings = {.tolerance = precompute.tolerance,
+                      .epsilon = precompute.epsilon,
+                      .min_level = precompute.min_level,
+                      .face_resolution = precompute.face_resolution,
+                      .bias = precompute.bias,
+                      .floor_vertices = options.floor_vertices.value_or(0),
+                      .source = std::filesystem::path(options.mesh).filename().string(),
+                      .source_hash = prt::file_hash(options.mesh),
+                      .glossy_tolerance = scene.settings.glossy_tolerance,
+                      .view = scene.settings.view};
+    return prt::save_scene(options.output, scene);
+}
 
 void run(const Options& options, Session& session) {
     Stopwatch watch;
@@ -59,31 +104,20 @@ void run(const Options& options, Session& session) {
     precompute.on_progress = session.progress("precompute");
     prt::PrecomputeStatistics statistics;
     nlohmann::json report = nlohmann::json::object();
-    {
-        const prt::RayScene rays(scene.mesh);
-        options.receivers.apply(scene, rays, options.mesh, session, report);
-        options.surfaces.apply(scene, session);
-        session.poll();
-        std::optional<prt::BeamScene> beams;
-        if (options.engine == "beam")
-            beams.emplace(scene.mesh, rays);
-        const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-        scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
-        session.end_progress();
-        options.surfaces.precompute_highlights(scene, rays, precompute, session, report);
+    std::unique_ptr<prt::CheckpointFile> checkpoint;
+    std::uint64_t file_bytes = 0;
+    try {
+        compute(options, scene, precompute, checkpoint, statistics, session, report);
+        file_bytes = save(options, scene, precompute);
+    } catch (const std::exception& error) {
+        if (!checkpoint || !checkpoint->exists())
+            throw;
+        throw std::runtime_error(fmt::format("{}; the same command with --resume goes on from {}",
+                                             error.what(),
+                                             prt::CheckpointFile::folder_for(options.output).string()));
     }
-
-    scene.settings = {.tolerance = precompute.tolerance,
-                      .epsilon = precompute.epsilon,
-                      .min_level = precompute.min_level,
-                      .face_resolution = precompute.face_resolution,
-                      .bias = precompute.bias,
-                      .floor_vertices = options.floor_vertices.value_or(0),
-                      .source = std::filesystem::path(options.mesh).filename().string(),
-                      .source_hash = prt::file_hash(options.mesh),
-                      .glossy_tolerance = scene.settings.glossy_tolerance,
-                      .view = scene.settings.view};
-    const std::uint64_t file_bytes = prt::save_scene(options.output, scene);
+    if (checkpoint)
+        checkpoint->remove();
 
     const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
     const std::string others = on_vertices ? ""
@@ -105,6 +139,7 @@ void run(const Options& options, Session& session) {
                    {"bias", precompute.bias},
                    {"seconds", watch.total()},
                    {"seconds_clustering", statistics.seconds},
+                   {"seconds_checkpoints", statistics.seconds_checkpoints},
                    {"peak_bytes", peak_bytes()},
                    {"file_bytes", file_bytes}});
     session.report(report);
@@ -163,6 +198,7 @@ void add_precompute(CLI::App& program, Session& session) {
         ->capture_default_str();
     options->receivers.add_to(command);
     options->surfaces.add_to(command);
+    options->checkpoint.add_to(command);
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

@@ -107,6 +107,12 @@ void Session::detail(const std::string& line) const {
         say(line);
 }
 
+void Session::warn(const std::string& message) {
+    end_progress();
+    if (!quiet)
+        fmt::print(stderr, "warning: {}\n", message);
+}
+
 void Session::report(const nlohmann::json& result) const {
     if (json)
         fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));

@@ -43,6 +43,8 @@ public:
     void say(const std::string& line) const;
     /// One line only with -v.
     void detail(const std::string& line) const;
+    /// One line on stderr, "warning: ..."; nothing with -q.
+    void warn(const std::string& message);
     /// The result: with --json the object on stdout.
     void report(const nlohmann::json& result) const;
 

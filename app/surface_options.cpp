@@ -78,6 +78,7 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
                                                    {.tolerance = glossy_tolerance_,
                                                     .face_resolution = precompute.face_resolution,
                                                     .bias = precompute.bias,
+                                                    .checkpoint = precompute.checkpoint,
                                                     .stop = session.stop(),
                                                     .on_progress = session.progress("highlights")},
                                                    &statistics);

@@ -25,8 +25,10 @@ public:
     /// Gives the scene's receivers their surfaces: the mesh's materials, changed by the options. None where there are neither.
     void apply(prt::Scene& scene, const Session& session) const;
 
+    [[nodiscard]] float glossy_tolerance() const { return glossy_tolerance_; }
+
     /// Computes the glossy part of the scene's transfer, where its receivers have highlights and an eye. `precompute` is what the diffuse
-    /// part was computed with.
+    /// part was computed with, its checkpoint included.
     void precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
                                const prt::PrecomputeOptions& precompute, Session& session,
                                nlohmann::json& report) const;

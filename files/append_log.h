@@ -26,6 +26,9 @@ public:
     /// Throws std::runtime_error naming the file; the log is then as before.
     void append(std::span<const std::byte> record);
 
+    /// Takes back records: those up to a size() of before stay.
+    void cut(std::uint64_t size) { size_ = size; }
+
     /// Bytes of all records.
     [[nodiscard]] std::uint64_t size() const { return size_; }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -124,11 +125,11 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
     std::uint64_t next_key = 0;
     for (const Cell& cell : cells) {
         if (cell.level > max_level_ || depth_first_key(cell) != next_key)
-            throw std::runtime_error("expected cells that cover the sphere");
+            throw std::runtime_error("checkpoint: expected cells that cover the sphere");
         next_key += std::uint64_t{1} << (2 * (MaxLevel - cell.level));
     }
     if (next_key != cubemap::NumFaces * (std::uint64_t{1} << (2 * MaxLevel)))
-        throw std::runtime_error("expected cells that cover the sphere");
+        throw std::runtime_error("checkpoint: expected cells that cover the sphere");
     for (Cluster& cluster : clusters)
         add_cluster(std::move(cluster));
     num_saved_ = clusters_.size();
@@ -238,11 +239,13 @@ void Clustering::decide_batch() {
 }
 
 void Clustering::save_checkpoint() {
+    const auto start = std::chrono::steady_clock::now();
     const std::span<const Cluster> unsaved = std::span(std::as_const(clusters_)).subspan(num_saved_);
     const std::vector<std::byte> record =
         unsaved.empty() ? std::vector<std::byte>() : clusters_record(unsaved);
     if (options_.checkpoint->save(Part, record, work_state(batch_, pending_, *planes_)))
         num_saved_ = clusters_.size();
+    seconds_saving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Clustering::work() {
@@ -279,6 +282,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
     statistics.num_directions = planes_->num_directions();
     statistics.num_rays = planes_->num_rays();
     statistics.deepest_level = deepest_;
+    statistics.seconds_checkpoints = seconds_saving_;
     return result();
 }
 

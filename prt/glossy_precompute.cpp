@@ -6,22 +6,33 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 #include <numbers>
+#include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include "prt/brdf.h"
 #include "prt/cell_index.h"
 #include "prt/lobe_refinement.h"
+#include "prt/packed_parts.h"
 #include "prt/precompute.h"
 
 namespace relumine::prt {
 
 namespace {
+
+/// Name of this part in a checkpoint.
+constexpr const char* Part = "highlights";
+
+/// Work between two looks at the checkpoint: about a second; a block takes some milliseconds.
+constexpr std::size_t BlocksPerThreadAndStep = 256;
 
 /// One block's entries of one lobe.
 struct BlockEntries {
@@ -42,6 +53,23 @@ BlockEntries quantised(const LobeCut& cut) {
                 static_cast<std::uint8_t>(std::lround(255.0f * std::sqrt(mean / largest))));
     }
     return entries;
+}
+
+/// One block, for a checkpoint.
+void add(ByteWriter& writer, const BlockEntries& block) {
+    writer.add<std::uint64_t>(block.cells.size());
+    writer.add_all(std::span(block.cells));
+    writer.add_all(std::span(block.scales));
+    writer.add_all(std::span(block.values));
+}
+
+BlockEntries next_entries(ByteReader& reader) {
+    const auto count = static_cast<std::size_t>(reader.next<std::uint64_t>());
+    BlockEntries block;
+    block.cells = reader.next_all<std::uint32_t>(count);
+    block.scales = reader.next_all<float>(count);
+    block.values = reader.next_all<std::uint8_t>(count * BlockSize);
+    return block;
 }
 
 /// Frees the blocks' own arrays as it goes.
@@ -104,11 +132,17 @@ private:
 
     BlockToRefine block_at(std::size_t block, std::vector<glm::vec3>& origins) const;
     EntriesOfBlock refine(std::size_t block);
+    void take_up();
+    void save_checkpoint();
+    void work();
 
     const Receivers& receivers_;
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
+    std::vector<EntriesOfBlock> blocks_; ///< finished, from the first on
+    std::size_t num_saved_ = 0;          ///< of them in the checkpoint
+    std::uint64_t rays_saved_ = 0;
     std::atomic<std::uint64_t> num_rays_ = 0;
 };
 
@@ -153,24 +187,91 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
     return entries;
 }
 
+/// A record is the rays of its blocks, then the blocks.
+void GlossyPrecompute::take_up() {
+    for (const std::vector<std::byte>& record : options_.checkpoint->load(Part, false).records)
+        unpack(record, [this](std::span<const std::byte> part) {
+            ByteReader reader(part);
+            num_rays_ += reader.next<std::uint64_t>();
+            while (!reader.at_end()) {
+                EntriesOfBlock& block = blocks_.emplace_back();
+                for (BlockEntries& of_lobe : block)
+                    of_lobe = next_entries(reader);
+            }
+        });
+    if (blocks_.size() > transfer_.counts.num_blocks())
+        throw std::runtime_error("checkpoint: expected fewer blocks");
+    num_saved_ = blocks_.size();
+    rays_saved_ = num_rays_;
+}
+
+void GlossyPrecompute::save_checkpoint() {
+    const std::vector<std::byte> record = pack(1, [this](std::size_t) {
+        ByteWriter writer;
+        writer.add<std::uint64_t>(num_rays_ - rays_saved_);
+        for (std::size_t i = num_saved_; i < blocks_.size(); ++i)
+            for (const BlockEntries& of_lobe : blocks_[i])
+                add(writer, of_lobe);
+        return writer.take();
+    });
+    if (!options_.checkpoint->save(Part, record, {}))
+        return;
+    num_saved_ = blocks_.size();
+    rays_saved_ = num_rays_;
+}
+
+void GlossyPrecompute::work() {
+    const std::size_t num_blocks = transfer_.counts.num_blocks();
+    const std::size_t per_step =
+        options_.checkpoint == nullptr
+            ? num_blocks
+            : options_.blocks_per_step.value_or(
+                  BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+    std::mutex mutex;
+    std::size_t num_done = blocks_.size();
+    while (blocks_.size() < num_blocks) {
+        const std::size_t begin = blocks_.size();
+        std::vector<EntriesOfBlock> step(std::min(per_step, num_blocks - begin));
+        const std::uint64_t rays_before = num_rays_;
+        try {
+            tbb::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
+                if (options_.stop.stop_requested())
+                    throw Cancelled();
+                step[i] = refine(begin + i);
+                const std::scoped_lock lock(mutex);
+                ++num_done;
+                if (options_.on_progress)
+                    options_.on_progress(static_cast<double>(num_done) / static_cast<double>(num_blocks));
+            });
+        } catch (...) {
+            num_rays_ = rays_before;
+            throw;
+        }
+        std::move(step.begin(), step.end(), std::back_inserter(blocks_));
+        if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
+            save_checkpoint();
+    }
+}
+
 GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
+    if (options_.checkpoint != nullptr)
+        take_up();
+    try {
+        work();
+    } catch (const Cancelled&) {
+        if (options_.checkpoint != nullptr && num_saved_ != blocks_.size() &&
+            options_.checkpoint->is_worthwhile())
+            save_checkpoint();
+        throw;
+    }
     std::array<std::vector<BlockEntries>, NumGlossyLobes> entries;
-    for (std::vector<BlockEntries>& of_lobe : entries)
-        of_lobe.resize(num_blocks);
-    std::mutex mutex;
-    std::size_t num_done = 0;
-    tbb::parallel_for(std::size_t{0}, num_blocks, [&](std::size_t block) {
-        if (options_.stop.stop_requested())
-            throw Cancelled();
-        EntriesOfBlock of_block = refine(block);
-        for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
-            entries[lobe][block] = std::move(of_block[lobe]);
-        const std::scoped_lock lock(mutex);
-        ++num_done;
-        if (options_.on_progress)
-            options_.on_progress(static_cast<double>(num_done) / static_cast<double>(num_blocks));
-    });
+    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
+        entries[lobe].resize(num_blocks);
+        for (std::size_t block = 0; block < num_blocks; ++block)
+            entries[lobe][block] = std::move(blocks_[block][lobe]);
+    }
+    blocks_ = {};
 
     GlossyTransfer glossy;
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {

@@ -1,11 +1,14 @@
 // Precomputes the view-dependent part of light transfer, on top of the visible counts of the diffuse part.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <stop_token>
 
 #include "prt/blockers.h"
+#include "prt/checkpoint.h"
 #include "prt/glossy_transfer.h"
 #include "prt/receivers.h"
 #include "prt/transfer.h"
@@ -19,6 +22,8 @@ struct GlossyOptions {
     float tolerance = 0.07f;
     std::uint32_t face_resolution = 1024; ///< as PrecomputeOptions
     float bias = 0.0f;                    ///< as PrecomputeOptions
+    Checkpoint* checkpoint = nullptr;     ///< where finished blocks are left now and then, and taken up
+    std::optional<std::size_t> blocks_per_step = {}; ///< for tests: work between two looks at the checkpoint
     std::stop_token stop = {};
     std::function<void(double)> on_progress = {}; ///< fraction in [0, 1], one call at a time
 };
@@ -38,7 +43,8 @@ struct GlossyStatistics {
 
 /// Cuts of all blocks, for receivers with to_eye and surfaces. Each block refines the cell with the largest error first, nine samples to a cell [JN,
 /// Section 4.1], T with the BRDF [JN, Eq. 3]. Where the transfer's counts say that a receiver sees all of a cluster or nothing, that is taken for its
-/// visibility; only in between rays are traced. Parallel over blocks (TBB); the same bits for any number of threads.
+/// visibility; only in between rays are traced. Parallel over blocks (TBB); the same bits for any number of threads, and whether or not a
+/// checkpoint was taken up.
 /// set_surfaces() gives the transfer what relighting needs of the receivers.
 /// Throws std::invalid_argument for receivers that do not fit the transfer, Cancelled when stopped.
 [[nodiscard]] GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,

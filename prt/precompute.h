@@ -46,6 +46,7 @@ struct PrecomputeStatistics {
     std::uint64_t num_rays = 0;       ///< those above the receiver's horizon, which were traced
     std::uint32_t deepest_level = 0;
     double seconds = 0.0;
+    double seconds_checkpoints = 0.0; ///< of these
 };
 
 /// Thrown by precompute() when its stop token asks.

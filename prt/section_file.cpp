@@ -104,6 +104,9 @@ private:
             fail("a little-endian .prt scene", "a big-endian one");
         if (header.byte_order_mark != ByteOrderMark)
             fail("a .prt scene", "a damaged header");
+        if (header.version > Version)
+            fail(fmt::format(".prt version {}", Version),
+                 fmt::format("version {}, made by a newer relumine", header.version));
         if (header.version != Version)
             fail(fmt::format(".prt version {}", Version), fmt::format("version {}", header.version));
         if (header.file_size != bytes_.size())
@@ -121,15 +124,19 @@ private:
             std::memcpy(table.data(), bytes_.data() + sizeof header, table.size() * sizeof(SectionEntry));
         if (table_checksum(header, table) != header.checksum)
             fail("a matching checksum", "a damaged section table");
+        std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
         for (const SectionEntry& entry : table) {
-            const bool inside =
-                entry.offset <= bytes_.size() && entry.stored_size <= bytes_.size() - entry.offset;
+            // One after the other, so that they are inside the file and every byte belongs to one.
+            const bool inside = entry.offset == end && entry.stored_size <= bytes_.size() - end;
+            end += inside ? entry.stored_size : 0;
             if (!inside || entry.size / MaxCompressionRatio > entry.stored_size)
                 fail("sections inside the file", "a damaged section table");
             const std::string own_name = name(entry); // goes into messages
             if (!std::all_of(own_name.begin(), own_name.end(), [](char c) { return c > ' ' && c <= '~'; }))
                 fail("names of sections", "a damaged section table");
         }
+        if (end != bytes_.size())
+            fail("sections that fill the file", "a damaged section table");
         return table;
     }
 

@@ -53,6 +53,29 @@ TEST_F(Info, ExtensionsInCapitals) {
     EXPECT_EQ(succeed({"info", "ENV.HDR", "--json"}).json()["kind"], "environment");
 }
 
+TEST_F(Info, CheckFindsEveryFlippedBit) {
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
+    EXPECT_NE(succeed({"info", "scene.prt", "--check"}).out.find("checked: whole and sound"),
+              std::string::npos);
+    EXPECT_EQ(succeed({"info", "scene.prt", "--check", "--json"}).json()["checked"], true);
+    fail({"info", "mesh.obj", "--check"}, {"mesh.obj: expected a scene (.prt) to --check"});
+    const std::string whole = read("scene.prt");
+    // All over the file; tests of prt flip every bit.
+    for (std::size_t i = 0; i < 60; ++i) {
+        std::string bytes = whole;
+        const std::size_t at = i * (whole.size() - 1) / 59;
+        bytes[at] = static_cast<char>(bytes[at] ^ 1 << i % 8);
+        write("scene.prt", bytes);
+        fail({"info", "scene.prt", "--check"}, {"scene.prt: expected "});
+    }
+    // The next version, by its number.
+    std::string newer = whole;
+    newer[12] = 3;
+    write("scene.prt", newer);
+    fail({"info", "scene.prt", "--check"},
+         {"scene.prt: expected .prt version 2, got version 3, made by a newer relumine"});
+}
+
 TEST_F(Info, Scene) {
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--tolerance", "0.25",
              "--min-depth", "2", "--bias", "0.125", "--floor", "4"});

@@ -11,6 +11,7 @@
 #include "prt/brdf.h"
 #include "prt/cell_index.h"
 #include "tests/prt/analytic_blockers.h"
+#include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/glossy_scene.h"
 
@@ -174,6 +175,34 @@ TEST(GlossyPrecompute, TheSameBitsForAnyNumberOfThreads) {
         const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
         const GlossyTransfer again =
             precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, scene.options);
+        for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
+            EXPECT_EQ(again.lobes[lobe].begin, scene.transfer.glossy->lobes[lobe].begin);
+            EXPECT_EQ(again.lobes[lobe].cells, scene.transfer.glossy->lobes[lobe].cells);
+            EXPECT_EQ(again.lobes[lobe].scales, scene.transfer.glossy->lobes[lobe].scales);
+            EXPECT_EQ(again.lobes[lobe].values, scene.transfer.glossy->lobes[lobe].values);
+        }
+    }
+}
+
+TEST(GlossyPrecompute, GoesOnFromEveryCheckpoint) {
+    const scenes::GlossyScene& scene = scenes::glossy_scene();
+    GlossyStatistics plain;
+    GlossyOptions options = scene.options;
+    static_cast<void>(
+        precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options, &plain));
+    options.blocks_per_step = 5;
+    for (const std::size_t saves : {0u, 1u, 2u, 3u}) {
+        MemoryCheckpoint checkpoint;
+        options.checkpoint = &checkpoint;
+        checkpoint.saves_to_live = saves;
+        EXPECT_THROW(static_cast<void>(
+                         precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options)),
+                     Killed);
+        checkpoint.saves_to_live = static_cast<std::size_t>(-1);
+        GlossyStatistics statistics;
+        const GlossyTransfer again =
+            precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options, &statistics);
+        EXPECT_EQ(statistics.num_rays, plain.num_rays);
         for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
             EXPECT_EQ(again.lobes[lobe].begin, scene.transfer.glossy->lobes[lobe].begin);
             EXPECT_EQ(again.lobes[lobe].cells, scene.transfer.glossy->lobes[lobe].cells);

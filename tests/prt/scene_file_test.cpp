@@ -11,12 +11,14 @@
 #include <string>
 #include <utility>
 
+#include <glm/common.hpp>
 #include <gtest/gtest.h>
 #include <xxhash.h>
 
 #include "files/output_file.h"
 #include "prt/precompute.h"
 #include "prt/ray_scene.h"
+#include "prt/scene_check.h"
 #include "prt/section_file.h"
 #include "tests/prt/damaged_file.h"
 #include "tests/prt/scenes.h"
@@ -46,7 +48,7 @@ Scene rich_scene() {
     mesh.normals.emplace_back(0.0f);
     std::mt19937 random(1);
     for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
-        mesh.colors.push_back(scenes::random_direction(random));
+        mesh.colors.push_back(glm::abs(scenes::random_direction(random)));
         mesh.uvs.emplace_back(i, 0.5f);
     }
     return scene_of(mesh, {.tolerance = 0.03f, .face_resolution = 32, .bias = 1e-3f});
@@ -304,6 +306,49 @@ TEST_F(SceneFileTest, RefusesToSaveWhatItCouldNotLoad) {
     scene.mesh.normals.pop_back();
     EXPECT_THROW(save_scene(file_, scene), std::invalid_argument);
     EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(SceneFileTest, TheCheckAcceptsWhatAPrecomputeWrites) {
+    Scene tiny = tiny_scene();
+    tiny.settings.floor_vertices = 0;
+    for (const Scene& scene : {rich_scene(), tiny}) {
+        save_scene(file_, scene);
+        EXPECT_NO_THROW(check_scene(load_scene(file_), file_));
+    }
+}
+
+TEST_F(SceneFileTest, TheCheckNamesWhatIsUnsound) {
+    const auto unsound = [&](const std::string& reason, const std::function<void(Scene&)>& how) {
+        Scene scene = rich_scene();
+        scene.receivers = vertex_receivers(scene.mesh);
+        how(scene);
+        scenes::expect_refused(file_, reason, [&] { check_scene(scene, file_); });
+    };
+    unsound("normals of length 1 or 0, got element 7", [](Scene& s) { s.mesh.normals[7] *= 1.01f; });
+    unsound("colours >= 0, got element 3", [](Scene& s) {
+        std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
+        s.mesh.colors[3].g = -1.0f;
+    });
+    const auto with_colours = [](Scene& s) {
+        std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
+    };
+    const auto setting = [&](const std::string& reason, const std::function<void(SceneSettings&)>& how) {
+        unsound(reason, [&](Scene& s) {
+            with_colours(s);
+            how(s.settings);
+        });
+    };
+    setting("a tolerance >= 0", [](SceneSettings& s) { s.tolerance = -1.0f; });
+    setting("a bias >= 0", [](SceneSettings& s) { s.bias = -1.0f; });
+    setting("a face resolution from 1", [](SceneSettings& s) { s.face_resolution = 0; });
+    setting("a floor among", [](SceneSettings& s) { s.floor_vertices = 1000; });
+    setting("clusters of levels", [](SceneSettings& s) { s.face_resolution = 2; });
+    setting("clusters of levels", [](SceneSettings& s) { s.min_level = 5; });
+    setting("highlights, got none", [](SceneSettings& s) { s.glossy_tolerance = 0.1f; });
+    unsound("finite uvs", [&](Scene& s) {
+        with_colours(s);
+        s.mesh.uvs[2].x = std::numeric_limits<float>::infinity();
+    });
 }
 
 TEST_F(SceneFileTest, UnwritablePlacesLeaveNothing) {
