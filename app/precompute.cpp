@@ -10,6 +10,7 @@
 
 #include "app/checkpoint_options.h"
 #include "app/commands.h"
+#include "app/memory_option.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "app/surface_options.h"
@@ -36,6 +37,7 @@ struct Options {
     ReceiverOptions receivers;
     SurfaceOptions surfaces;
     CheckpointOptions checkpoint;
+    MemoryOption memory;
     prt::PrecomputeOptions precompute;
 };
 
@@ -43,6 +45,10 @@ struct Options {
 void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& precompute,
              std::unique_ptr<prt::CheckpointFile>& checkpoint, prt::PrecomputeStatistics& statistics,
              Session& session, nlohmann::json& report) {
+    prt::SceneSizes sizes{.num_vertices = scene.mesh.num_vertices(),
+                          .num_triangles = scene.mesh.num_triangles(),
+                          .has_beams = options.engine == "beam"};
+    options.memory.check_scene(sizes, options.mesh);
     const prt::RayScene rays(scene.mesh);
     options.receivers.apply(scene, rays, options.mesh, session, report);
     options.surfaces.apply(scene, session);
@@ -60,7 +66,14 @@ void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& 
         if (options.engine == "beam")
             beams.emplace(scene.mesh, rays);
         const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-        scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
+        sizes.num_receivers = scene.receivers.size();
+        options.memory.check_estimate(sizes, scene.receivers, blockers, options.mesh, precompute, session,
+                                      report);
+        try {
+            scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
+        } catch (const prt::TooManyClusters& error) {
+            throw std::runtime_error(options.memory.stopped(error, options.mesh));
+        }
         session.end_progress();
     }
     options.surfaces.precompute_highlights(scene, rays, precompute, session, report);
@@ -136,6 +149,7 @@ void run(const Options& options, Session& session) {
                    {"samples", statistics.num_samples},
                    {"rays", statistics.num_rays},
                    {"deepest_level", statistics.deepest_level},
+                   {"column_bytes", statistics.column_bytes},
                    {"bias", precompute.bias},
                    {"seconds", watch.total()},
                    {"seconds_clustering", statistics.seconds},
@@ -199,6 +213,7 @@ void add_precompute(CLI::App& program, Session& session) {
     options->receivers.add_to(command);
     options->surfaces.add_to(command);
     options->checkpoint.add_to(command);
+    options->memory.add_to(command);
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

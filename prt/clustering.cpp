@@ -43,6 +43,18 @@ double allowed_squared_distance(const PrecomputeOptions& options, std::size_t nu
     return times_pi * times_pi;
 }
 
+/// Allocations and links beside the bytes themselves; what counts when receivers are few.
+constexpr std::uint64_t OverheadOfPlane = 112;
+constexpr std::uint64_t OverheadOfCluster = 256;
+
+constexpr std::size_t BytesPerSlice = std::size_t{64} << 20;
+
+std::uint64_t bytes_of(const LeafColumn& column, double scale) {
+    const std::size_t bytes =
+        column.counts.size() + sizeof(std::uint64_t) * (column.visible.size() + column.mixed.size());
+    return OverheadOfCluster + static_cast<std::uint64_t>(scale * static_cast<double>(bytes));
+}
+
 double part_of_sphere(const Cell& cell) {
     return cell.size() * cell.size() / cubemap::NumFaces;
 }
@@ -137,6 +149,7 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
 
 void Clustering::add_cluster(Cluster&& cluster) {
     settled_ += part_of_sphere(cluster.cell);
+    column_bytes_ += bytes_of(cluster.column, options_.column_scale);
     deepest_ = std::max<std::uint32_t>(deepest_, cluster.cell.level);
     clusters_.push_back(std::move(cluster));
 }
@@ -221,19 +234,34 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
 
 /// Keeps the clusters, goes on with the children of the rest, and forgets the planes that nothing needs any more.
 void Clustering::decide_batch() {
-    std::vector<Decision> decisions(batch_.size());
-    tbb::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t i) {
-        progress_.poll();
-        decisions[i] = decide(batch_[i]);
-    });
-    for (Decision& decision : decisions) {
-        if (decision.column) {
-            add_cluster({decision.cell, std::move(*decision.column)});
-            continue;
+    // In slices, so that memory can be watched; a column takes a byte per receiver at most.
+    const std::size_t slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
+    std::vector<Cell> children;
+    std::vector<Cluster> clusters;
+    std::uint64_t num_bytes = column_bytes_;
+    for (std::size_t begin = 0; begin < batch_.size(); begin += slice) {
+        std::vector<Decision> decisions(std::min(slice, batch_.size() - begin));
+        tbb::parallel_for(std::size_t{0}, decisions.size(), [&](std::size_t i) {
+            progress_.poll();
+            decisions[i] = decide(batch_[begin + i]);
+        });
+        for (Decision& decision : decisions) {
+            if (decision.column) {
+                num_bytes += bytes_of(*decision.column, options_.column_scale);
+                clusters.push_back({decision.cell, std::move(*decision.column)});
+                continue;
+            }
+            for (std::uint32_t i = 0; i < 4; ++i)
+                children.push_back(decision.cell.child(i));
         }
-        for (std::uint32_t i = 0; i < 4; ++i)
-            pending_.push(decision.cell.child(i));
+        if (num_bytes > options_.max_column_bytes)
+            throw TooManyClusters(clusters_.size() + clusters.size(), num_bytes);
     }
+    // Nothing can go wrong from here on: the batch is done or not begun.
+    for (Cluster& cluster : clusters)
+        add_cluster(std::move(cluster));
+    for (const Cell& child : children)
+        pending_.push(child);
     batch_.clear();
     planes_->keep_only(needed_points(pending_.cells()));
 }
@@ -271,6 +299,10 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
     saved = {};
     try {
         work();
+    } catch (const TooManyClusters&) {
+        if (checkpoint != nullptr)
+            save_checkpoint();
+        throw;
     } catch (const Cancelled&) {
         if (checkpoint != nullptr && checkpoint->is_worthwhile())
             save_checkpoint();
@@ -281,6 +313,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
         save_checkpoint();
     statistics.num_directions = planes_->num_directions();
     statistics.num_rays = planes_->num_rays();
+    statistics.column_bytes = column_bytes_;
     statistics.deepest_level = deepest_;
     statistics.seconds_checkpoints = seconds_saving_;
     return result();

@@ -67,6 +67,7 @@ private:
     std::vector<Cluster> clusters_;
     double settled_ = 0.0;      ///< part of the cube's surface that is clustered
     std::size_t num_saved_ = 0; ///< clusters in the checkpoint
+    std::uint64_t column_bytes_ = 0;
     double seconds_saving_ = 0.0;
     std::uint32_t deepest_ = 0; ///< level of a cluster
 };

@@ -37,6 +37,10 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
 
 } // namespace
 
+TooManyClusters::TooManyClusters(std::uint64_t clusters, std::uint64_t bytes)
+    : std::runtime_error(fmt::format("too many clusters: {} take {} bytes", clusters, bytes)),
+      num_clusters(clusters), column_bytes(bytes) {}
+
 Transfer precompute(const Receivers& receivers, const Blockers& blockers, const PrecomputeOptions& options,
                     PrecomputeStatistics* statistics) {
     check(receivers, options);

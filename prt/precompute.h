@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <stop_token>
@@ -30,6 +31,10 @@ struct PrecomputeOptions {
     /// Planes of visibility that may live at once, one bit per receiver and direction. With less, directions on borders between
     /// batches of cells are traced more than once; the result is the same. About 250 planes live in any case.
     std::uint64_t plane_bytes = std::uint64_t{512} << 20;
+    /// Columns of clusters that may be in memory, the largest part of it next to the planes; joining and writing them takes as much again.
+    /// Beyond it TooManyClusters is thrown.
+    std::uint64_t max_column_bytes = std::numeric_limits<std::uint64_t>::max();
+    double column_scale = 1.0;        ///< of a trial: columns count as those of so many times the receivers
     Checkpoint* checkpoint = nullptr; ///< where the work is left now and then, and taken up
     bool more_follows = false;        ///< other work follows: leave a last checkpoint of this
     std::optional<std::uint64_t> samples_per_step =
@@ -44,6 +49,7 @@ struct PrecomputeStatistics {
     std::uint64_t num_directions = 0; ///< sample directions traced; each once unless plane_bytes were few
     std::uint64_t num_samples = 0;    ///< (receiver, direction) pairs decided: receivers times directions
     std::uint64_t num_rays = 0;       ///< those above the receiver's horizon, which were traced
+    std::uint64_t column_bytes = 0;   ///< of all clusters' columns before they were joined
     std::uint32_t deepest_level = 0;
     double seconds = 0.0;
     double seconds_checkpoints = 0.0; ///< of these
@@ -54,10 +60,17 @@ struct Cancelled : std::exception {
     [[nodiscard]] const char* what() const noexcept override { return "cancelled"; }
 };
 
+/// Thrown by precompute() when the clusters take more than max_column_bytes; a checkpoint is left.
+struct TooManyClusters : std::runtime_error {
+    TooManyClusters(std::uint64_t clusters, std::uint64_t bytes);
+    std::uint64_t num_clusters; ///< so far
+    std::uint64_t column_bytes; ///< theirs
+};
+
 /// Clusters all directions of the sphere by their light transfer to the receivers [JN, Section 4]. Each sample direction is
 /// traced once for each receiver, where plane_bytes allow. Parallel over receivers (TBB); the result is the same bit by bit for any
 /// number of threads, and whether or not it was taken up from a checkpoint. Memory: the result twice, and plane_bytes.
-/// Throws std::invalid_argument for options out of range or no receivers, Cancelled when stopped.
+/// Throws std::invalid_argument for options out of range or no receivers, Cancelled when stopped, TooManyClusters.
 [[nodiscard]] Transfer precompute(const Receivers& receivers, const Blockers& blockers,
                                   const PrecomputeOptions& options = {},
                                   PrecomputeStatistics* statistics = nullptr);

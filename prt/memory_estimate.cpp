@@ -1,0 +1,132 @@
+#include "prt/memory_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace relumine::prt {
+
+namespace {
+
+constexpr std::uint64_t MiB = std::uint64_t{1} << 20;
+
+// Measured (docs/performance.md, "Memory"): the program and its libraries; per triangle Embree's tree and the tree of beams with the mesh's indices;
+// per vertex positions, normals and what loading leaves; per receiver two copies of positions and normals in either order, and the order.
+constexpr std::uint64_t ProgramBytes = 40 * MiB;
+constexpr std::uint64_t BytesPerTriangle = 150;
+constexpr std::uint64_t BeamBytesPerTriangle = 260;
+constexpr std::uint64_t BytesPerVertex = 48;
+constexpr std::uint64_t BytesPerReceiver = 80;
+
+/// The joined counts have a third word beside each two of the columns, and a file is written from a copy, compressed beside it.
+constexpr double JoinedPerColumn = 1.3;
+constexpr double SavedPerColumn = 2.6;
+
+/// Planes of all directions are never needed together.
+constexpr double DirectionsPerCluster = 4.1;
+constexpr double LargestLevel = 0.65;
+
+/// Receivers of the trial: blocks of neighbours, whose counts are stored together. Few large groups would be dearer to trust than to trace: neighbours err
+/// alike.
+constexpr std::size_t MaxTrialBlocks = 256;
+
+/// An RMS over few receivers scatters, and a cell is split when one of nine is too large: a trial finds more clusters than the whole. Of the scenes measured
+/// 1.6 to 1.8 times as many.
+constexpr double TrialExcess = 1.65;
+
+/// Every n-th group of neighbours.
+Receivers trial_receivers(const Receivers& receivers) {
+    const std::vector<std::uint32_t> order = spatial_order(receivers);
+    const std::size_t num_blocks = (order.size() + BlockSize - 1) / BlockSize;
+    // No more than an eighth of the work.
+    const std::size_t num_wanted = std::clamp<std::size_t>(num_blocks / 8, 1, MaxTrialBlocks);
+    Receivers trial;
+    for (std::size_t i = 0; i < num_wanted; ++i) {
+        const std::size_t begin = (2 * i + 1) * num_blocks / (2 * num_wanted) * BlockSize;
+        const std::size_t end = std::min(begin + BlockSize, order.size());
+        for (std::size_t place = begin; place < end; ++place) {
+            trial.positions.push_back(receivers.positions[order[place]]);
+            trial.normals.push_back(receivers.normals[order[place]]);
+        }
+    }
+    return trial;
+}
+
+} // namespace
+
+std::uint64_t scene_bytes(const SceneSizes& sizes) {
+    const std::uint64_t per_triangle = BytesPerTriangle + (sizes.has_beams ? BeamBytesPerTriangle : 0);
+    return ProgramBytes + sizes.num_vertices * BytesPerVertex + sizes.num_triangles * per_triangle +
+           sizes.num_receivers * BytesPerReceiver;
+}
+
+std::uint64_t peak_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes, std::uint64_t column_bytes) {
+    const auto columns = static_cast<double>(column_bytes);
+    const std::uint64_t scene = scene_bytes(sizes);
+    const std::uint64_t tracing = scene + plane_bytes + column_bytes;
+    const std::uint64_t joining = scene + static_cast<std::uint64_t>((1.0 + JoinedPerColumn) * columns);
+    const std::uint64_t saving =
+        scene_bytes(
+            {.num_vertices = sizes.num_vertices, .num_triangles = 0, .num_receivers = sizes.num_receivers}) +
+        static_cast<std::uint64_t>(SavedPerColumn * columns);
+    return std::max({tracing, joining, saving});
+}
+
+std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes, std::uint64_t max_bytes) {
+    std::uint64_t low = 0;
+    std::uint64_t high = max_bytes;
+    while (low < high) {
+        const std::uint64_t middle = low + (high - low + 1) / 2;
+        if (peak_bytes(sizes, plane_bytes, middle) <= max_bytes)
+            low = middle;
+        else
+            high = middle - 1;
+    }
+    return low;
+}
+
+std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes) {
+    const std::uint64_t scene = scene_bytes(sizes);
+    const std::uint64_t left = max_bytes > scene ? max_bytes - scene : 0;
+    return std::clamp(left / 4, 16 * MiB, PrecomputeOptions{}.plane_bytes);
+}
+
+MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receivers, const Blockers& blockers,
+                               const PrecomputeOptions& options, std::uint64_t max_bytes) {
+    const Receivers trial = trial_receivers(receivers);
+    PrecomputeOptions trial_options = options;
+    if (options.epsilon) {
+        // The same RMS for fewer receivers.
+        trial_options.epsilon = {};
+        trial_options.tolerance = *options.epsilon * std::sqrt(static_cast<float>(receivers.size()));
+    }
+    trial_options.checkpoint = nullptr;
+    trial_options.on_progress = {};
+    trial_options.column_scale = static_cast<double>(receivers.size()) / static_cast<double>(trial.size());
+    // A limit that is not one cannot be scaled.
+    const double most = static_cast<double>(max_column_bytes(sizes, options.plane_bytes, max_bytes));
+    trial_options.max_column_bytes = static_cast<std::uint64_t>(std::min(TrialExcess * most, 1e18));
+    PrecomputeStatistics statistics;
+    MemoryEstimate estimate;
+    try {
+        static_cast<void>(precompute(trial, blockers, trial_options, &statistics));
+    } catch (const TooManyClusters& error) {
+        estimate.is_at_least = true;
+        statistics.num_clusters = error.num_clusters;
+        statistics.column_bytes = error.column_bytes;
+    }
+    estimate.num_clusters =
+        static_cast<std::uint64_t>(static_cast<double>(statistics.num_clusters) / TrialExcess);
+    estimate.column_bytes =
+        static_cast<std::uint64_t>(static_cast<double>(statistics.column_bytes) / TrialExcess);
+    const double largest_level = DirectionsPerCluster * LargestLevel *
+                                 static_cast<double>(estimate.num_clusters) *
+                                 static_cast<double>(receivers.size()) / 8.0;
+    estimate.plane_bytes = largest_level < static_cast<double>(options.plane_bytes)
+                               ? static_cast<std::uint64_t>(largest_level)
+                               : options.plane_bytes;
+    estimate.peak_bytes = peak_bytes(sizes, estimate.plane_bytes, estimate.column_bytes);
+    return estimate;
+}
+
+} // namespace relumine::prt

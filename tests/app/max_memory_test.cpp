@@ -1,0 +1,43 @@
+// `relumine precompute --max-memory`.
+#include "tests/app/command.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+class MaxMemory : public AppTest {
+protected:
+    [[nodiscard]] static std::vector<std::string> run(const std::string& size,
+                                                      const std::vector<std::string>& more = {}) {
+        std::vector<std::string> words = {"precompute", "knot.ply", "-o", "scene.prt", "--max-memory", size};
+        words.insert(words.end(), more.begin(), more.end());
+        return words;
+    }
+};
+
+TEST_F(MaxMemory, RefusesBeforeTheWorkWithBothFigures) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    fail(run("10M"), {"knot.ply: expected work within 10 MB, got a scene that takes "});
+    // Every texel of 6 x 1024 x 1024.
+    fail(run("200M", {"--tolerance", "0"}),
+         {"knot.ply: expected work within 200 MB, got an estimate of more than ",
+          " MB of memory for more than "});
+    fail(run("0.06G", {"--tolerance", "0.01"}),
+         {"expected work within 62 MB, got an estimate of more than "});
+    for (const char* size : {"much", "-1G", "4X", "G", "0", "1e30G", "4Gigabytes"})
+        misuse(run(size), "--max-memory");
+}
+
+TEST_F(MaxMemory, EnoughOfItChangesNothing) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
+    succeed({"precompute", "knot.ply", "-o", "plain.prt", "--tolerance", "0.05", "-q"});
+    const nlohmann::json report = succeed(run("110M", {"--tolerance", "0.05", "--json"})).json();
+    EXPECT_EQ(read("scene.prt"), read("plain.prt"));
+    const double estimate = report["memory_estimate"];
+    const double peak = report["peak_bytes"];
+    EXPECT_LT(estimate, 110.0 * 1024 * 1024);
+    EXPECT_LT(peak, 110.0 * 1024 * 1024);
+}
+
+} // namespace
+} // namespace relumine::app
