@@ -232,37 +232,36 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
     return {cell, leaf_column(samples, SampleWeights, origins_.size())};
 }
 
-/// Keeps the clusters, goes on with the children of the rest, and forgets the planes that nothing needs any more.
+/// Keeps the clusters, goes on with the children of the rest, and forgets the planes that nothing needs any more. In slices, so that memory can
+/// be watched (a column takes a byte per receiver at most) and checkpoints left: what is decided leaves the batch.
 void Clustering::decide_batch() {
-    // In slices, so that memory can be watched; a column takes a byte per receiver at most.
-    const std::size_t slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
-    std::vector<Cell> children;
-    std::vector<Cluster> clusters;
-    std::uint64_t num_bytes = column_bytes_;
-    for (std::size_t begin = 0; begin < batch_.size(); begin += slice) {
-        std::vector<Decision> decisions(std::min(slice, batch_.size() - begin));
-        tbb::parallel_for(std::size_t{0}, decisions.size(), [&](std::size_t i) {
+    const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
+    while (!batch_.empty()) {
+        std::vector<Decision> slice(std::min(max_slice, batch_.size()));
+        tbb::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
             progress_.poll();
-            decisions[i] = decide(batch_[begin + i]);
+            slice[i] = decide(batch_[i]);
         });
-        for (Decision& decision : decisions) {
+        std::uint64_t num_bytes = column_bytes_;
+        std::size_t num_clusters = clusters_.size();
+        for (const Decision& decision : slice) {
+            num_bytes += decision.column ? bytes_of(*decision.column, options_.column_scale) : 0;
+            num_clusters += decision.column ? 1 : 0;
+        }
+        if (num_bytes > options_.max_column_bytes)
+            throw TooManyClusters(num_clusters, num_bytes);
+        for (Decision& decision : slice) {
             if (decision.column) {
-                num_bytes += bytes_of(*decision.column, options_.column_scale);
-                clusters.push_back({decision.cell, std::move(*decision.column)});
+                add_cluster({decision.cell, std::move(*decision.column)});
                 continue;
             }
             for (std::uint32_t i = 0; i < 4; ++i)
-                children.push_back(decision.cell.child(i));
+                pending_.push(decision.cell.child(i));
         }
-        if (num_bytes > options_.max_column_bytes)
-            throw TooManyClusters(clusters_.size() + clusters.size(), num_bytes);
+        batch_.erase(batch_.begin(), batch_.begin() + static_cast<std::ptrdiff_t>(slice.size()));
+        if (!batch_.empty() && options_.checkpoint != nullptr && options_.checkpoint->is_due())
+            save_checkpoint();
     }
-    // Nothing can go wrong from here on: the batch is done or not begun.
-    for (Cluster& cluster : clusters)
-        add_cluster(std::move(cluster));
-    for (const Cell& child : children)
-        pending_.push(child);
-    batch_.clear();
     planes_->keep_only(needed_points(pending_.cells()));
 }
 

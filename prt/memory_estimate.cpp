@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "prt/receiver_order.h"
+
 namespace relumine::prt {
 
 namespace {
