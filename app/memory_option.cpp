@@ -83,8 +83,8 @@ void MemoryOption::check_estimate(const prt::SceneSizes& sizes, const prt::Recei
 }
 
 std::string MemoryOption::stopped(const prt::TooManyClusters& error, const std::string& mesh) const {
-    return fmt::format("{}: expected work within {}, got {} clusters so far, which take more; stopped", mesh,
-                       megabytes(max_bytes_.value_or(0)), error.num_clusters);
+    return fmt::format("{}: expected work within {}, got at least {} clusters, which take more; stopped",
+                       mesh, megabytes(max_bytes_.value_or(0)), error.num_clusters);
 }
 
 } // namespace relumine::app

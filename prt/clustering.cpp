@@ -236,6 +236,11 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
 /// be watched (a column takes a byte per receiver at most) and checkpoints left: what is decided leaves the batch.
 void Clustering::decide_batch() {
     const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
+    const std::size_t num_words = (order_.size() / BlockSize + 63) / 64;
+    LeafColumn empty;
+    empty.visible.resize(num_words);
+    empty.mixed.resize(num_words);
+    const std::uint64_t min_bytes = bytes_of(empty, options_.column_scale);
     while (!batch_.empty()) {
         std::vector<Decision> slice(std::min(max_slice, batch_.size()));
         tbb::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
@@ -244,10 +249,15 @@ void Clustering::decide_batch() {
         });
         std::uint64_t num_bytes = column_bytes_;
         std::size_t num_clusters = clusters_.size();
+        std::size_t num_split = 0;
         for (const Decision& decision : slice) {
             num_bytes += decision.column ? bytes_of(*decision.column, options_.column_scale) : 0;
             num_clusters += decision.column ? 1 : 0;
+            num_split += decision.column ? 0 : 1;
         }
+        // Every cell that waits becomes one cluster at least.
+        num_clusters += batch_.size() - slice.size() + pending_.size() + 4 * num_split;
+        num_bytes += (num_clusters - clusters_.size() - (slice.size() - num_split)) * min_bytes;
         if (num_bytes > options_.max_column_bytes)
             throw TooManyClusters(num_clusters, num_bytes);
         for (Decision& decision : slice) {

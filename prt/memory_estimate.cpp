@@ -124,7 +124,7 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     const double largest_level = DirectionsPerCluster * LargestLevel *
                                  static_cast<double>(estimate.num_clusters) *
                                  static_cast<double>(receivers.size()) / 8.0;
-    estimate.plane_bytes = largest_level < static_cast<double>(options.plane_bytes)
+    estimate.plane_bytes = !estimate.is_at_least && largest_level < static_cast<double>(options.plane_bytes)
                                ? static_cast<std::uint64_t>(largest_level)
                                : options.plane_bytes;
     estimate.peak_bytes = peak_bytes(sizes, estimate.plane_bytes, estimate.column_bytes);

@@ -19,6 +19,7 @@ public:
     enum class Order { CoarseFirst, FineFirst };
 
     [[nodiscard]] bool empty() const { return size_ == 0; }
+    [[nodiscard]] std::size_t size() const { return size_; }
     void push(const Cell& cell);
 
     /// Takes cells of one level from the front of its queue, at least one, as long as `fits(cell)`. Not when empty.

@@ -60,11 +60,11 @@ struct Cancelled : std::exception {
     [[nodiscard]] const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// Thrown by precompute() when the clusters take more than max_column_bytes; a checkpoint is left.
+/// Thrown by precompute() when the clusters take more than max_column_bytes, or must in the end; a checkpoint is left.
 struct TooManyClusters : std::runtime_error {
     TooManyClusters(std::uint64_t clusters, std::uint64_t bytes);
-    std::uint64_t num_clusters; ///< so far
-    std::uint64_t column_bytes; ///< theirs
+    std::uint64_t num_clusters; ///< at least
+    std::uint64_t column_bytes; ///< theirs, at least
 };
 
 /// Clusters all directions of the sphere by their light transfer to the receivers [JN, Section 4]. Each sample direction is
