@@ -42,7 +42,8 @@ int main(int argc, char** argv) {
     });
     const auto fail = [&](const std::string& message) {
         session.end_progress();
-        fmt::print(stderr, "relumine: {}\n", one_line(message));
+        // Not fmt::print, which throws where stderr cannot be written.
+        std::fputs(fmt::format("relumine: {}\n", one_line(message)).c_str(), stderr);
         return 1;
     };
     // What was printed may still be in the buffer: a full disk behind `> file` shows only here.

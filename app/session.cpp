@@ -110,7 +110,7 @@ void Session::detail(const std::string& line) const {
 void Session::warn(const std::string& message) {
     end_progress();
     if (!quiet)
-        fmt::print(stderr, "warning: {}\n", message);
+        std::fputs(fmt::format("warning: {}\n", message).c_str(), stderr);
 }
 
 void Session::report(const nlohmann::json& result) const {

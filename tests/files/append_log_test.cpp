@@ -33,7 +33,9 @@ protected:
             log.append(record(i));
         EXPECT_EQ(log.size(), size(path_));
     }
-    fs::path path_ = fs::path(testing::TempDir()) / "append_log_test.log";
+    fs::path path_ =
+        fs::path(testing::TempDir()) /
+        (std::string("append_log_") + testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(AppendLogTest, GivesBackWholeRecordsAcrossRuns) {

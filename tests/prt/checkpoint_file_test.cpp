@@ -61,7 +61,9 @@ protected:
         return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
     }
 
-    fs::path folder_ = fs::path(testing::TempDir()) / "checkpoint_file_test";
+    fs::path folder_ =
+        fs::path(testing::TempDir()) /
+        (std::string("checkpoint_file_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::path output_ = folder_ / "out.prt";
     fs::path checkpoint_ = folder_ / "out.prt.checkpoint";
     std::vector<std::string> problems_;
