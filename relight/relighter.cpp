@@ -6,17 +6,13 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
-
-#include "prt/lattice.h"
 
 namespace relumine::relight {
 
