@@ -26,7 +26,7 @@ constexpr double SavedPerColumn = 2.6;
 
 /// Planes of all directions are never needed together.
 constexpr double DirectionsPerCluster = 4.1;
-constexpr double LargestLevel = 0.65;
+constexpr double LargestLevel = 0.55;
 
 /// Receivers of the trial: blocks of neighbours, whose counts are stored together. Few large groups would be dearer to trust than to trace: neighbours err
 /// alike.
