@@ -104,6 +104,10 @@ void OutputFile::open_temporary() {
     if (!file_.is_open())
         fail(target_, "write", errno);
     temporary_ = name;
+    // mkstemps makes private files; an output has the permissions any other program would give it.
+    const mode_t mask = ::umask(0);
+    ::umask(mask);
+    ::fchmod(file_.get(), 0666 & ~mask);
 }
 
 OutputFile::~OutputFile() {

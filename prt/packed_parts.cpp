@@ -1,8 +1,9 @@
 #include "prt/packed_parts.h"
 
-#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <zstd.h>
+
+#include "prt/compression.h"
 
 namespace relumine::prt {
 
@@ -11,26 +12,13 @@ namespace {
 // The fastest: planes of bits of neighbouring directions shrink well at any level, and a checkpoint is read at most once.
 constexpr int CompressionLevel = 1;
 
-/// A frame says its own size; one that says more than this for its bytes was not made here (zstd reaches some 30,000 : 1).
-constexpr std::uint64_t MaxCompressionRatio = 1 << 17;
-
-std::vector<std::byte> compressed(const std::vector<std::byte>& bytes) {
-    std::vector<std::byte> result(ZSTD_compressBound(bytes.size()));
-    const std::size_t size =
-        ZSTD_compress(result.data(), result.size(), bytes.data(), bytes.size(), CompressionLevel);
-    if (ZSTD_isError(size) != 0)
-        throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
-    result.resize(size);
-    result.shrink_to_fit();
-    return result;
-}
-
 } // namespace
 
 std::vector<std::byte> pack(std::size_t num_parts,
                             const std::function<std::vector<std::byte>(std::size_t)>& part) {
     std::vector<std::vector<std::byte>> parts(num_parts);
-    tbb::parallel_for(std::size_t{0}, num_parts, [&](std::size_t i) { parts[i] = compressed(part(i)); });
+    tbb::parallel_for(std::size_t{0}, num_parts,
+                      [&](std::size_t i) { parts[i] = compressed(part(i), CompressionLevel); });
     std::size_t num_bytes = sizeof(std::uint64_t) * (1 + num_parts);
     for (const std::vector<std::byte>& bytes : parts)
         num_bytes += bytes.size();

@@ -15,6 +15,7 @@
 #include <zstd.h>
 
 #include "files/output_file.h"
+#include "prt/compression.h"
 
 namespace relumine::prt {
 
@@ -30,10 +31,6 @@ constexpr std::uint32_t MaxSections = 64;
 
 // Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second; level 12 gains 6 % more in five.
 constexpr int CompressionLevel = 6;
-
-// A section's size is believed only after its checksum; this bounds it all the same. zstd cannot exceed it by much for
-// any input (runs of one byte compress about 30,000 : 1).
-constexpr std::uint64_t MaxCompressionRatio = 1 << 17;
 
 struct Header {
     std::array<char, 8> magic;
@@ -61,16 +58,6 @@ std::uint64_t table_checksum(const Header& header, std::span<const SectionEntry>
     if (!table.empty())
         std::memcpy(bytes.data() + offsetof(Header, checksum), table.data(), table.size_bytes());
     return XXH64(bytes.data(), bytes.size(), 0);
-}
-
-std::vector<std::byte> compressed(std::span<const std::byte> bytes) {
-    std::vector<std::byte> result(ZSTD_compressBound(bytes.size()));
-    const std::size_t size =
-        ZSTD_compress(result.data(), result.size(), bytes.data(), bytes.size(), CompressionLevel);
-    if (ZSTD_isError(size) != 0)
-        throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
-    result.resize(size);
-    return result;
 }
 
 class Reader {
@@ -129,6 +116,7 @@ private:
             // One after the other, so that they are inside the file and every byte belongs to one.
             const bool inside = entry.offset == end && entry.stored_size <= bytes_.size() - end;
             end += inside ? entry.stored_size : 0;
+            // The size is believed only after the section's checksum; this bounds it all the same.
             if (!inside || entry.size / MaxCompressionRatio > entry.stored_size)
                 fail("sections inside the file", "a damaged section table");
             const std::string own_name = name(entry); // goes into messages
@@ -199,7 +187,7 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
         in_order.push_back(&section);
     std::vector<std::vector<std::byte>> stored(in_order.size());
     tbb::parallel_for(std::size_t{0}, stored.size(),
-                      [&](std::size_t i) { stored[i] = compressed(in_order[i]->second); });
+                      [&](std::size_t i) { stored[i] = compressed(in_order[i]->second, CompressionLevel); });
 
     Header header{.magic = Magic,
                   .byte_order_mark = ByteOrderMark,

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "cubemap/light_layer.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
 #include "prt/precompute.h"
@@ -26,6 +27,15 @@ inline prt::Scene bunny(const std::filesystem::path& scene_file, const std::file
     scene.settings.tolerance = prt::PrecomputeOptions{}.tolerance;
     scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, {.bias = scene.settings.bias});
     return scene;
+}
+
+/// The disc of the editing experiments; its radius is a part of the map's width. A face, a quarter of the map's width around, spans 90 degrees.
+inline cubemap::LightLayer disc(const glm::dvec3& direction, double part_of_face, double intensity) {
+    cubemap::LightLayer layer;
+    layer.name = "disc";
+    layer.region = cubemap::Disc{.direction = direction, .radius_degrees = 90.0 * part_of_face};
+    layer.effect = cubemap::Emit{.radiance = glm::vec3(static_cast<float>(intensity))};
+    return layer;
 }
 
 } // namespace relumine::bench

@@ -34,16 +34,6 @@ struct Settings {
     std::uint32_t resolution = 1024;
 };
 
-/// A disc whose radius is a part of the map's width; a face, a quarter of the map's width around, spans 90 degrees.
-cubemap::LightLayer disc(const std::string& name, const glm::dvec3& direction, double part_of_face,
-                         double intensity) {
-    cubemap::LightLayer layer;
-    layer.name = name;
-    layer.region = cubemap::Disc{.direction = direction, .radius_degrees = 90.0 * part_of_face};
-    layer.effect = cubemap::Emit{.radiance = glm::vec3(static_cast<float>(intensity))};
-    return layer;
-}
-
 struct Figures {
     double average = 0.0, worst = 0.0, clusters = 0.0;
 };
@@ -54,10 +44,8 @@ Figures steps(relight::LightEditor& editor, const LayersAt& layers_at) {
     for (int step = 1; step <= NumSteps; ++step) {
         const auto layers = layers_at(static_cast<double>(step) / NumSteps);
         for (std::size_t i = 0; i < layers.size(); ++i) { // one disc is one edit, as an artist would drag it
-            const auto start = std::chrono::steady_clock::now();
-            const relight::UpdateReport report = editor.set_layer(i, layers[i]);
-            const double seconds =
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            relight::UpdateReport report;
+            const double seconds = bench::seconds_of([&] { report = editor.set_layer(i, layers[i]); });
             figures.average += seconds / (2 * NumSteps);
             figures.worst = std::max(figures.worst, seconds);
             figures.clusters += static_cast<double>(report.num_clusters) / (2 * NumSteps);
@@ -103,14 +91,13 @@ int main(int argc, char** argv) {
         }
         const glm::dvec3 front(0.15, 0.35, 1.0);
         const glm::dvec3 side(1.0, 0.35, 0.15);
-        editor.set_layers({disc("front", front, 0.05, 0.0), disc("side", side, 0.10, 0.0)});
+        editor.set_layers({bench::disc(front, 0.05, 0.0), bench::disc(side, 0.10, 0.0)});
         const Figures rising = steps(editor, [&](double t) {
-            return std::vector{disc("front", front, 0.05, 10.0 * t), disc("side", side, 0.10, 5.0 * t)};
+            return std::vector{bench::disc(front, 0.05, 10.0 * t), bench::disc(side, 0.10, 5.0 * t)};
         });
         const Figures moving = steps(editor, [&](double t) {
             const glm::dvec3 shift(0.0, 0.8 * t, -0.5 * t);
-            return std::vector{disc("front", front + shift, 0.05, 10.0),
-                               disc("side", side + shift, 0.10, 5.0)};
+            return std::vector{bench::disc(front + shift, 0.05, 10.0), bench::disc(side + shift, 0.10, 5.0)};
         });
         const double full_seconds = bench::median(full);
         fmt::print("Bunny, {} vertices, {} clusters, beach at R = {}; a full relight of the binned map and "

@@ -49,22 +49,15 @@ private:
     nlohmann::json json_;
 };
 
-cubemap::LightLayer disc(double part_of_face, double intensity) {
-    cubemap::LightLayer layer;
-    layer.name = "disc";
-    // A face, a quarter of the map's width around, spans 90 degrees.
-    layer.region = cubemap::Disc{.direction = {0.15, 0.35, 1.0}, .radius_degrees = 90.0 * part_of_face};
-    layer.effect = cubemap::Emit{.radiance = glm::vec3(static_cast<float>(intensity))};
-    return layer;
-}
-
 /// Median time of an edit that changes a disc's brightness.
 double edit_seconds(relight::LightEditor& editor, double part_of_face) {
-    editor.set_layers({disc(part_of_face, 0.0)});
+    const glm::dvec3 direction(0.15, 0.35, 1.0);
+    editor.set_layers({bench::disc(direction, part_of_face, 0.0)});
     constexpr int NumEdits = 200;
     std::vector<double> seconds;
     for (int i = 1; i <= NumEdits; ++i)
-        seconds.push_back(bench::seconds_of([&] { editor.set_layer(0, disc(part_of_face, 0.05 * i)); }));
+        seconds.push_back(
+            bench::seconds_of([&] { editor.set_layer(0, bench::disc(direction, part_of_face, 0.05 * i)); }));
     return bench::median(seconds);
 }
 

@@ -8,20 +8,11 @@
 
 #include "prt/ray_scene.h"
 #include "tests/prt/memory_checkpoint.h"
+#include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
 namespace {
-
-void expect_same(const Transfer& a, const Transfer& b) {
-    ASSERT_EQ(a.quadtree.split_flags(), b.quadtree.split_flags());
-    EXPECT_EQ(a.order, b.order);
-    EXPECT_EQ(a.normals, b.normals);
-    EXPECT_EQ(a.counts.visible, b.counts.visible);
-    EXPECT_EQ(a.counts.mixed, b.counts.mixed);
-    EXPECT_EQ(a.counts.mixed_before, b.counts.mixed_before);
-    EXPECT_EQ(a.counts.counts, b.counts.counts);
-}
 
 class ClusteringTest : public testing::Test {
 protected:

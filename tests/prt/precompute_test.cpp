@@ -19,6 +19,7 @@
 #include "prt/ray_scene.h"
 #include "prt/receiver_order.h"
 #include "tests/prt/analytic_blockers.h"
+#include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -36,16 +37,6 @@ std::vector<double> radiance_under_white(const Transfer& transfer) {
         }
     }
     return radiance;
-}
-
-void expect_same(const Transfer& a, const Transfer& b) {
-    EXPECT_EQ(a.quadtree.split_flags(), b.quadtree.split_flags());
-    EXPECT_EQ(a.order, b.order);
-    EXPECT_EQ(a.normals, b.normals);
-    EXPECT_EQ(a.counts.visible, b.counts.visible);
-    EXPECT_EQ(a.counts.mixed, b.counts.mixed);
-    EXPECT_EQ(a.counts.mixed_before, b.counts.mixed_before);
-    EXPECT_EQ(a.counts.counts, b.counts.counts);
 }
 
 /// Receivers of random normals at random places.
