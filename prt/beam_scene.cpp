@@ -1,23 +1,23 @@
 #include "prt/beam_scene.h"
 
 #include <algorithm>
-#include <cmath>
-#include <functional>
-#include <limits>
-#include <numeric>
+#include <array>
+#include <cstddef>
+#include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "mesh/flat_regions.h"
 #include "prt/beam_kernels.h"
+#include "prt/bit_matrix.h"
+#include "prt/parallel_rays.h"
+#include "prt/shaft.h"
+#include "prt/shaft_leaves.h"
 #include "prt/triangle_tree.h"
 
 namespace relumine::prt {
 namespace {
-
-/// Widest side of a patch's rectangle, in units of its distance. Beyond it a shaft holds most of a scene.
-constexpr float WidestPatch = 1.1f;
 
 /// Coordinates beyond which triple products overflow, in this file's tests or in the exact tracer's, whose answers are then its own.
 constexpr float LargestReach = 1e12f;
@@ -25,94 +25,72 @@ constexpr float LargestReach = 1e12f;
 /// above their surface, and the ray tracer has been seen to hit what the bounds here exclude.
 constexpr float FarAway = 256.0f;
 
-/// Sum of the absolute components.
-float norm_1(const glm::vec3& v) {
-    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
-}
-
-float bins_per_unit(float begin, float end) {
-    return static_cast<float>(PatchPlane::NumBins) / std::max(end - begin, 1e-6f);
-}
-
-/// The same sum as for the ends of what a box covers, so that rounding keeps their order.
-std::size_t bin(float x, float begin, float bins_per_unit) {
-    const float place = std::floor((x - begin) * bins_per_unit);
-    return static_cast<std::size_t>(std::clamp(place, 0.0f, static_cast<float>(PatchPlane::NumBins - 1)));
-}
-
-PatchPlane patch_plane(const DirectionPatch& patch) {
-    PatchPlane plane;
-    const glm::vec3 first = patch.direction(0);
-    const glm::vec3 size = glm::abs(first);
-    plane.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    plane.sign = first[plane.axis] > 0.0f ? 1.0f : -1.0f;
-    plane.s0 = plane.t0 = std::numeric_limits<float>::infinity();
-    plane.s1 = plane.t1 = -plane.s0;
-    for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
-        const glm::vec3 w = patch.direction(j);
-        const float along = plane.sign * w[plane.axis];
-        if (!(along > 0.1f))
-            return plane;
-        plane.s[j] = w[(plane.axis + 1) % 3] / along;
-        plane.t[j] = w[(plane.axis + 2) % 3] / along;
-        plane.s0 = std::min(plane.s0, plane.s[j]);
-        plane.s1 = std::max(plane.s1, plane.s[j]);
-        plane.t0 = std::min(plane.t0, plane.t[j]);
-        plane.t1 = std::max(plane.t1, plane.t[j]);
+/// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right through an edge may depend on the packet's other rays.
+void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch, std::uint64_t doubts,
+         std::uint64_t asked, std::uint64_t& rays) {
+    for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
+        constexpr std::uint64_t PacketBits = 0xffff;
+        if ((doubts >> (p * PacketSize) & PacketBits) == 0)
+            continue;
+        const auto active = static_cast<std::uint32_t>(asked >> (p * PacketSize) & PacketBits);
+        const std::uint64_t blocked = exact.occluded(origin, patch.packets[p], active);
+        rays &= ~(blocked << (p * PacketSize));
     }
-    plane.narrow = std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) < WidestPatch &&
-                   std::max({plane.s1, -plane.s0, plane.t1, -plane.t0}) < 2.0f;
-    // The quotients are off by a rounding of themselves.
-    constexpr float Slack = 8.0f * Rounding;
-    plane.s0 -= Slack;
-    plane.s1 += Slack;
-    plane.t0 -= Slack;
-    plane.t1 += Slack;
-    plane.bins_per_s = bins_per_unit(plane.s0, plane.s1);
-    plane.bins_per_t = bins_per_unit(plane.t0, plane.t1);
-    for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
-        const std::uint64_t bit = std::uint64_t{1} << j;
-        plane.from_s[bin(plane.s[j], plane.s0, plane.bins_per_s)] |= bit;
-        plane.from_t[bin(plane.t[j], plane.t0, plane.bins_per_t)] |= bit;
-    }
-    std::partial_sum(plane.from_s.begin(), plane.from_s.end(), plane.until_s.begin(), std::bit_or());
-    std::partial_sum(plane.from_t.begin(), plane.from_t.end(), plane.until_t.begin(), std::bit_or());
-    std::partial_sum(plane.from_s.rbegin(), plane.from_s.rend(), plane.from_s.rbegin(), std::bit_or());
-    std::partial_sum(plane.from_t.rbegin(), plane.from_t.rend(), plane.from_t.rbegin(), std::bit_or());
-    return plane;
 }
 
-/// The planes of a patch; offsets are left at infinity. The first four pass through the sides of the rectangle, the fifth is behind the
-/// receivers, the sixth is the receivers' own ground, turned towards the patch until all directions leave it.
-Shaft shaft_of(const PatchPlane& patch, const glm::vec3& mean_normal) {
-    const auto vector = [&](float along, float s, float t) {
-        glm::vec3 v;
-        v[patch.axis] = patch.sign * along;
-        v[(patch.axis + 1) % 3] = s;
-        v[(patch.axis + 2) % 3] = t;
-        return v;
-    };
-    Shaft shaft;
-    shaft.axis = patch.axis;
-    shaft.sign = patch.sign;
-    shaft.normals = {vector(-patch.s0, 1, 0), vector(patch.s1, -1, 0), vector(-patch.t0, 0, 1),
-                     vector(patch.t1, 0, -1), vector(1, 0, 0),         vector(1, 0, 0)};
-    shaft.corners = {vector(1, patch.s0, patch.t0), vector(1, patch.s1, patch.t0),
-                     vector(1, patch.s0, patch.t1), vector(1, patch.s1, patch.t1)};
-    const float length = glm::length(mean_normal);
-    if (length > 0.0f) {
-        const glm::vec3 normal = mean_normal / length;
-        float least = std::numeric_limits<float>::infinity();
-        for (const glm::vec3& corner : shaft.corners)
-            least = std::min(least, glm::dot(normal, corner));
-        constexpr float Slack = 32.0f * Rounding; // of that product
-        const float turn = std::max(0.0f, Slack - least);
-        shaft.normals.back() = normal + turn * vector(1, 0, 0);
+/// A word for each receiver, bits are directions; or, for each 64 receivers, a word for each direction.
+using RayWords = std::array<std::uint64_t, ReceiverBlock::MaxSize>;
+
+/// Turns one into the other.
+void transpose_squares(RayWords& words) {
+    for (std::size_t first = 0; first < words.size(); first += DirectionPatch::Size)
+        transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first, DirectionPatch::Size));
+}
+
+/// Around the rays that are asked for.
+Shaft shaft_of_rays(const ReceiverBlock& block, const PatchPlane& plane, const TriangleTree& tree,
+                    float reach, std::span<const std::uint64_t> rays) {
+    Shaft shaft = shaft_of(plane, block.mean_normal, reach);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (rays[i] == 0)
+            continue;
+        shaft.origins_low = glm::min(shaft.origins_low, block.origins[i]);
+        shaft.origins_high = glm::max(shaft.origins_high, block.origins[i]);
+        const glm::vec3 origin = block.origins[i] - tree.centre;
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
+            shaft.offsets[k] =
+                std::min(shaft.offsets[k], glm::dot(shaft.normals[k], origin) - shaft.margins[k]);
     }
-    shaft.offsets.fill(std::numeric_limits<float>::infinity());
-    shaft.origins_low = glm::vec3(std::numeric_limits<float>::infinity());
-    shaft.origins_high = -shaft.origins_low;
     return shaft;
+}
+
+/// One direction after the other, all receivers at once.
+void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverBlock& block,
+                        const BlockOrigins& origins, const DirectionPatch& patch, const PatchPlane& plane,
+                        std::span<std::uint64_t> rays) {
+    static_assert(std::tuple_size_v<ReceiverBits> * DirectionPatch::Size == ReceiverBlock::MaxSize);
+    RayWords lit{}, doubts{};
+    std::copy(rays.begin(), rays.end(), lit.begin());
+    transpose_squares(lit);
+    for (std::size_t j = 0; j < patch.num_directions; ++j) {
+        ReceiverBits active;
+        for (std::size_t word = 0; word < active.size(); ++word)
+            active[word] = lit[word * DirectionPatch::Size + j];
+        if (active == ReceiverBits{})
+            continue;
+        const ParallelResult result =
+            test_parallel_rays(tree, patch, plane, j, block.mean_normal, origins, active);
+        for (std::size_t word = 0; word < active.size(); ++word) {
+            lit[word * DirectionPatch::Size + j] &= ~result.blocked[word];
+            doubts[word * DirectionPatch::Size + j] = result.doubtful[word];
+        }
+    }
+    transpose_squares(lit);
+    transpose_squares(doubts);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::uint64_t asked = std::exchange(rays[i], lit[i]);
+        ask(exact, block.origins[i], patch, doubts[i], asked, rays[i]);
+    }
 }
 
 } // namespace
@@ -120,10 +98,12 @@ Shaft shaft_of(const PatchPlane& patch, const glm::vec3& mean_normal) {
 struct BeamScene::Impl {
     TriangleTree tree;
     const Blockers& exact;
+    std::size_t crowded_shaft;
 };
 
-BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact)
-    : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact}) {}
+BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact, std::size_t crowded_shaft)
+    : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact,
+                     std::min(crowded_shaft, CrowdedShaft)}) {}
 
 BeamScene::~BeamScene() = default;
 BeamScene::BeamScene(BeamScene&&) noexcept = default;
@@ -136,39 +116,21 @@ std::uint32_t BeamScene::occluded(const glm::vec3& origin, const DirectionPacket
 
 void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
                               std::span<std::uint64_t> rays) const {
-    const TriangleTree& tree = impl_->tree;
+    const auto& [tree, exact, crowded_shaft] = *impl_;
+    if (rays.empty())
+        return;
     const PatchPlane plane = patch_plane(patch);
     const glm::vec3 place = glm::abs(tree.centre);
-    if (!plane.narrow || std::max({place.x, place.y, place.z}) > FarAway * tree.extent) {
-        impl_->exact.clear_blocked(block, patch, rays);
+    const BlockOrigins origins(block, tree);
+    const bool is_far = std::max({place.x, place.y, place.z}) > FarAway * tree.extent;
+    if (!plane.narrow || is_far || !(origins.reach < LargestReach)) {
+        exact.clear_blocked(block, patch, rays);
         return;
     }
-
-    // The shaft starts at the receivers that have rays.
-    Shaft shaft = shaft_of(plane, block.mean_normal);
-    shaft.reach = tree.extent;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (rays[i] == 0)
-            continue;
-        shaft.origins_low = glm::min(shaft.origins_low, block.origins[i]);
-        shaft.origins_high = glm::max(shaft.origins_high, block.origins[i]);
-        const glm::vec3 origin = block.origins[i] - tree.centre;
-        const glm::vec3 size = glm::abs(origin);
-        shaft.reach = std::max({shaft.reach, size.x, size.y, size.z});
-        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-            shaft.offsets[k] = std::min(shaft.offsets[k], glm::dot(shaft.normals[k], origin));
-    }
-    for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
-        // Moving to the tree's centre rounds once, the products and sums three times, on both sides: 8. The exact tracer may see a
-        // corner a few roundings of its distance off. The bound is generous, and still far below the usual bias.
-        shaft.margins[k] =
-            64.0f * Rounding * norm_1(shaft.normals[k]) * shaft.reach + std::numeric_limits<float>::min();
-        shaft.offsets[k] -= shaft.margins[k];
-    }
-
     thread_local ShaftLeaves leaves;
-    if (!(shaft.reach < LargestReach) || !find_leaves(tree, shaft, leaves)) {
-        impl_->exact.clear_blocked(block, patch, rays);
+    const Shaft shaft = shaft_of_rays(block, plane, tree, origins.reach, rays);
+    if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
+        clear_by_direction(tree, exact, block, origins, patch, plane, rays);
         return;
     }
     if (leaves.size == 0)
@@ -178,15 +140,7 @@ void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& 
             continue;
         const std::uint64_t asked = rays[i];
         const std::uint64_t doubts = clear_certain(tree, plane, shaft, leaves, block.origins[i], rays[i]);
-        for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
-            constexpr std::uint64_t PacketBits = 0xffff;
-            if ((doubts >> (p * PacketSize) & PacketBits) == 0)
-                continue;
-            // The whole packet: the exact tracer's answer for a ray right through an edge may depend on the packet's other rays.
-            const auto active = static_cast<std::uint32_t>(asked >> (p * PacketSize) & PacketBits);
-            const std::uint64_t blocked = impl_->exact.occluded(block.origins[i], patch.packets[p], active);
-            rays[i] &= ~(blocked << (p * PacketSize));
-        }
+        ask(exact, block.origins[i], patch, doubts, asked, rays[i]);
     }
 }
 

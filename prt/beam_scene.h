@@ -1,6 +1,7 @@
 // Shadows of whole beams of rays: faster than ray by ray, with the same answers bit by bit.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -22,12 +23,20 @@ namespace relumine::prt {
 ///
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result is beyond its bound. A ray hits a
 /// triangle for certain, misses all of them for certain, or is in doubt (it passes an edge within some 1e-6 of its length), and
-/// then `exact` is asked. So are wide patches and crowded shafts, where a beam does not pay,
-/// and all rays of a scene that is very far from the origin.
+/// then `exact` is asked. So are wide patches, and all rays of a scene that is very far from the origin.
+///
+/// A shaft of a fixed angle holds the more triangles the finer the mesh is, while a block of receivers shrinks with them. So a crowded patch
+/// is traced direction by direction, all receivers of the block together (parallel_rays.h), which costs the same for any number
+/// of triangles but for the depth of the tree.
 class BeamScene final : public Blockers {
 public:
-    /// `exact` traces the same mesh's triangles and must outlive this; the mesh may go. About 250 bytes per triangle.
-    BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact);
+    /// Leaves of up to 16 triangles in a shaft, beyond which directions are traced one by one. Measured (docs/performance.md).
+    static constexpr std::size_t CrowdedShaft = 1024;
+
+    /// `exact` traces the same mesh's triangles and must outlive this; the mesh may go. About 250 bytes per triangle. `crowded_shaft`,
+    /// at most the default, changes no answer.
+    BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
+              std::size_t crowded_shaft = CrowdedShaft);
     ~BeamScene() override;
     BeamScene(BeamScene&&) noexcept;
     BeamScene& operator=(BeamScene&&) noexcept;

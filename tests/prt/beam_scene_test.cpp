@@ -63,11 +63,12 @@ struct Tally {
     std::size_t num_blocked = 0;
 };
 
-/// Blocks of receivers of all sizes through patches of all widths: the very bits of the ray tracer.
+/// Blocks of receivers of all sizes through patches of all widths, patch by patch and direction by direction: the very bits of the ray tracer.
 Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& origins,
               const std::vector<glm::vec3>& normals, std::uint32_t seed, int rounds) {
     const RayScene rays(mesh);
     const BeamScene beams(mesh, rays);
+    const BeamScene by_direction(mesh, rays, 0);
     std::mt19937 random(seed);
     Tally tally;
     for (int round = 0; round < rounds; ++round) {
@@ -81,10 +82,14 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
                 if (glm::dot(normals[first + i], patch.direction(j)) > 0.0f)
                     asked[i] |= std::uint64_t{1} << j;
         const ReceiverBlock block{std::span(origins).subspan(first, size), hint};
-        std::vector<std::uint64_t> expected = asked, got = asked;
-        rays.clear_blocked(block, patch, expected);
-        beams.clear_blocked(block, patch, got);
-        EXPECT_EQ(got, expected) << "round " << round << " of seed " << seed;
+        const auto lit = [&](const Blockers& blockers) {
+            std::vector<std::uint64_t> result = asked;
+            blockers.clear_blocked(block, patch, result);
+            return result;
+        };
+        const std::vector<std::uint64_t> expected = lit(rays);
+        EXPECT_EQ(lit(beams), expected) << "round " << round << " of seed " << seed;
+        EXPECT_EQ(lit(by_direction), expected) << "round " << round << " of seed " << seed;
         for (std::size_t i = 0; i < size; ++i) {
             tally.num_rays += static_cast<std::size_t>(std::popcount(asked[i]));
             tally.num_blocked += static_cast<std::size_t>(std::popcount(asked[i] & ~expected[i]));
@@ -205,42 +210,72 @@ TEST(BeamScene, NoTrianglesBlockNothing) {
 TEST(BeamScene, AsksTheRayTracerOnlyWhereItMust) {
     const mesh::TriangleMesh mesh = things_on_a_floor();
     const RayScene rays(mesh);
-    const scenes::CountingBlockers counting(rays);
-    const BeamScene beams(mesh, counting);
-    std::mt19937 random(13);
-    std::size_t num_rays = 0;
-    for (int round = 0; round < 300; ++round) {
-        const std::vector<glm::vec3> origins(mesh.positions.begin() +
-                                                 static_cast<std::ptrdiff_t>(random() % 900),
-                                             mesh.positions.begin() + 1000);
-        std::vector<glm::vec3> lifted;
-        for (std::size_t i = 0; i < std::min(origins.size(), ReceiverBlock::MaxSize); ++i)
-            lifted.push_back(origins[i] + glm::vec3(0.0137f, 0.001f, 0.0071f)); // off the edges
-        const DirectionPatch patch = lattice_patch({.face = cubemap::Face::PositiveY,
-                                                    .level = 4,
-                                                    .x = static_cast<std::uint32_t>(random() % 16),
-                                                    .y = static_cast<std::uint32_t>(random() % 16)},
-                                                   8);
-        std::vector<std::uint64_t> lit(lifted.size(), all_of(patch));
-        num_rays += 64 * lifted.size();
-        beams.clear_blocked({lifted, {0, 1, 0}}, patch, lit);
+    for (const std::size_t crowded_shaft : {BeamScene::CrowdedShaft, std::size_t{0}}) {
+        const scenes::CountingBlockers counting(rays);
+        const BeamScene beams(mesh, counting, crowded_shaft);
+        std::mt19937 random(13);
+        std::size_t num_rays = 0;
+        for (int round = 0; round < 300; ++round) {
+            const std::vector<glm::vec3> origins(mesh.positions.begin() +
+                                                     static_cast<std::ptrdiff_t>(random() % 900),
+                                                 mesh.positions.begin() + 1000);
+            std::vector<glm::vec3> lifted;
+            for (std::size_t i = 0; i < std::min(origins.size(), ReceiverBlock::MaxSize); ++i)
+                lifted.push_back(origins[i] + glm::vec3(0.0137f, 0.001f, 0.0071f)); // off the edges
+            const DirectionPatch patch = lattice_patch({.face = cubemap::Face::PositiveY,
+                                                        .level = 4,
+                                                        .x = static_cast<std::uint32_t>(random() % 16),
+                                                        .y = static_cast<std::uint32_t>(random() % 16)},
+                                                       8);
+            std::vector<std::uint64_t> lit(lifted.size(), all_of(patch));
+            num_rays += 64 * lifted.size();
+            beams.clear_blocked({lifted, {0, 1, 0}}, patch, lit);
+        }
+        EXPECT_GT(num_rays, 1000000u);
+        EXPECT_LT(static_cast<double>(counting.rays().size()), 0.01 * static_cast<double>(num_rays));
     }
-    EXPECT_GT(num_rays, 1000000u);
-    EXPECT_LT(static_cast<double>(counting.rays().size()), 0.01 * static_cast<double>(num_rays));
+}
+
+// What the doubts of a fine mesh far from its receivers are: triangles a thousand times smaller than their distance.
+TEST(BeamScene, AsksTheRayTracerRarelyOnFineMeshes) {
+    const mesh::TriangleMesh fine = scenes::icosphere(6, 1.0f, glm::vec3(0.0f, 0.0f, 20.0f)); // edges of 0.02
+    const RayScene rays(fine);
+    const scenes::CountingBlockers counting(rays);
+    const BeamScene beams(fine, counting, 0);
+    std::mt19937 random(14);
+    std::vector<glm::vec3> origins;
+    for (std::size_t i = 0; i < ReceiverBlock::MaxSize; ++i)
+        origins.push_back(0.05f * scenes::random_direction(random));
+    std::size_t num_blocked = 0;
+    for (int round = 0; round < 20; ++round) {
+        DirectionPatch patch;
+        while (!patch.full())
+            patch.add(glm::normalize(glm::vec3(0.0f, 0.0f, 20.0f) + scenes::random_direction(random)));
+        std::vector<std::uint64_t> lit(origins.size(), all_of(patch)), expected = lit;
+        beams.clear_blocked({origins, {0, 0, 1}}, patch, lit);
+        rays.clear_blocked({origins, {0, 0, 1}}, patch, expected);
+        EXPECT_EQ(lit, expected);
+        for (const std::uint64_t word : lit)
+            num_blocked += static_cast<std::size_t>(64 - std::popcount(word));
+    }
+    EXPECT_GT(num_blocked, 100000u);
+    EXPECT_LT(static_cast<double>(counting.rays().size()), 0.05 * static_cast<double>(num_blocked));
 }
 
 TEST(BeamScene, ChangesNoTransfer) {
     const auto same = [](const mesh::TriangleMesh& mesh, const std::string& name) {
         const RayScene rays(mesh);
-        const BeamScene beams(mesh, rays);
         const PrecomputeOptions options{
             .tolerance = 0.08f, .face_resolution = 64, .bias = automatic_bias(mesh)};
         const Transfer a = precompute(vertex_receivers(mesh), rays, options);
-        const Transfer b = precompute(vertex_receivers(mesh), beams, options);
-        EXPECT_EQ(a.quadtree.split_flags(), b.quadtree.split_flags()) << name;
-        EXPECT_EQ(a.counts.visible, b.counts.visible) << name;
-        EXPECT_EQ(a.counts.mixed, b.counts.mixed) << name;
-        EXPECT_EQ(a.counts.counts, b.counts.counts) << name;
+        for (const std::size_t crowded_shaft : {BeamScene::CrowdedShaft, std::size_t{0}}) {
+            const BeamScene beams(mesh, rays, crowded_shaft);
+            const Transfer b = precompute(vertex_receivers(mesh), beams, options);
+            EXPECT_EQ(a.quadtree.split_flags(), b.quadtree.split_flags()) << name;
+            EXPECT_EQ(a.counts.visible, b.counts.visible) << name;
+            EXPECT_EQ(a.counts.mixed, b.counts.mixed) << name;
+            EXPECT_EQ(a.counts.counts, b.counts.counts) << name;
+        }
     };
     same(things_on_a_floor(), "things on a floor");
     const std::filesystem::path ugly = std::filesystem::path(RELUMINE_DATA_DIR) / "meshes/ugly";
