@@ -11,6 +11,7 @@
 
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 namespace relumine::prt {
 
@@ -35,6 +36,13 @@ void throw_on_error(RTCDevice device, const char* action) {
     if (error != RTC_ERROR_NONE)
         throw std::runtime_error(
             fmt::format("Embree could not {} (error {})", action, static_cast<int>(error)));
+}
+
+/// Whether the corners lie on one line. Exact unless coordinates differ by more than a factor of 2^28.
+bool has_no_area(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle) {
+    const glm::dvec3 corner(mesh.positions[triangle[0]]);
+    return glm::cross(glm::dvec3(mesh.positions[triangle[1]]) - corner,
+                      glm::dvec3(mesh.positions[triangle[2]]) - corner) == glm::dvec3(0.0);
 }
 
 /// Copies an array into a geometry buffer; Embree pads it as its kernels need.
@@ -68,8 +76,17 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl
     rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
 
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions);
-    fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.triangles);
+    // A triangle without area blocks nothing, but Embree's edge functions, all zero, say "hit" to rays that pass beside it in a plane with
+    // it. It gets a corner that is no number, with which Embree drops it; the others keep their numbers.
+    std::vector<glm::vec3> positions = mesh.positions;
+    std::vector<mesh::Triangle> triangles = mesh.triangles;
+    const auto nowhere = static_cast<std::uint32_t>(positions.size());
+    positions.emplace_back(std::numeric_limits<float>::quiet_NaN());
+    for (mesh::Triangle& triangle : triangles)
+        if (has_no_area(mesh, triangle))
+            triangle = {nowhere, nowhere, nowhere};
+    fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions);
+    fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene.get(), geometry);
     rtcReleaseGeometry(geometry);
