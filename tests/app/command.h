@@ -13,6 +13,13 @@
 
 namespace relumine::app {
 
+/// What a build with sanitizers may take of each, in units of what the program as it is shipped may take.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr int SanitizerFactor = 20;
+#else
+inline constexpr int SanitizerFactor = 1;
+#endif
+
 /// What a command did.
 struct Result {
     int exit_code = -1; ///< -1 when a signal ended it

@@ -22,12 +22,13 @@ protected:
                    std::chrono::milliseconds delay) const {
         const std::vector<std::string> before = files();
         Process process(folder(), arguments);
-        std::this_thread::sleep_for(delay);
+        std::this_thread::sleep_for(SanitizerFactor * delay);
         ASSERT_TRUE(process.is_running()) << "done before it could be stopped";
         const Clock::time_point sent = Clock::now();
         process.send(signal);
         const Result result = process.wait();
-        EXPECT_LT(Clock::now() - sent, std::chrono::milliseconds(1500)) << result.described();
+        EXPECT_LT(Clock::now() - sent, SanitizerFactor * std::chrono::milliseconds(1500))
+            << result.described();
         EXPECT_EQ(result.exit_code, 1) << result.described();
         EXPECT_EQ(result.out, "");
         EXPECT_EQ(result.err, "relumine: cancelled; nothing was written\n");

