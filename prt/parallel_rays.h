@@ -20,9 +20,9 @@ struct BlockOrigins {
 
     BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree);
 
-    std::span<const glm::vec3> all;             ///< as they are
     alignas(64) std::array<Row, 3> from_centre; ///< x, y, z from the tree's centre
     alignas(64) std::array<Row, 3> from_middle; ///< from the middle of the block
+    std::span<const glm::vec3> all;             ///< as they are
     glm::vec3 middle{0.0f};
     float radius = 0.0f; ///< largest coordinate from the middle
     float reach =

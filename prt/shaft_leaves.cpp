@@ -117,37 +117,63 @@ bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre, co
     return inside;
 }
 
-bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most, ShaftLeaves& leaves) {
-    leaves.found.clear();
-    leaves.stack.clear();
-    if (!tree.nodes.empty())
-        leaves.stack.push_back(0);
+/// Ascending by `near`, then by `place`.
+std::uint64_t sort_key(float near, std::size_t place) {
+    const auto bits = std::bit_cast<std::uint32_t>(near);
+    const std::uint32_t ascending = (bits >> 31u) != 0 ? ~bits : bits | 0x80000000u;
+    return std::uint64_t{ascending} << 32u | place;
+}
+
+/// Where a child's box begins along the shaft's axis.
+float near_side(const TriangleTree::Node& node, std::size_t lane, const Shaft& shaft) {
     const auto axis = static_cast<std::size_t>(shaft.axis);
+    return shaft.sign > 0.0f ? node.bounds[axis][lane] : -node.bounds[axis + 3][lane];
+}
+
+/// Calls visit(node, lane, leaf, supports) for each leaf whose box reaches into the shaft, until it returns false.
+template<class Visit>
+bool visit_leaves(const TriangleTree& tree, const Shaft& shaft, std::vector<std::int32_t>& stack,
+                  const Visit& visit) {
+    stack.clear();
+    if (!tree.nodes.empty())
+        stack.push_back(0);
     alignas(64) Supports supports;
-    while (!leaves.stack.empty()) {
-        if (leaves.found.size() > most)
-            return false;
-        const std::int32_t index = leaves.stack.back();
+    while (!stack.empty()) {
+        const std::int32_t index = stack.back();
         const TriangleTree::Node& node = tree.nodes[static_cast<std::size_t>(index)];
-        leaves.stack.pop_back();
+        stack.pop_back();
         for (std::uint32_t bits = children_inside(node, shaft, supports); bits != 0; bits &= bits - 1) {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-            if (node.child[lane] >= 0)
-                leaves.stack.push_back(node.child[lane]);
-            else if (!leaves_planes(tree.leaves[static_cast<std::size_t>(~node.child[lane])], shaft))
-                leaves.found.push_back(
-                    {shaft.sign > 0.0f ? node.bounds[axis][lane] : -node.bounds[axis + 3][lane], index,
-                     lane});
+            const std::int32_t child = node.child[lane];
+            if (child >= 0)
+                stack.push_back(child);
+            else if (!visit(index, lane, ~child, supports))
+                return false;
         }
     }
-    if (leaves.found.size() > most)
+    return true;
+}
+
+bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most, ShaftLeaves& leaves) {
+    leaves.found.clear();
+    leaves.order.clear();
+    const auto add = [&](std::int32_t node, std::uint32_t lane, std::int32_t leaf, const Supports&) {
+        if (leaves_planes(tree.leaves[static_cast<std::size_t>(leaf)], shaft))
+            return true;
+        const float near = near_side(tree.nodes[static_cast<std::size_t>(node)], lane, shaft);
+        leaves.order.push_back(sort_key(near, leaves.found.size()));
+        leaves.found.push_back({.node = node, .lane = lane, .leaf = leaf});
+        return leaves.found.size() <= most;
+    };
+    if (!visit_leaves(tree, shaft, leaves.stack, add))
         return false;
-    std::sort(leaves.found.begin(), leaves.found.end(),
-              [](const ShaftLeaves::Found& a, const ShaftLeaves::Found& b) { return a.near < b.near; });
+    std::sort(leaves.order.begin(), leaves.order.end());
+    const auto axis = static_cast<std::size_t>(shaft.axis);
     leaves.size = 0;
-    for (const ShaftLeaves::Found& found : leaves.found) {
+    for (const std::uint64_t key : leaves.order) {
+        const ShaftLeaves::Found& found = leaves.found[key & 0xffffffff];
         const TriangleTree::Node& node = tree.nodes[static_cast<std::size_t>(found.node)];
-        const std::int32_t leaf = ~node.child[found.lane];
+        const std::int32_t leaf = found.leaf;
         const std::size_t i = leaves.size;
         if (!supports_inside(tree.leaves[static_cast<std::size_t>(leaf)], tree.centre, shaft, leaves, i))
             continue;
@@ -159,7 +185,7 @@ bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
         const auto high = [&](std::size_t a) {
             return node.bounds[a % 3 + 3][found.lane];
         };
-        leaves.boxes[0][i] = found.near;
+        leaves.boxes[0][i] = near_side(node, found.lane, shaft);
         leaves.boxes[1][i] = shaft.sign > 0.0f ? high(axis) : -low(axis);
         leaves.boxes[2][i] = low(axis + 1);
         leaves.boxes[3][i] = high(axis + 1);
@@ -172,40 +198,20 @@ bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
     return true;
 }
 
-/// Ascending by `near`, then by `place`.
-std::uint64_t sort_key(float near, std::size_t place) {
-    const auto bits = std::bit_cast<std::uint32_t>(near);
-    const std::uint32_t ascending = (bits >> 31u) != 0 ? ~bits : bits | 0x80000000u;
-    return std::uint64_t{ascending} << 32u | place;
-}
-
 bool find_boxes(const TriangleTree& tree, const Shaft& shaft, std::size_t most, ShaftBoxes& boxes) {
     boxes.found.clear();
     boxes.order.clear();
-    boxes.stack.clear();
-    if (!tree.nodes.empty())
-        boxes.stack.push_back(0);
-    const auto axis = static_cast<std::size_t>(shaft.axis);
-    alignas(64) Supports supports;
-    while (!boxes.stack.empty()) {
-        const TriangleTree::Node& node = tree.nodes[static_cast<std::size_t>(boxes.stack.back())];
-        boxes.stack.pop_back();
-        for (std::uint32_t bits = children_inside(node, shaft, supports); bits != 0; bits &= bits - 1) {
-            const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
-            if (node.child[lane] >= 0) {
-                boxes.stack.push_back(node.child[lane]);
-                continue;
-            }
-            const float near = shaft.sign > 0.0f ? node.bounds[axis][lane] : -node.bounds[axis + 3][lane];
-            boxes.order.push_back(sort_key(near, boxes.found.size()));
-            ShaftBoxes::Found& found = boxes.found.emplace_back();
-            found.leaf = ~node.child[lane];
-            for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-                found.supports[k] = supports[k][lane];
-        }
-        if (boxes.found.size() > most)
-            return false;
-    }
+    const auto add = [&](std::int32_t node, std::uint32_t lane, std::int32_t leaf, const Supports& supports) {
+        const float near = near_side(tree.nodes[static_cast<std::size_t>(node)], lane, shaft);
+        boxes.order.push_back(sort_key(near, boxes.found.size()));
+        ShaftBoxes::Found& found = boxes.found.emplace_back();
+        found.leaf = leaf;
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
+            found.supports[k] = supports[k][lane];
+        return boxes.found.size() <= most;
+    };
+    if (!visit_leaves(tree, shaft, boxes.stack, add))
+        return false;
     std::sort(boxes.order.begin(), boxes.order.end());
     return true;
 }

@@ -25,11 +25,12 @@ struct ShaftLeaves {
     std::array<std::int32_t, MaxSize + Padding> leaves;
 
     struct Found {
-        float near = 0.0f;
         std::int32_t node = 0;
         std::uint32_t lane = 0;
+        std::int32_t leaf = 0;
     };
-    std::vector<Found> found;
+    std::vector<Found> found;         ///< before their triangles are looked at
+    std::vector<std::uint64_t> order; ///< sorted from near to far; the lower 32 bits are places in `found`
     std::vector<std::int32_t> stack;
 };
 
@@ -45,7 +46,7 @@ struct ShaftBoxes {
         std::int32_t leaf = 0;
     };
     std::vector<Found> found;
-    std::vector<std::uint64_t> order; ///< sorted; the lower 32 bits are places in `found`
+    std::vector<std::uint64_t> order; ///< sorted from near to far; the lower 32 bits are places in `found`
     std::vector<std::int32_t> stack;
 };
 

@@ -79,7 +79,8 @@ std::pair<Part, Part> split(const Part& part) {
     for (const Item& item : part.items)
         middles.include({item.middle(0), item.middle(1), item.middle(2)});
     const auto leaves = [](std::size_t n) {
-        return static_cast<double>((n + Width - 1) / Width);
+        const std::size_t num_leaves = (n + Width - 1) / Width;
+        return static_cast<double>(num_leaves);
     };
 
     double best_cost = std::numeric_limits<double>::infinity();

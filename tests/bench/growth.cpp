@@ -29,6 +29,7 @@ namespace {
 /// Steps of about the square root of ten.
 constexpr std::size_t VertexSteps[] = {20'000, 63'000, 200'000, 630'000, 2'000'000};
 constexpr std::size_t TriangleSteps[] = {10'000, 50'000, 250'000, 1'000'000, 5'000'000};
+constexpr std::size_t MeshSteps[] = {100'000, 500'000, 2'000'000};
 constexpr float ToleranceSteps[] = {0.1f, 0.056f, 0.032f, 0.018f, 0.01f};
 
 constexpr float GrowthTolerance = 0.05f;     ///< where vertices or blockers grow
@@ -133,6 +134,19 @@ std::vector<Cost> against_vertices(std::size_t most) {
     return costs;
 }
 
+/// The same knot in more and more vertices, as finely clustered as users ask for who ask for nothing.
+std::vector<Cost> against_mesh_size(std::size_t most) {
+    std::vector<Cost> costs;
+    for (const std::size_t num_vertices : MeshSteps) {
+        if (num_vertices > most)
+            break;
+        const mesh::TriangleMesh mesh = data_gen::knot(num_vertices);
+        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), prt::PrecomputeOptions{}.tolerance));
+        costs.back().x = static_cast<double>(mesh.num_vertices());
+    }
+    return costs;
+}
+
 std::vector<Cost> against_clusters() {
     const mesh::TriangleMesh mesh = data_gen::blob(BlobVertices);
     std::vector<Cost> costs;
@@ -171,21 +185,27 @@ std::vector<Cost> against_blockers(std::size_t most) {
 
 int main(int argc, char** argv) {
     CLI::App program{
-        "Measures how precompute and relighting grow with vertices, clusters and blockers; Markdown on "
-        "stdout, plots and JSON in a folder"};
+        "Measures how precompute and relighting grow with vertices, the size of a mesh at the default "
+        "tolerance, clusters and blockers; Markdown on stdout, plots and JSON in a folder"};
     fs::path folder = ".";
     std::size_t most_vertices = 2'000'000;
     std::size_t most_triangles = 5'000'000;
     program.add_option("--folder", folder, "where the plots go")->capture_default_str();
     program.add_option("--vertices", most_vertices, "at most so many")->capture_default_str();
     program.add_option("--triangles", most_triangles, "at most so many")->capture_default_str();
+    std::vector<std::string> chosen = {"vertices", "mesh_size", "clusters", "triangles"};
+    program.add_option("--only", chosen, "which")->check(CLI::IsMember(chosen));
     CLI11_PARSE(program, argc, argv);
     try {
         fs::create_directories(folder);
         nlohmann::json result;
-        result["vertices"] = report("vertices", against_vertices(most_vertices), folder);
-        result["clusters"] = report("clusters", against_clusters(), folder);
-        result["triangles"] = report("triangles", against_blockers(most_triangles), folder);
+        for (const std::string& what : chosen)
+            result[what] = report(what,
+                                  what == "vertices"    ? against_vertices(most_vertices)
+                                  : what == "mesh_size" ? against_mesh_size(most_vertices)
+                                  : what == "clusters"  ? against_clusters()
+                                                        : against_blockers(most_triangles),
+                                  folder);
         std::ofstream(folder / "growth.json") << result.dump(2) << '\n';
     } catch (const std::exception& error) {
         fmt::print(stderr, "bench_growth: {}\n", error.what());
