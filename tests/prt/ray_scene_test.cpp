@@ -189,6 +189,15 @@ TEST(RayScene, DegenerateTrianglesBlockNothingAndHarmNothing) {
         const glm::vec3 w = scenes::random_direction(random);
         EXPECT_EQ(with.occluded(origin, w), without.occluded(origin, w));
     }
+    // Rays through the line of those corners, beside them: all edge functions are some roundings.
+    for (int round = 0; round < 100'000; ++round) {
+        const glm::vec3 origin(coordinate(random), coordinate(random), coordinate(random));
+        DirectionPacket packet;
+        packet.num_directions = PacketSize;
+        for (std::size_t lane = 0; lane < PacketSize; ++lane)
+            packet.set(lane, glm::normalize(glm::vec3(coordinate(random)) - origin));
+        EXPECT_EQ(with.occluded(origin, packet, 0xffff), without.occluded(origin, packet, 0xffff)) << round;
+    }
 }
 
 TEST(RayScene, NoTrianglesBlockNothing) {
