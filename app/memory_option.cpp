@@ -82,6 +82,13 @@ void MemoryOption::check_estimate(const prt::SceneSizes& sizes, const prt::Recei
     report["clusters_estimate"] = estimate.num_clusters;
 }
 
+std::optional<std::uint64_t> MemoryOption::max_glossy_bytes(const prt::SceneSizes& sizes,
+                                                            std::uint64_t column_bytes) const {
+    if (!max_bytes_)
+        return {};
+    return prt::max_glossy_bytes(sizes, column_bytes, *max_bytes_);
+}
+
 std::string MemoryOption::stopped(const prt::TooManyClusters& error, const std::string& mesh) const {
     return fmt::format("{}: expected work within {}, got at least {} clusters, which take more; stopped",
                        mesh, megabytes(max_bytes_.value_or(0)), error.num_clusters);

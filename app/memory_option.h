@@ -25,6 +25,10 @@ public:
                         prt::PrecomputeOptions& precompute, const Session& session,
                         nlohmann::json& report) const;
 
+    /// What the highlights' part may take after clusters whose columns took `column_bytes`; none without the option.
+    [[nodiscard]] std::optional<std::uint64_t> max_glossy_bytes(const prt::SceneSizes& sizes,
+                                                                std::uint64_t column_bytes) const;
+
     /// The message for a run that found more clusters than estimated.
     [[nodiscard]] std::string stopped(const prt::TooManyClusters& error, const std::string& mesh) const;
 

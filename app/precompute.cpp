@@ -76,7 +76,9 @@ void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& 
         }
         session.end_progress();
     }
-    options.surfaces.precompute_highlights(scene, rays, precompute, session, report);
+    options.surfaces.precompute_highlights(scene, rays, precompute,
+                                           options.memory.max_glossy_bytes(sizes, statistics.column_bytes),
+                                           options.mesh, session, report);
 }
 
 std::uint64_t save(const Options& options, prt::Scene& scene, const prt::PrecomputeOptions& precompute) {

@@ -58,8 +58,9 @@ void SurfaceOptions::apply(prt::Scene& scene, const Session& session) const {
 }
 
 void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
-                                           const prt::PrecomputeOptions& precompute, Session& session,
-                                           nlohmann::json& report) const {
+                                           const prt::PrecomputeOptions& precompute,
+                                           std::optional<std::uint64_t> max_bytes, const std::string& mesh,
+                                           Session& session, nlohmann::json& report) const {
     if (!prt::has_highlights(scene.receivers)) {
         prt::set_surfaces(scene.transfer, scene.receivers);
         return;
@@ -73,15 +74,33 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
         session.say(fmt::format("warning: {} receivers are smoother than roughness {:.3f}: cells of the "
                                 "quadtree cannot hold so sharp a highlight, it comes out wider",
                                 count, narrowest));
+    prt::GlossyOptions glossy{.tolerance = glossy_tolerance_,
+                              .face_resolution = precompute.face_resolution,
+                              .bias = precompute.bias,
+                              .checkpoint = precompute.checkpoint,
+                              .stop = session.stop(),
+                              .on_progress = session.progress("highlights")};
+    const auto refused = [&](std::string_view kind, std::uint64_t num_entries) {
+        return std::runtime_error(fmt::format("{}: expected highlights within {} MB of memory, got {} {} MB; "
+                                              "a larger --glossy-tolerance takes less",
+                                              mesh, *max_bytes >> 20u, kind,
+                                              (num_entries * prt::BytesPerEntry >> 20u) + 1));
+    };
+    if (max_bytes) {
+        const std::uint64_t estimate =
+            prt::estimate_glossy_entries(scene.receivers, rays, scene.transfer, glossy);
+        if (estimate * prt::BytesPerEntry > *max_bytes)
+            throw refused("an estimate of", estimate);
+        report["highlights_estimate"] = estimate;
+        glossy.max_bytes = *max_bytes;
+    }
     prt::GlossyStatistics statistics;
-    scene.transfer.glossy = prt::precompute_glossy(scene.receivers, rays, scene.transfer,
-                                                   {.tolerance = glossy_tolerance_,
-                                                    .face_resolution = precompute.face_resolution,
-                                                    .bias = precompute.bias,
-                                                    .checkpoint = precompute.checkpoint,
-                                                    .stop = session.stop(),
-                                                    .on_progress = session.progress("highlights")},
-                                                   &statistics);
+    try {
+        scene.transfer.glossy =
+            prt::precompute_glossy(scene.receivers, rays, scene.transfer, glossy, &statistics);
+    } catch (const prt::TooManyEntries& error) {
+        throw refused("at least", error.num_entries);
+    }
     session.end_progress();
     prt::set_surfaces(scene.transfer, scene.receivers);
     scene.settings.glossy_tolerance = glossy_tolerance_;

@@ -28,10 +28,12 @@ public:
     [[nodiscard]] float glossy_tolerance() const { return glossy_tolerance_; }
 
     /// Computes the glossy part of the scene's transfer, where its receivers have highlights and an eye. `precompute` is what the diffuse
-    /// part was computed with, its checkpoint included.
+    /// part was computed with, its checkpoint included. Throws std::runtime_error when it takes more than `max_bytes`, or would by an estimate;
+    /// `mesh` is for that message.
     void precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
-                               const prt::PrecomputeOptions& precompute, Session& session,
-                               nlohmann::json& report) const;
+                               const prt::PrecomputeOptions& precompute,
+                               std::optional<std::uint64_t> max_bytes, const std::string& mesh,
+                               Session& session, nlohmann::json& report) const;
 
 private:
     std::vector<std::string> materials_;

@@ -10,14 +10,11 @@
 #include <unordered_set>
 #include <utility>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "prt/free_memory.h"
 #include "prt/lattice.h"
 #include "prt/receiver_order.h"
 
@@ -330,10 +327,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
 
 Transfer Clustering::result() {
     planes_.reset();
-    // The planes' memory, thousands of blocks of some 10 kB, would stay with the process until its end, unused.
-#ifdef __GLIBC__
-    malloc_trim(0);
-#endif
+    return_free_memory();
     std::sort(clusters_.begin(), clusters_.end(), [](const Cluster& a, const Cluster& b) {
         return depth_first_key(a.cell) < depth_first_key(b.cell);
     });

@@ -6,7 +6,6 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
-#include <iterator>
 #include <mutex>
 #include <numbers>
 #include <span>
@@ -20,6 +19,7 @@
 
 #include "prt/brdf.h"
 #include "prt/cell_index.h"
+#include "prt/free_memory.h"
 #include "prt/lobe_refinement.h"
 #include "prt/packed_parts.h"
 #include "prt/precompute.h"
@@ -34,6 +34,9 @@ constexpr const char* Part = "highlights";
 /// Work between two looks at the checkpoint: about a second; a block takes some milliseconds.
 constexpr std::size_t BlocksPerThreadAndStep = 256;
 
+/// Blocks of an estimate: their entries differ by a factor of two or so, the mean is good to some percent.
+constexpr std::size_t TrialBlocks = 256;
+
 /// One block's entries of one lobe.
 struct BlockEntries {
     std::vector<std::uint32_t> cells;
@@ -44,6 +47,9 @@ struct BlockEntries {
 /// Bytes hold the square root: a highlight's foot, shared by many directions, keeps its digits beside the peak.
 BlockEntries quantised(const LobeCut& cut) {
     BlockEntries entries;
+    entries.cells.reserve(cut.cells.size());
+    entries.scales.reserve(cut.cells.size());
+    entries.values.reserve(cut.cells.size() * BlockSize);
     for (const CutCell& cell : cut.cells) {
         const float largest = *std::max_element(cell.mean.begin(), cell.mean.end());
         entries.cells.push_back(cell_index(cell.cell));
@@ -126,12 +132,14 @@ public:
         : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options) {}
 
     GlossyTransfer run(GlossyStatistics& statistics);
+    std::uint64_t estimate();
 
 private:
     using EntriesOfBlock = std::array<BlockEntries, NumGlossyLobes>;
 
     BlockToRefine block_at(std::size_t block, std::vector<glm::vec3>& origins) const;
     EntriesOfBlock refine(std::size_t block);
+    void keep(EntriesOfBlock&& block);
     void take_up();
     void save_checkpoint();
     void work();
@@ -141,6 +149,7 @@ private:
     const Transfer& transfer_;
     const GlossyOptions& options_;
     std::vector<EntriesOfBlock> blocks_; ///< finished, from the first on
+    std::uint64_t num_entries_ = 0;      ///< of them
     std::size_t num_saved_ = 0;          ///< of them in the checkpoint
     std::uint64_t rays_saved_ = 0;
     std::atomic<std::uint64_t> num_rays_ = 0;
@@ -187,6 +196,18 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
     return entries;
 }
 
+std::uint64_t num_entries(const std::array<BlockEntries, NumGlossyLobes>& block) {
+    std::uint64_t count = 0;
+    for (const BlockEntries& of_lobe : block)
+        count += of_lobe.cells.size();
+    return count;
+}
+
+void GlossyPrecompute::keep(EntriesOfBlock&& block) {
+    num_entries_ += num_entries(block);
+    blocks_.push_back(std::move(block));
+}
+
 /// A record is the rays of its blocks, then the blocks.
 void GlossyPrecompute::take_up() {
     for (const std::vector<std::byte>& record : options_.checkpoint->load(Part, false).records)
@@ -194,9 +215,10 @@ void GlossyPrecompute::take_up() {
             ByteReader reader(part);
             num_rays_ += reader.next<std::uint64_t>();
             while (!reader.at_end()) {
-                EntriesOfBlock& block = blocks_.emplace_back();
+                EntriesOfBlock block;
                 for (BlockEntries& of_lobe : block)
                     of_lobe = next_entries(reader);
+                keep(std::move(block));
             }
         });
     if (blocks_.size() > transfer_.counts.num_blocks())
@@ -222,11 +244,8 @@ void GlossyPrecompute::save_checkpoint() {
 
 void GlossyPrecompute::work() {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
-    const std::size_t per_step =
-        options_.checkpoint == nullptr
-            ? num_blocks
-            : options_.blocks_per_step.value_or(
-                  BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
+    const std::size_t per_step = options_.blocks_per_step.value_or(
+        BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
     std::mutex mutex;
     std::size_t num_done = blocks_.size();
     while (blocks_.size() < num_blocks) {
@@ -247,7 +266,10 @@ void GlossyPrecompute::work() {
             num_rays_ = rays_before;
             throw;
         }
-        std::move(step.begin(), step.end(), std::back_inserter(blocks_));
+        for (EntriesOfBlock& block : step)
+            keep(std::move(block));
+        if (num_entries_ * BytesPerEntry > options_.max_bytes)
+            throw TooManyEntries(num_entries_);
         if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
             save_checkpoint();
     }
@@ -259,6 +281,10 @@ GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
         take_up();
     try {
         work();
+    } catch (const TooManyEntries&) {
+        if (options_.checkpoint != nullptr)
+            save_checkpoint();
+        throw;
     } catch (const Cancelled&) {
         if (options_.checkpoint != nullptr && num_saved_ != blocks_.size() &&
             options_.checkpoint->is_worthwhile())
@@ -278,8 +304,23 @@ GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
         glossy.lobes[lobe] = joined(std::move(entries[lobe]));
         statistics.num_entries += glossy.lobes[lobe].num_entries();
     }
+    entries = {};
+    return_free_memory();
     statistics.num_rays = num_rays_;
     return glossy;
+}
+
+std::uint64_t GlossyPrecompute::estimate() {
+    const std::size_t num_blocks = transfer_.counts.num_blocks();
+    const std::size_t num_trials = std::min(num_blocks, TrialBlocks);
+    std::atomic<std::uint64_t> count = 0;
+    tbb::parallel_for(std::size_t{0}, num_trials, [&](std::size_t i) {
+        if (options_.stop.stop_requested())
+            throw Cancelled();
+        count += num_entries(refine((2 * i + 1) * num_blocks / (2 * num_trials)));
+    });
+    return static_cast<std::uint64_t>(static_cast<double>(count) * static_cast<double>(num_blocks) /
+                                      static_cast<double>(num_trials));
 }
 
 void check(const Receivers& receivers, const Transfer& transfer, const GlossyOptions& options) {
@@ -307,6 +348,15 @@ float narrowest_roughness(std::uint32_t face_resolution) {
     // A cell in the middle of a face spans 2 / 2^level in the tangent, where it is widest.
     const float cell = 2.0f / static_cast<float>(1u << deepest_level(face_resolution));
     return std::sqrt(std::max(cell, ggx_alpha(0.0f)));
+}
+
+TooManyEntries::TooManyEntries(std::uint64_t entries)
+    : std::runtime_error(fmt::format("too many cells of highlights: {}", entries)), num_entries(entries) {}
+
+std::uint64_t estimate_glossy_entries(const Receivers& receivers, const Blockers& blockers,
+                                      const Transfer& transfer, const GlossyOptions& options) {
+    check(receivers, transfer, options);
+    return GlossyPrecompute(receivers, blockers, transfer, options).estimate();
 }
 
 GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,

@@ -4,7 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <stdexcept>
 #include <stop_token>
 
 #include "prt/blockers.h"
@@ -22,16 +24,27 @@ struct GlossyOptions {
     float tolerance = 0.07f;
     std::uint32_t face_resolution = 1024; ///< as PrecomputeOptions
     float bias = 0.0f;                    ///< as PrecomputeOptions
-    Checkpoint* checkpoint = nullptr;     ///< where finished blocks are left now and then, and taken up
+    /// Of all blocks' entries, BytesPerEntry each. Beyond it TooManyEntries is thrown.
+    std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+    Checkpoint* checkpoint = nullptr; ///< where finished blocks are left now and then, and taken up
     std::optional<std::size_t> blocks_per_step = {}; ///< for tests: work between two looks at the checkpoint
     std::stop_token stop = {};
     std::function<void(double)> on_progress = {}; ///< fraction in [0, 1], one call at a time
 };
 
+/// A cell's index, its scale and 16 values.
+inline constexpr std::uint64_t BytesPerEntry = 24;
+
 struct GlossyStatistics {
     std::uint64_t num_entries = 0; ///< (block, cell) pairs of all lobes
     std::uint64_t num_rays = 0;
     double seconds = 0.0;
+};
+
+/// Thrown by precompute_glossy() when the entries take more than max_bytes; a checkpoint is left.
+struct TooManyEntries : std::runtime_error {
+    explicit TooManyEntries(std::uint64_t entries);
+    std::uint64_t num_entries; ///< at least
 };
 
 /// Whether any receiver has a highlight that an eye sees: whether there is a glossy part to compute.
@@ -46,9 +59,13 @@ struct GlossyStatistics {
 /// visibility; only in between rays are traced. Parallel over blocks (TBB); the same bits for any number of threads, and whether or not a
 /// checkpoint was taken up.
 /// set_surfaces() gives the transfer what relighting needs of the receivers.
-/// Throws std::invalid_argument for receivers that do not fit the transfer, Cancelled when stopped.
+/// Throws std::invalid_argument for receivers that do not fit the transfer, Cancelled when stopped, TooManyEntries.
 [[nodiscard]] GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blockers,
                                                const Transfer& transfer, const GlossyOptions& options = {},
                                                GlossyStatistics* statistics = nullptr);
+
+/// About how many entries that will be, from some hundred blocks. Throws as precompute_glossy().
+[[nodiscard]] std::uint64_t estimate_glossy_entries(const Receivers& receivers, const Blockers& blockers,
+                                                    const Transfer& transfer, const GlossyOptions& options);
 
 } // namespace relumine::prt

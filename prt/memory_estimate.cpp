@@ -24,6 +24,11 @@ constexpr std::uint64_t BytesPerReceiver = 80;
 constexpr double JoinedPerColumn = 1.3;
 constexpr double SavedPerColumn = 2.6;
 
+/// Highlights: surfaces and directions to the eye, twice; blocks beside the lobe that they are joined to; its sections beside it.
+constexpr std::uint64_t GlossyBytesPerReceiver = 2 * (48 + 12);
+constexpr double JoinedPerGlossyByte = 2.2;
+constexpr double SavedPerGlossyByte = 3.4;
+
 /// Planes of all directions are never needed together.
 constexpr double DirectionsPerCluster = 4.1;
 constexpr double LargestLevel = 0.55;
@@ -85,6 +90,22 @@ std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_byte
             high = middle - 1;
     }
     return low;
+}
+
+std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes, std::uint64_t max_bytes) {
+    SceneSizes without_beams = sizes;
+    without_beams.has_beams = false;
+    SceneSizes without_triangles = without_beams;
+    without_triangles.num_triangles = 0;
+    const auto columns = static_cast<double>(column_bytes);
+    const auto left = [&](const SceneSizes& scene, double per_column, double per_byte) {
+        const double used = static_cast<double>(scene_bytes(scene)) +
+                            static_cast<double>(scene.num_receivers * GlossyBytesPerReceiver) +
+                            per_column * columns;
+        return std::max(0.0, static_cast<double>(max_bytes) - used) / per_byte;
+    };
+    return static_cast<std::uint64_t>(std::min(left(without_beams, JoinedPerColumn, JoinedPerGlossyByte),
+                                               left(without_triangles, SavedPerColumn, SavedPerGlossyByte)));
 }
 
 std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes) {

@@ -32,6 +32,11 @@ struct SceneSizes {
 [[nodiscard]] std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes,
                                              std::uint64_t max_bytes);
 
+/// The same for the highlights' part, which comes after the columns are joined: the largest GlossyOptions::max_bytes that keeps within
+/// `max_bytes` while blocks are refined, joined and written. 0 where there is none.
+[[nodiscard]] std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
+                                             std::uint64_t max_bytes);
+
 /// Planes that a limit leaves room for: a quarter of what the scene leaves, no more than the default, no less than 16 MB.
 [[nodiscard]] std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes);
 

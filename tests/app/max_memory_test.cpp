@@ -39,5 +39,22 @@ TEST_F(MaxMemory, EnoughOfItChangesNothing) {
     EXPECT_LT(peak, 110.0 * 1024 * 1024 * SanitizerFactor);
 }
 
+TEST_F(MaxMemory, HoldsForHighlights) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
+    const auto glossy = [](std::vector<std::string> more) {
+        more.insert(more.end(),
+                    {"--tolerance", "0.05", "--view", "auto", "--material", "ggx:roughness=0.3,f0=0.04"});
+        return more;
+    };
+    // Room for the clusters, but not for some megabytes of highlights.
+    fail(run("66M", glossy({})),
+         {"knot.ply: expected highlights within ", " MB of memory, got an estimate of ",
+          " MB; a larger --glossy-tolerance takes less"});
+    const nlohmann::json report = succeed(run("300M", glossy({"--json"}))).json();
+    EXPECT_LT(report["peak_bytes"], 300.0 * 1024 * 1024 * SanitizerFactor);
+    const double estimate = report["highlights_estimate"];
+    EXPECT_NEAR(estimate, report["glossy"]["cells"], 0.1 * estimate);
+}
+
 } // namespace
 } // namespace relumine::app

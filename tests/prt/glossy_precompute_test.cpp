@@ -240,6 +240,38 @@ TEST(GlossyPrecompute, StopsWhenAsked) {
         Cancelled);
 }
 
+TEST(GlossyPrecompute, StopsAtItsLimitAndLeavesACheckpoint) {
+    const scenes::GlossyScene& scene = scenes::glossy_scene();
+    std::uint64_t num_entries = 0;
+    for (const LobeCuts& cuts : scene.transfer.glossy->lobes)
+        num_entries += cuts.num_entries();
+    GlossyOptions options = scene.options;
+    options.blocks_per_step = 5;
+    options.max_bytes = num_entries * BytesPerEntry;
+    const auto run = [&] {
+        return precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options);
+    };
+    EXPECT_NO_THROW(static_cast<void>(run()));
+    MemoryCheckpoint checkpoint;
+    options.checkpoint = &checkpoint;
+    options.max_bytes = num_entries * BytesPerEntry / 2;
+    EXPECT_THROW(static_cast<void>(run()), TooManyEntries);
+    EXPECT_THROW(static_cast<void>(run()), TooManyEntries); // and does not forget
+    options.max_bytes *= 3;
+    EXPECT_EQ(run().lobes[0].values, scene.transfer.glossy->lobes[0].values);
+}
+
+TEST(GlossyPrecompute, ATrialForetellsTheEntries) {
+    const scenes::GlossyScene& scene = scenes::glossy_scene();
+    std::uint64_t num_entries = 0;
+    for (const LobeCuts& cuts : scene.transfer.glossy->lobes)
+        num_entries += cuts.num_entries();
+    const std::uint64_t estimate =
+        estimate_glossy_entries(scene.receivers, scene.diffuse.rays, scene.transfer, scene.options);
+    EXPECT_GT(10 * estimate, 9 * num_entries);
+    EXPECT_LT(10 * estimate, 11 * num_entries);
+}
+
 TEST(GlossyPrecompute, WhatDoesNotFitIsRefused) {
     const scenes::GlossyScene& scene = scenes::glossy_scene();
     const auto refused = [&](const Receivers& receivers, const GlossyOptions& options) {
