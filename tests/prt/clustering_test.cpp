@@ -1,7 +1,9 @@
 // Batches and checkpoints of the clustering; what it computes is tested in precompute_test.cpp.
 #include "prt/clustering.h"
 
+#include <algorithm>
 #include <atomic>
+#include <bit>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -66,6 +68,48 @@ TEST_F(ClusteringTest, GoesOnFromEveryCheckpoint) {
         EXPECT_EQ(statistics.deepest_level, plain.deepest_level);
         EXPECT_EQ(checkpoint.num_saves, whole.num_saves) << "nothing was done twice";
     }
+}
+
+/// Counts the rays between two looks at the checkpoint.
+class Lookout final : public Blockers, public Checkpoint {
+public:
+    explicit Lookout(const Blockers& blockers) : blockers_(blockers) {}
+    std::uint64_t num_rays = 0; ///< at most, between two looks
+    std::size_t num_looks = 0;
+
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::uint32_t active) const override {
+        since_ += static_cast<std::uint64_t>(std::popcount(active));
+        return blockers_.occluded(origin, directions, active);
+    }
+    [[nodiscard]] Saved load(const std::string&, bool) override { return {}; }
+    [[nodiscard]] bool is_due() override {
+        ++num_looks;
+        num_rays = std::max(num_rays, since_.exchange(0));
+        return false;
+    }
+    [[nodiscard]] bool is_worthwhile() override { return false; }
+    [[nodiscard]] bool save(const std::string&, std::span<const std::byte>,
+                            std::span<const std::byte>) override {
+        return true;
+    }
+
+private:
+    const Blockers& blockers_;
+    mutable std::atomic<std::uint64_t> since_ = 0;
+};
+
+// No more is lost than what a checkpoint's interval and one step hold.
+TEST_F(ClusteringTest, LooksAtTheCheckpointAfterEveryStep) {
+    Lookout lookout(rays_);
+    MemoryCheckpoint unused;
+    PrecomputeOptions options = in_steps(unused);
+    options.checkpoint = &lookout;
+    PrecomputeStatistics statistics;
+    static_cast<void>(precompute(receivers_, lookout, options, &statistics));
+    EXPECT_GT(lookout.num_looks, 15u);
+    EXPECT_GT(statistics.num_rays, 4 * *options.samples_per_step);
+    EXPECT_LE(lookout.num_rays, *options.samples_per_step);
 }
 
 TEST_F(ClusteringTest, GoesOnAgainAndAgainWithLittleRoom) {
