@@ -25,7 +25,7 @@ constexpr double JoinedPerColumn = 1.3;
 constexpr double SavedPerColumn = 2.6;
 
 /// Highlights: surfaces and directions to the eye, twice; blocks beside the lobe that they are joined to; its sections beside it.
-constexpr std::uint64_t GlossyBytesPerReceiver = 2 * (48 + 12);
+constexpr std::uint64_t GlossyBytesPerReceiver = 120;
 constexpr double JoinedPerGlossyByte = 2.2;
 constexpr double SavedPerGlossyByte = 3.4;
 
