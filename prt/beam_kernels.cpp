@@ -29,7 +29,8 @@ constexpr std::size_t Width = TriangleTree::Width;
 /// Error bounds, u = 2^-24, D = largest |corner - o|, L = longest edge, by components. Corners and origins are exact. D and L are off by u
 /// of themselves; a component of the cross product is at most 2 L D and off by 8 u L D; |w| has components of at most 2, off by u;
 /// the sum of three products adds 9 roundings of at most 10 L D. Together less than 120 u L D; the same bound holds for
-/// the errors of Embree's edge functions, so that beyond twice that both must agree.
+/// the errors of Embree's edge functions near a triangle, so that beyond twice that both must agree. Far beside it Embree's may be off by
+/// more, as it rounds corner - o first; RayScene drops such hits.
 /// The normal is at most 2 L^2 and off by 8 u L^2, its product with D off by less than 40 u L^2 D.
 constexpr float EdgeTolerance = 240.0f * Rounding;
 constexpr float SideTolerance = 80.0f * Rounding;
@@ -186,9 +187,9 @@ std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, c
     const Vector o_m = hn::Set(d, patch.sign * o[patch.axis]);
     const Vector o_s = hn::Set(d, o[(patch.axis + 1) % 3]);
     const Vector o_t = hn::Set(d, o[(patch.axis + 2) % 3]);
-    // A difference of coordinates is off by 4 roundings of the reach, a quotient (of at most 2) by three times that over the distance; the
-    // exact tracer's corners by a few more, as for the shaft's margins.
-    const Vector lost = hn::Set(d, 64.0f * Rounding * shaft.reach + Smallest);
+    // A difference of coordinates is off by 4 roundings of the reach, and the exact tracer may hit what is 56 off, as for the shaft's margins; a
+    // quotient (of at most 2) by three times that over the distance.
+    const Vector lost = hn::Set(d, 192.0f * Rounding * shaft.reach + Smallest);
     const Vector too_near = hn::Set(d, 4096.0f * Rounding * shaft.reach + 64.0f * Smallest);
 
     std::uint64_t doubts = 0;

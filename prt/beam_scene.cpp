@@ -21,9 +21,6 @@ namespace {
 
 /// Coordinates beyond which triple products overflow, in this file's tests or in the exact tracer's, whose answers are then its own.
 constexpr float LargestReach = 1e12f;
-/// Nor in a scene so far from the origin, in units of its extent: its coordinates have few bits left, origins lie a few spacings of floats
-/// above their surface, and the ray tracer has been seen to hit what the bounds here exclude.
-constexpr float FarAway = 256.0f;
 
 /// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right through an edge may depend on the packet's other rays.
 void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch, std::uint64_t doubts,
@@ -120,10 +117,8 @@ void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& 
     if (rays.empty())
         return;
     const PatchPlane plane = patch_plane(patch);
-    const glm::vec3 place = glm::abs(tree.centre);
     const BlockOrigins origins(block, tree);
-    const bool is_far = std::max({place.x, place.y, place.z}) > FarAway * tree.extent;
-    if (!plane.narrow || is_far || !(origins.reach < LargestReach)) {
+    if (!plane.narrow || !(origins.reach < LargestReach)) {
         exact.clear_blocked(block, patch, rays);
         return;
     }

@@ -23,7 +23,7 @@ namespace relumine::prt {
 ///
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result is beyond its bound. A ray hits a
 /// triangle for certain, misses all of them for certain, or is in doubt (it passes an edge within some 1e-6 of its length), and
-/// then `exact` is asked. So are wide patches, and all rays of a scene that is very far from the origin.
+/// then `exact` is asked. So are wide patches.
 ///
 /// A shaft of a fixed angle holds the more triangles the finer the mesh is, while a block of receivers shrinks with them. So a crowded patch
 /// is traced direction by direction, all receivers of the block together (parallel_rays.h), which costs the same for any number

@@ -36,10 +36,10 @@ constexpr std::size_t MostLeaves = 1024;
 /// farthest origin, by components. |s|, |t| <= 2 and off by 2 u. A moved coordinate is at most 3 D and off by 8 u D, a moved
 /// edge at most 3 L and off by 8 u L. The constant's two products are off by 48 u L D each and a rounding of 9 L D, their difference by one of
 /// 18 L D; the two products with the origin by as much, their sums by one of 27 and one of 36 L D, and as many again where
-/// products are not fused: less than 400 u L D. Embree's own is less than 120 u L D.
+/// products are not fused: less than 400 u L D. What the exact tracer adds is less than 120 u L D: see beam_kernels.cpp.
 constexpr float EdgeTolerance = 520.0f * Rounding;
 /// The normal is at most 2 L^2 and off by 8 u L^2; its product with a corner or an origin off by less than 60 u L^2 D, the difference by
-/// 12 more; Embree's by less than 40.
+/// 12 more; the exact tracer's by less than 40.
 constexpr float SideTolerance = 180.0f * Rounding;
 constexpr float Smallest = 1e-35f; // products below are lost
 
@@ -92,31 +92,19 @@ void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction, const 
             hn::Store(v, d, row.data() + lane);
         };
 
-        Vector moved_s[3], moved_t[3], edge_s[3], edge_t[3];
+        Vector moved_s[3], moved_t[3];
         for (std::size_t k = 0; k < 3; ++k) {
             moved_s[k] = hn::NegMulAdd(along_s, from_middle[k][0], from_middle[k][1]);
             moved_t[k] = hn::NegMulAdd(along_t, from_middle[k][0], from_middle[k][2]);
-            edge_s[k] = hn::Mul(sign, hn::NegMulAdd(along_s, edge[k][0], edge[k][1]));
-            edge_t[k] = hn::Mul(sign, hn::NegMulAdd(along_t, edge[k][0], edge[k][2]));
-            store(edge_s[k], seen.edge_s[k]);
-            store(edge_t[k], seen.edge_t[k]);
-            store(hn::MulSub(moved_s[k], edge_t[k], hn::Mul(moved_t[k], edge_s[k])), seen.constant[k]);
+            const Vector edge_s = hn::Mul(sign, hn::NegMulAdd(along_s, edge[k][0], edge[k][1]));
+            const Vector edge_t = hn::Mul(sign, hn::NegMulAdd(along_t, edge[k][0], edge[k][2]));
+            store(edge_s, seen.edge_s[k]);
+            store(edge_t, seen.edge_t[k]);
+            store(hn::MulSub(moved_s[k], edge_t, hn::Mul(moved_t[k], edge_s)), seen.constant[k]);
         }
         store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)), seen.certain);
-        // Rounding may turn a needle into a longer one, by as much as its tip is thin.
-        const Vector area = hn::Abs(hn::MulSub(edge_s[0], edge_t[1], hn::Mul(edge_t[0], edge_s[1])));
-        const auto squared_length = [&](std::size_t k) {
-            return hn::MulAdd(edge_s[k], edge_s[k], hn::Mul(edge_t[k], edge_t[k]));
-        };
-        const Vector squared_longest =
-            hn::Max(hn::Max(squared_length(0), squared_length(1)), squared_length(2));
-        const Vector certain_area =
-            hn::NegMulAdd(hn::Mul(longest, longest), hn::Set(d, 600.0f * Rounding), area);
-        const Vector lost =
-            hn::IfThenElse(hn::Gt(certain_area, hn::Zero(d)),
-                           hn::Mul(hn::MulAdd(reach, hn::Set(d, 64.0f * Rounding), hn::Set(d, Smallest)),
-                                   hn::Add(hn::Set(d, 1.0f), hn::Div(squared_longest, certain_area))),
-                           hn::Set(d, std::numeric_limits<float>::infinity()));
+        // Both sides are off by 8 u D, and the exact tracer may hit what is 16 roundings of its distance off, 3 sqrt(3) times that when moved.
+        const Vector lost = hn::MulAdd(reach, hn::Set(d, 128.0f * Rounding), hn::Set(d, Smallest));
         store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_low);
         store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_high);
         store(hn::Sub(hn::Min(hn::Min(moved_t[0], moved_t[1]), moved_t[2]), lost), seen.t_low);

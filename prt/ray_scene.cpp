@@ -1,6 +1,7 @@
 #include "prt/ray_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -12,6 +13,8 @@
 #include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+
+#include "prt/half_line.h"
 
 namespace relumine::prt {
 
@@ -45,18 +48,51 @@ bool has_no_area(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle)
                       glm::dvec3(mesh.positions[triangle[2]]) - corner) == glm::dvec3(0.0);
 }
 
-/// Copies an array into a geometry buffer; Embree pads it as its kernels need.
+/// Copies an array into a geometry buffer, which Embree pads as its kernels need, and tells where it is.
 template<typename Element>
-void fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
-                 const std::vector<Element>& elements) {
+const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
+                           const std::vector<Element>& elements) {
     void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
     if (buffer != nullptr && !elements.empty())
         std::memcpy(buffer, elements.data(), elements.size() * sizeof(Element));
+    return static_cast<const Element*>(buffer);
+}
+
+/// What Embree has of a mesh.
+struct Buffers {
+    const glm::vec3* positions = nullptr;
+    const mesh::Triangle* triangles = nullptr;
+};
+
+/// Embree moves corners by a rounding of their distance d and compares noise with noise where a ray runs along a triangle's plane: it then finds hits far
+/// beside the triangle, as far as the boxes of its tree go. Such a hit would be a shadow that nothing casts. What is left are hits
+/// that are no farther off than a ray's own rounding.
+void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
+    constexpr double Roundings = 16.0 * 0x1p-24;
+    const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
+    for (unsigned int i = 0; i < hits->N; ++i) {
+        if (hits->valid[i] == 0)
+            continue;
+        const glm::dvec3 origin(RTCRayN_org_x(hits->ray, hits->N, i), RTCRayN_org_y(hits->ray, hits->N, i),
+                                RTCRayN_org_z(hits->ray, hits->N, i));
+        const glm::dvec3 direction(RTCRayN_dir_x(hits->ray, hits->N, i), RTCRayN_dir_y(hits->ray, hits->N, i),
+                                   RTCRayN_dir_z(hits->ray, hits->N, i));
+        const mesh::Triangle& triangle = buffers.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
+        std::array<glm::dvec3, 3> corners;
+        double squared_distance = 0.0;
+        for (std::size_t k = 0; k < 3; ++k) {
+            corners[k] = glm::dvec3(buffers.positions[triangle[k]]) - origin;
+            squared_distance = std::max(squared_distance, glm::dot(corners[k], corners[k]));
+        }
+        if (passes_by(corners, glm::normalize(direction), Roundings * std::sqrt(squared_distance)))
+            hits->valid[i] = 0;
+    }
 }
 
 } // namespace
 
 struct RayScene::Impl {
+    Buffers buffers; ///< at the place that Embree was told
     DeviceHandle device;
     SceneHandle scene;
 };
@@ -85,8 +121,12 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl
     for (mesh::Triangle& triangle : triangles)
         if (has_no_area(mesh, triangle))
             triangle = {nowhere, nowhere, nowhere};
-    fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions);
-    fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles);
+    impl_->buffers = {.positions =
+                          fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
+                      .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles)};
+    rtcSetGeometryUserData(geometry, &impl_->buffers);
+    rtcSetGeometryOccludedFilterFunction(geometry, drop_hits_beside);
+    rtcSetGeometryIntersectFilterFunction(geometry, drop_hits_beside);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene.get(), geometry);
     rtcReleaseGeometry(geometry);

@@ -102,10 +102,10 @@ Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal, float 
         shaft.normals.back() = normal + turn * vector(1, 0, 0);
     }
     for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-        // Moving to the tree's centre rounds once, the products and sums three times, on both sides: 8. The exact tracer may see a
-        // corner a few roundings of its distance off. The bound is generous, and still far below the usual bias.
+        // Moving to the tree's centre rounds once, the products and sums three times, on both sides: 8. The exact tracer may hit what is 16 roundings
+        // of its distance off, which is 2 sqrt(3) of the reach at most: 56. The bound is still far below the usual bias.
         shaft.margins[k] =
-            64.0f * Rounding * norm_1(shaft.normals[k]) * reach + std::numeric_limits<float>::min();
+            96.0f * Rounding * norm_1(shaft.normals[k]) * reach + std::numeric_limits<float>::min();
     shaft.offsets.fill(std::numeric_limits<float>::infinity());
     shaft.origins_low = glm::vec3(std::numeric_limits<float>::infinity());
     shaft.origins_high = -shaft.origins_low;

@@ -108,9 +108,7 @@ bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre, co
     }
     bool inside = true;
     for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
-        const glm::vec3& n = shaft.normals[k];
-        const float support = hn::GetLane(hn::MaxOfLanes(d, most[k])) +
-                              leaf.spread * (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
+        const float support = hn::GetLane(hn::MaxOfLanes(d, most[k]));
         leaves.supports[k][place] = support;
         inside = inside && support >= shaft.offsets[k];
     }

@@ -7,7 +7,6 @@
 #include <span>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
 namespace relumine::prt {
 
@@ -35,7 +34,6 @@ struct Box {
 struct Item {
     Box box;
     std::uint32_t triangle = 0;
-    float spread = 0.0f;
     [[nodiscard]] float middle(int axis) const { return 0.5f * (box.low[axis] + box.high[axis]); }
 };
 
@@ -45,25 +43,6 @@ struct Part {
     bool is_settled = false; ///< a leaf that no cut makes better
     [[nodiscard]] bool fits_leaf() const { return items.size() <= Width; }
 };
-
-/// How far beyond a triangle's tip a ray tracer that rounds to float may still hit it, in units of the spread of its corners: rounding moves
-/// corners and edges by some u = 2^-24 of their distance, and two edges that meet at an angle of a few u may meet elsewhere. 0 for
-/// triangles that are no needles, for which the margins of those who ask suffice, and without area, which block nothing.
-///
-/// An edge function is off by 16 u l d (triangle_verdict.cpp); beyond a tip of angle a it is a / 2 times length and distance: 32 u d / a. Corners
-/// and receivers are at most 2 sqrt(3) extents away. Doubled.
-float needle_spread(std::span<const glm::vec3> positions, const mesh::Triangle& triangle, float extent) {
-    constexpr double NeedleAngle = 1.0 / 16.0;
-    constexpr double PerAngle = 2.0 * 32.0 * 0x1p-24 * 3.5;
-    const glm::dvec3 corner(positions[triangle[0]]);
-    const glm::dvec3 a = glm::dvec3(positions[triangle[1]]) - corner;
-    const glm::dvec3 b = glm::dvec3(positions[triangle[2]]) - corner;
-    const double area = glm::length(glm::cross(a, b));
-    const double longest = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(b - a, b - a)});
-    if (!(area > 0.0) || area > NeedleAngle * longest)
-        return 0.0f;
-    return static_cast<float>(std::min(PerAngle * longest / area, 2.0)) * extent;
-}
 
 Part part_of(std::span<Item> items) {
     Part part{items, {}, items.size() == 1};
@@ -183,7 +162,6 @@ private:
         for (const Item& item : part.items) {
             const mesh::Triangle& triangle = triangles_[item.triangle];
             const std::size_t lane = leaf.size++;
-            leaf.spread = std::max(leaf.spread, item.spread);
             leaf.longest[lane] = 0.0f;
             for (std::size_t corner = 0; corner < 3; ++corner) {
                 const glm::vec3& place = positions_[triangle[corner]];
@@ -224,11 +202,6 @@ TriangleTree triangle_tree(std::span<const glm::vec3> positions, std::span<const
     for (const glm::vec3& corner : {box.low - tree.centre, box.high - tree.centre})
         for (int axis = 0; axis < 3; ++axis)
             tree.extent = std::max(tree.extent, std::abs(corner[axis]));
-    for (Item& item : items) {
-        item.spread = needle_spread(positions, triangles[item.triangle], tree.extent);
-        item.box.low -= item.spread;
-        item.box.high += item.spread;
-    }
     Builder(positions, triangles, tree).node(part_of(items));
     return tree;
 }

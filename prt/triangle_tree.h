@@ -14,7 +14,7 @@
 namespace relumine::prt {
 
 /// Triangles sorted into leaves of up to 16, and nodes of up to 16 children above them. The boxes' coordinates are relative to `centre`, in
-/// float: each is off by at most 2^-24 of `extent`. They hold the leaves' spread, too. The triangles' are those given.
+/// float: each is off by at most 2^-24 of `extent`. The triangles' are those given.
 struct TriangleTree {
     static constexpr std::size_t Width = 16;
 
@@ -27,8 +27,6 @@ struct TriangleTree {
         std::array<std::array<float, Width>, 9>
             corners;                      ///< x, y, z of corners 0, 1, 2; unused lanes repeat lane 0
         std::array<float, Width> longest; ///< largest component of the triangle's edges
-        float spread =
-            0.0f; ///< how far beyond its triangles rounding may see a needle; 0 where there is none
         std::uint32_t size = 0;
     };
 
