@@ -31,7 +31,7 @@ namespace relumine::prt {
 class BeamScene final : public Blockers {
 public:
     /// Leaves of up to 16 triangles in a shaft, beyond which directions are traced one by one. Measured (docs/performance.md).
-    static constexpr std::size_t CrowdedShaft = 1024;
+    static constexpr std::size_t CrowdedShaft = 2048;
 
     /// `exact` traces the same mesh's triangles and must outlive this; the mesh may go. About 250 bytes per triangle. `crowded_shaft`,
     /// at most the default, changes no answer.

@@ -302,7 +302,7 @@ ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch
     see(d, direction, origins, active, shaft, receivers);
     thread_local ShaftBoxes boxes;
     if (!find_boxes(tree, shaft, MostLeaves, boxes))
-        return {.blocked = {}, .doubtful = active};
+        return {.blocked = {}, .doubtful = active, .num_leaves = boxes.found.size()};
     ReceiverBits lit = active;
     ReceiverBits doubtful{};
     for (const std::uint64_t key : boxes.order) {
@@ -310,7 +310,7 @@ ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch
         test_groups(d, tree.leaves[static_cast<std::size_t>(found.leaf)], found, direction, origins,
                     receivers, lit, doubtful);
     }
-    ParallelResult result;
+    ParallelResult result{.num_leaves = boxes.found.size()};
     for (std::size_t i = 0; i < lit.size(); ++i) {
         result.blocked[i] = active[i] & ~lit[i];
         result.doubtful[i] = doubtful[i] & lit[i];

@@ -33,8 +33,9 @@ struct BlockOrigins {
 using ReceiverBits = std::array<std::uint64_t, ReceiverBlock::MaxSize / 64>;
 
 struct ParallelResult {
-    ReceiverBits blocked{};  ///< for certain
-    ReceiverBits doubtful{}; ///< of the rest, those that are not certain to miss everything
+    ReceiverBits blocked{};     ///< for certain
+    ReceiverBits doubtful{};    ///< of the rest, those that are not certain to miss everything
+    std::size_t num_leaves = 0; ///< that the rays may meet
 };
 
 /// Tests the rays of `active` receivers in the patch's direction j. Seen along it, receivers are points and triangles stay triangles:

@@ -13,7 +13,7 @@ namespace relumine::prt {
 
 /// The leaves in a shaft, from near to far, by their triangles. Kept from shaft to shaft for its memory.
 struct ShaftLeaves {
-    static constexpr std::size_t MaxSize = 1024;
+    static constexpr std::size_t MaxSize = 2048;
     static constexpr std::size_t Padding = 16;
     using Row = std::array<float, MaxSize + Padding>;
 
