@@ -40,15 +40,17 @@ void check_direction(std::string_view what, const glm::dvec3& direction) {
         refuse(what, "of finite length above 0", text(direction));
 }
 
-/// (above, upto]
+/// A star. Coverage of texels is found by cutting them until a shape is not small any more, which for no size at all has no end.
+constexpr double SmallestSize = 1e-4;
+
 void check_size(std::string_view what, double degrees, double up_to) {
-    if (!(degrees > 0.0 && degrees <= up_to))
-        refuse(what, fmt::format("above 0 and up to {}", up_to), fmt::format("{}", degrees));
+    if (!(degrees >= SmallestSize && degrees <= up_to))
+        refuse(what, fmt::format("from {} to {}", SmallestSize, up_to), fmt::format("{}", degrees));
 }
 
 void check_side(std::string_view what, double degrees) {
-    if (!(degrees > 0.0 && degrees < 180.0))
-        refuse(what, "above 0 and below 180", fmt::format("{}", degrees));
+    if (!(degrees >= SmallestSize && degrees < 180.0))
+        refuse(what, fmt::format("from {} to below 180", SmallestSize), fmt::format("{}", degrees));
 }
 
 void check_range(std::string_view what, double value, double from, double to) {

@@ -26,7 +26,7 @@ namespace relumine::prt {
 /// then `exact` is asked. So are wide patches.
 ///
 /// A shaft of a fixed angle holds the more triangles the finer the mesh is, while a block of receivers shrinks with them. So a crowded patch
-/// is traced direction by direction, all receivers of the block together (parallel_rays.h), which costs the same for any number
+/// is traced direction by direction, all receivers of the block together (parallel_rays.h), which costs much the same for any number
 /// of triangles but for the depth of the tree.
 class BeamScene final : public Blockers {
 public:

@@ -168,7 +168,7 @@ TEST_F(LayerFile, RefusesWhatIsMalformedAndSaysWhere) {
         {with("\"type\": \"disc\", \"direction\": [0, 0, 0], \"radius_degrees\": 5" + emit), 3,
          "direction of finite length"},
         {with("\"type\": \"disc\", \"direction\": [0, 0, 1], \"radius_degrees\": 0" + emit), 3,
-         "radius_degrees above 0"},
+         "radius_degrees from 0.0001"},
         {with("\"type\": \"lasso\", \"points\": [[0, 0, 1], [0, 1, 1]]" + emit), 3, "at least 3"},
         {with("\"type\": \"lasso\", \"points\": [\n[0, 0, 1], [0, 1, 1],\n[0, 1]]" + emit), 6,
          "of 3 numbers, got 2"},

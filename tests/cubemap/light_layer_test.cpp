@@ -117,12 +117,12 @@ TEST(LightLayer, RefusesWhatMakesNoSense) {
     refused(Disc{.direction = {0, NaN, 0}}, "direction");
     refused(Disc{.direction = {0, Infinity, 0}}, "direction");
     refused(Disc{.direction = {0, 1e200, 0}}, "direction");
-    for (const double radius : {0.0, -1.0, 180.1, NaN})
-        refused(Disc{.radius_degrees = radius}, "radius_degrees above 0 and up to 180");
+    for (const double radius : {0.0, 1e-5, 81e-320, -1.0, 180.1, NaN})
+        refused(Disc{.radius_degrees = radius}, "radius_degrees from 0.0001 to 180");
     for (const double softness : {-0.1, 1.1, NaN})
         refused(Disc{.softness = softness}, "softness from 0 to 1");
-    for (const double width : {0.0, 180.0, NaN}) {
-        refused(Rectangle{.width_degrees = width}, "width_degrees above 0 and below 180");
+    for (const double width : {0.0, 1e-5, 180.0, NaN}) {
+        refused(Rectangle{.width_degrees = width}, "width_degrees from 0.0001 to below 180");
         refused(Rectangle{.height_degrees = width}, "height_degrees");
     }
     refused(Rectangle{.roll_degrees = Infinity}, "roll_degrees");
