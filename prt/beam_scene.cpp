@@ -110,6 +110,8 @@ struct BeamScene::Impl {
     std::size_t crowded_shaft;
 };
 
+static_assert(BeamScene::CrowdedShaft <= ShaftLeaves::MaxSize);
+
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact, std::size_t crowded_shaft)
     : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact,
                      std::min(crowded_shaft, CrowdedShaft)}) {}

@@ -1,13 +1,13 @@
 // Compiled with -ffp-contract=off: the compiler must not fuse the products and sums below.
 #include "prt/horizon.h"
 
-#include <cstring>
-
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "prt/horizon.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "prt/mask_bits-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::prt::HWY_NAMESPACE {
@@ -31,11 +31,7 @@ void directions_above_horizon(const NormalArrays& normals, std::size_t first, co
             const auto xy = hn::Add(hn::Mul(nx, hn::Load(d, packet.x.data() + lane)),
                                     hn::Mul(ny, hn::Load(d, packet.y.data() + lane)));
             const auto cosine = hn::Add(xy, hn::Mul(nz, hn::Load(d, packet.z.data() + lane)));
-            std::uint8_t bytes[8] = {};
-            hn::StoreMaskBits(d, hn::Gt(cosine, hn::Zero(d)), bytes);
-            std::uint64_t bits = 0;
-            std::memcpy(&bits, bytes, sizeof bits);
-            above |= bits << j;
+            above |= std::uint64_t{bits_of(d, hn::Gt(cosine, hn::Zero(d)))} << j;
         }
         rays[i] = above & used;
     }

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 
+#include "prt/cluster_kernels.h"
 #include "prt/shaft_leaves.h"
 #include "prt/triangle_verdict.h"
 
@@ -27,7 +27,6 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t Width = TriangleTree::Width;
 constexpr std::size_t MaxReceivers = ReceiverBlock::MaxSize;
-constexpr std::size_t WordSize = 64;
 
 /// Beyond so many leaves in one direction the exact tracer is faster. Measured.
 constexpr std::size_t MostLeaves = 1024;

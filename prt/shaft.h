@@ -37,7 +37,6 @@ struct PatchPlane : PatchRectangle {
 /// directions w, and normal . o >= offset for all origins o.
 struct Shaft {
     static constexpr std::size_t NumPlanes = 6;
-    static constexpr std::size_t BackPlane = 4; ///< its normal is the patch's axis
     std::array<glm::vec3, NumPlanes> normals;
     std::array<float, NumPlanes> offsets;
     std::array<float, NumPlanes> margins; ///< bounds of the error of normal . (x - o) in float

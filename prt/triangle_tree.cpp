@@ -199,10 +199,10 @@ TriangleTree triangle_tree(std::span<const glm::vec3> positions, std::span<const
         for (const std::uint32_t vertex : triangles[i])
             items[i].box.include(positions[vertex] - tree.centre);
     }
-    for (const glm::vec3& corner : {box.low - tree.centre, box.high - tree.centre})
-        for (int axis = 0; axis < 3; ++axis)
-            tree.extent = std::max(tree.extent, std::abs(corner[axis]));
-    Builder(positions, triangles, tree).node(part_of(items));
+    const Part whole = part_of(items);
+    for (int axis = 0; axis < 3; ++axis)
+        tree.extent = std::max({tree.extent, std::abs(whole.box.low[axis]), std::abs(whole.box.high[axis])});
+    Builder(positions, triangles, tree).node(whole);
     return tree;
 }
 

@@ -18,6 +18,7 @@
 #include "prt/receiver_order.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
+#include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -271,10 +272,8 @@ TEST(BeamScene, ChangesNoTransfer) {
         for (const std::size_t crowded_shaft : {BeamScene::CrowdedShaft, std::size_t{0}}) {
             const BeamScene beams(mesh, rays, crowded_shaft);
             const Transfer b = precompute(vertex_receivers(mesh), beams, options);
-            EXPECT_EQ(a.quadtree.split_flags(), b.quadtree.split_flags()) << name;
-            EXPECT_EQ(a.counts.visible, b.counts.visible) << name;
-            EXPECT_EQ(a.counts.mixed, b.counts.mixed) << name;
-            EXPECT_EQ(a.counts.counts, b.counts.counts) << name;
+            SCOPED_TRACE(name);
+            expect_same(a, b);
         }
     };
     same(things_on_a_floor(), "things on a floor");
