@@ -8,13 +8,9 @@
 
 namespace relumine::app {
 
-namespace {
-
 std::string megabytes(std::uint64_t bytes) {
     return fmt::format("{} MB", (bytes + (1u << 20) - 1) >> 20u);
 }
-
-} // namespace
 
 std::optional<std::uint64_t> parse_size(const std::string& text) {
     if (text.empty() || std::isdigit(static_cast<unsigned char>(text.front())) == 0)

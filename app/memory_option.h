@@ -36,6 +36,9 @@ private:
     std::optional<std::uint64_t> max_bytes_;
 };
 
+/// "12 MB": powers of 1024, rounded up.
+[[nodiscard]] std::string megabytes(std::uint64_t bytes);
+
 /// "500M", "4G", "1.5G", "100000": powers of 1024. None for anything else.
 [[nodiscard]] std::optional<std::uint64_t> parse_size(const std::string& text);
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "app/material_option.h"
+#include "app/memory_option.h"
 #include "prt/surface_sampling.h"
 
 namespace relumine::app {
@@ -81,10 +82,9 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
                               .stop = session.stop(),
                               .on_progress = session.progress("highlights")};
     const auto refused = [&](std::string_view kind, std::uint64_t num_entries) {
-        return std::runtime_error(fmt::format("{}: expected highlights within {} MB of memory, got {} {} MB; "
-                                              "a larger --glossy-tolerance takes less",
-                                              mesh, *max_bytes >> 20u, kind,
-                                              (num_entries * prt::BytesPerEntry >> 20u) + 1));
+        return std::runtime_error(fmt::format(
+            "{}: expected highlights within {} of memory, got {} {}; a larger --glossy-tolerance takes less",
+            mesh, megabytes(*max_bytes), kind, megabytes(num_entries * prt::BytesPerEntry)));
     };
     if (max_bytes) {
         const std::uint64_t estimate =
