@@ -87,7 +87,8 @@ std::string numbered(const std::string& pattern, int frame) {
         name = pattern;
     }
     if (name == pattern)
-        throw std::runtime_error(fmt::format("{}: expected a number like %04d in the name", pattern));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a number like %04d in the name, as the layers have frames, got none", pattern));
     return name;
 }
 

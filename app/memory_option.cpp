@@ -9,7 +9,9 @@
 namespace relumine::app {
 
 std::string megabytes(std::uint64_t bytes) {
-    return fmt::format("{} MB", (bytes + (1u << 20) - 1) >> 20u);
+    constexpr std::uint64_t Megabyte = 1u << 20u;
+    return bytes < Megabyte ? fmt::format("{} bytes", bytes)
+                            : fmt::format("{} MB", (bytes + Megabyte - 1) / Megabyte);
 }
 
 std::optional<std::uint64_t> parse_size(const std::string& text) {

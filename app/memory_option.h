@@ -36,7 +36,7 @@ private:
     std::optional<std::uint64_t> max_bytes_;
 };
 
-/// "12 MB": powers of 1024, rounded up.
+/// "12 MB": powers of 1024, rounded up; "12 bytes" below one.
 [[nodiscard]] std::string megabytes(std::uint64_t bytes);
 
 /// "500M", "4G", "1.5G", "100000": powers of 1024. None for anything else.

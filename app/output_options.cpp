@@ -18,6 +18,7 @@
 #include "files/output_file.h"
 #include "mesh/save.h"
 #include "relight/array_file.h"
+#include "relight/exposure.h"
 #include "relight/picture.h"
 #include "relight/receiver_picture.h"
 
@@ -108,9 +109,10 @@ void OutputOptions::add_to(CLI::App& command) {
         .add_option("--albedo", albedo,
                     "reflectance: a number, R,G,B, or `mesh` for the mesh's vertex colours")
         ->capture_default_str();
-    command.add_option("--exposure", exposure_ev, "brighten pictures and colours by this many stops")
-        ->check(number_between(-100.0, 100.0))
-        ->capture_default_str();
+    exposure_option_ =
+        command.add_option("--exposure", exposure_ev, "brighten pictures and colours by this many stops")
+            ->check(number_between(-100.0, 100.0))
+            ->capture_default_str();
     camera_options_ = {
         command.add_option("--eye", eye, "camera position X,Y,Z (automatic)"),
         command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)"),
@@ -172,6 +174,13 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
         relight::save_npy(path, colors);
     else
         mesh::save(path, scene.mesh, colors);
+}
+
+std::string OutputOptions::exposure_hint(const prt::Scene& scene, std::span<const glm::vec3> radiance) const {
+    if (exposure_option_->count() > 0 || extension_of(path) != ".png")
+        return "";
+    const float better = relight::suitable_exposure_ev(coloured(albedo, scene, radiance));
+    return better == 0.0f ? "" : fmt::format("; --exposure {} suits it better", better);
 }
 
 void FrameWriter::save(const std::string& path, std::span<const glm::vec3> radiance,

@@ -41,7 +41,13 @@ struct OutputOptions {
     void save(const LitScene& lit, std::span<const glm::vec3> radiance,
               const cubemap::CubeMap& environment) const;
 
+    /// What to tell the user where a .png comes out far too bright or too dark and no exposure was chosen: "; --exposure -3 suits it better",
+    /// else nothing.
+    [[nodiscard]] std::string exposure_hint(const prt::Scene& scene,
+                                            std::span<const glm::vec3> radiance) const;
+
 private:
+    const CLI::Option* exposure_option_ = nullptr;
     std::vector<const CLI::Option*> camera_options_; ///< --eye, --target, --fov, --size
 };
 

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <optional>
 #include <sstream>
+#include <string_view>
 #include <thread>
 
 #include <fmt/format.h>
@@ -23,25 +25,56 @@ double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+/// Ctrl-C, SIGTERM and a closed terminal, unless `nohup` says that it is none of the program's business.
+sigset_t signals_to_stop() {
+    sigset_t signals;
+    sigemptyset(&signals);
+    sigaddset(&signals, SIGINT);
+    sigaddset(&signals, SIGTERM);
+    struct sigaction on_hangup {};
+    if (::sigaction(SIGHUP, nullptr, &on_hangup) == 0 && on_hangup.sa_handler != SIG_IGN)
+        sigaddset(&signals, SIGHUP);
+    return signals;
+}
+
 std::string duration(double seconds) {
     const long whole = std::lround(seconds);
     return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }
 
+std::optional<glm::vec3> three_numbers(const std::string& text) {
+    std::istringstream stream(text);
+    glm::vec3 result(0.0f);
+    char comma = ',';
+    char rest = 0;
+    for (int i = 0; i < 3; ++i)
+        if ((i > 0 && !(stream >> comma && comma == ',')) || !(stream >> result[i]))
+            return {};
+    if (stream >> rest)
+        return {};
+    return result;
+}
+
 } // namespace
 
 Session::Session() {
+    // A write beyond the process's limit fails then like one on a full disk, with a message and nothing left behind.
+    std::signal(SIGXFSZ, SIG_IGN);
     // Signals are taken by one thread, so that whatever it calls need not be safe inside a handler. Threads started later inherit the mask.
-    sigset_t signals;
-    sigemptyset(&signals);
-    sigaddset(&signals, SIGINT);
-    sigaddset(&signals, SIGTERM);
+    const sigset_t signals = signals_to_stop();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     std::thread([signals, source = stop_source_]() mutable {
         int signal = 0;
         sigwait(&signals, &signal);
+        const double first = now();
         source.request_stop();
-        sigwait(&signals, &signal);
+        // `timeout` and batch systems signal a process and then its whole group: the same wish twice, not impatience.
+        constexpr double SameWish = 1.0; // seconds
+        do
+            sigwait(&signals, &signal);
+        while (now() - first < SameWish);
+        constexpr std::string_view Message = "relumine: cancelled at once\n";
+        static_cast<void>(!::write(STDERR_FILENO, Message.data(), Message.size()));
         ::_exit(1);
     }).detach();
 }
@@ -64,7 +97,8 @@ std::function<void(double)> Session::progress(const std::string& what) {
     if (quiet)
         return {};
     struct State {
-        double start = now();
+        double start = -1.0;         ///< when it was first called
+        double first_fraction = 0.0; ///< and with what: the run may take up another one
         double last_shown = 0.0;
         int last_tenth = 0;
     };
@@ -72,10 +106,15 @@ std::function<void(double)> Session::progress(const std::string& what) {
     return [this, what, terminal, state = State{}](double fraction) mutable {
         const std::scoped_lock lock(mutex_);
         const double time = now();
+        if (state.start < 0.0) {
+            state.start = time;
+            state.first_fraction = fraction;
+        }
         const double elapsed = time - state.start;
-        if (elapsed < 1.0 || fraction <= 0.0)
+        const double done = fraction - state.first_fraction;
+        if (elapsed < 1.0 || done <= 0.0)
             return;
-        const std::string left = duration(elapsed / fraction * (1.0 - fraction));
+        const std::string left = duration(elapsed / done * (1.0 - fraction));
         if (terminal) {
             if (time - state.last_shown < 0.1 && fraction < 1.0)
                 return;
@@ -130,24 +169,20 @@ double Stopwatch::total() const {
 }
 
 glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
-    std::istringstream stream(text);
-    glm::vec3 result(0.0f);
-    char comma = ',';
-    char rest = 0;
-    for (int i = 0; i < 3; ++i)
-        if ((i > 0 && !(stream >> comma && comma == ',')) || !(stream >> result[i]))
-            throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
-    if (stream >> rest)
+    const std::optional<glm::vec3> result = three_numbers(text);
+    if (!result)
         throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
-    return result;
+    return *result;
 }
 
 glm::vec3 parse_color(const std::string& option, const std::string& text) {
     const bool is_grey = text.find(',') == std::string::npos;
-    const glm::vec3 color = parse_vec3(option, is_grey ? fmt::format("{0},{0},{0}", text) : text);
-    if (color.r < 0.0f || color.g < 0.0f || color.b < 0.0f)
+    const std::optional<glm::vec3> color = three_numbers(is_grey ? fmt::format("{0},{0},{0}", text) : text);
+    if (!color)
+        throw CLI::ValidationError(option, fmt::format("expected R,G,B or one number, got '{}'", text));
+    if (color->r < 0.0f || color->g < 0.0f || color->b < 0.0f)
         throw CLI::ValidationError(option, fmt::format("expected numbers >= 0, got '{}'", text));
-    return color;
+    return *color;
 }
 
 CLI::Validator number_between(double min, double max) {

@@ -28,7 +28,7 @@ public:
     /// Adds --json, --threads, -q and -v to a subcommand.
     void add_common_options(CLI::App& command);
 
-    /// Set by Ctrl-C and SIGTERM. A second Ctrl-C ends the program at once.
+    /// Set by Ctrl-C, SIGTERM and SIGHUP. Another of them, a second later or more, ends the program at once.
     [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;

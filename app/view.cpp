@@ -15,6 +15,7 @@
 #include "app/receiver_options.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
+#include "relight/exposure.h"
 #include "viewer/view.h"
 #endif
 
@@ -114,7 +115,7 @@ void run(const Options& options, Session& session) {
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = options.exposure_ev ? static_cast<float>(*options.exposure_ev)
-                                                       : viewer::sane_exposure_ev(editor.radiance());
+                                                       : relight::suitable_exposure_ev(editor.radiance());
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
     report(viewer::view(state, view), editor, session);
     session.poll();

@@ -76,9 +76,10 @@ void OutputFile::open_temporary() {
             place_.parent_path() / fmt::format(".{}.writing-{}{}", place_.stem().string(), i, extension);
         Descriptor file(::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
         if (!file.is_open()) {
-            if (errno == ELOOP || errno == EISDIR || (errno == EACCES && ::access(name.c_str(), F_OK) == 0))
+            const int error = errno; // access() changes it
+            if (error == ELOOP || error == EISDIR || (error == EACCES && ::access(name.c_str(), F_OK) == 0))
                 continue; // someone else's
-            fail(target_, "write", errno);
+            fail(target_, "write", error);
         }
         if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
             if (errno == EWOULDBLOCK)

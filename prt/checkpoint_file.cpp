@@ -33,6 +33,11 @@ struct StateHead {
 /// Work of less than this is not worth a file.
 constexpr double WorthwhileSeconds = 5.0;
 
+UnusableCheckpoint damaged(const fs::path& path) {
+    return UnusableCheckpoint(fmt::format(
+        "{}: expected a checkpoint, got damaged data; without --resume the work begins anew", path.string()));
+}
+
 } // namespace
 
 fs::path CheckpointFile::folder_for(const fs::path& output) {
@@ -63,20 +68,19 @@ void CheckpointFile::check_fingerprint() const {
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     const nlohmann::json json = nlohmann::json::parse(text, text + bytes.size(), nullptr, false);
     if (!json.is_object())
-        throw std::runtime_error(
-            fmt::format("{}: expected a checkpoint, got damaged data", file(RunName).string()));
+        throw damaged(file(RunName));
     for (const auto& [name, value] : fingerprint_) {
         const auto found = json.find(name);
         if (found != json.end() && *found == value)
             continue;
         const std::string got =
             found != json.end() && found->is_string() ? found->get<std::string>() : "none";
-        throw std::runtime_error(fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
+        throw UnusableCheckpoint(fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
                                              "({} {}); without --resume the work begins anew",
                                              folder_.string(), name, value, name, got));
     }
     if (json.size() != fingerprint_.size())
-        throw std::runtime_error(
+        throw UnusableCheckpoint(
             fmt::format("{}: expected a checkpoint of this run, got one with highlights; "
                         "without --resume the work begins anew",
                         folder_.string()));
@@ -132,11 +136,6 @@ Checkpoint::Saved CheckpointFile::load(const std::string& part, bool with_state)
     if (!is_ours_)
         return saved;
     const fs::path state_file = file(part + ".state");
-    const auto damaged = [](const fs::path& path) {
-        return std::runtime_error(
-            fmt::format("{}: expected a checkpoint, got damaged data; without --resume the work begins anew",
-                        path.string()));
-    };
     if (!with_state) {
         saved.records = log(part).read();
         return saved;

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@ class FolderLock;
 
 namespace relumine::prt {
 
+/// A checkpoint that cannot be taken up. The message says what to do instead.
+class UnusableCheckpoint : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
 /// The folder OUT.prt.checkpoint: `run.json`, the fingerprint; for each part `PART.log`, its records, and `PART.state`, which says how much
 /// of the log belongs to it. A log only grows and a state is replaced whole, so a crash at any moment leaves the last checkpoint or
 /// the one before. It appears with the first save. One process at a time uses it.
@@ -34,8 +41,8 @@ public:
             {}; ///< a save failed, or another process is at work
     };
 
-    /// Nothing is written yet. With `resume`: throws std::runtime_error "FOLDER: expected X, got Y" when the checkpoint there belongs to
-    /// other work, is damaged or in use. There may be none.
+    /// Nothing is written yet. With `resume`: throws UnusableCheckpoint "FOLDER: expected X, got Y" when the checkpoint there belongs to
+    /// other work or is damaged, as load() does, and std::runtime_error when it is in use. There may be none.
     CheckpointFile(std::filesystem::path output, Fingerprint fingerprint, Options options);
     ~CheckpointFile() override;
 

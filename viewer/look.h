@@ -1,10 +1,6 @@
 // How the two pictures of the window look.
 #pragma once
 
-#include <span>
-
-#include <glm/vec3.hpp>
-
 namespace relumine::viewer {
 
 struct SceneLook {
@@ -18,9 +14,5 @@ struct EnvironmentLook {
     bool quadtree = false; ///< the clusters' borders
     bool heat = false;     ///< what lights the chosen receiver
 };
-
-/// An exposure that shows radiances well: 0, as `relumine relight` has it, where that leaves the brightest fiftieth neither dark nor far
-/// beyond white; else what makes it white, in half stops.
-[[nodiscard]] float sane_exposure_ev(std::span<const glm::vec3> radiance);
 
 } // namespace relumine::viewer

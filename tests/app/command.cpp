@@ -54,12 +54,12 @@ void become_program(const char* folder, const char* out, const char* err, const 
     ::dup2(err_fd, STDERR_FILENO);
     if (::chdir(folder) != 0)
         ::_exit(126);
-    // A shell that started the tests in the background may have these ignored.
-    ::signal(SIGINT, SIG_DFL);
-    ::signal(SIGTERM, SIG_DFL);
+    // A shell that started the tests in the background may have some ignored.
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGXFSZ})
+        ::signal(signal, SIG_DFL);
+    if (options.ignored_signal != 0)
+        ::signal(options.ignored_signal, SIG_IGN);
     if (options.max_file_bytes) {
-        // With SIGXFSZ ignored a write beyond the limit fails, like one on a full disk.
-        ::signal(SIGXFSZ, SIG_IGN);
         const struct rlimit limit = {*options.max_file_bytes, *options.max_file_bytes};
         ::setrlimit(RLIMIT_FSIZE, &limit);
     }

@@ -38,6 +38,7 @@ struct Result {
 struct RunOptions {
     std::optional<std::uint64_t> max_file_bytes = {}; ///< writing beyond fails, as on a full disk
     std::string stdout_path = {};                     ///< where stdout goes instead of Result::out
+    int ignored_signal = 0;                           ///< from the start, as `nohup` does it
 };
 
 /// A running `relumine`. Killed, with a test failure, when it does not end.

@@ -126,6 +126,19 @@ TEST_F(Relight, ExposureAndAlbedoAreFactors) {
     }
 }
 
+TEST_F(Relight, SaysWhichExposureSuitsAPicture) {
+    const auto out = [&](const std::string& name, const std::vector<std::string>& more) {
+        std::vector<std::string> command = {"relight", "scene.prt", "white.hdr", "-o",
+                                            name,      "--size",    "32x32"};
+        command.insert(command.end(), more.begin(), more.end());
+        return succeed(command).out;
+    };
+    EXPECT_NE(out("new.png", {"--albedo", "8"}).find("; --exposure -3 suits it better\n"), std::string::npos);
+    EXPECT_EQ(out("new.png", {"--albedo", "8", "--exposure", "-3"}).find("suits"), std::string::npos);
+    EXPECT_EQ(out("new.png", {}).find("suits"), std::string::npos);
+    EXPECT_EQ(out("new.npy", {"--albedo", "8"}).find("suits"), std::string::npos);
+}
+
 TEST_F(Relight, AlbedoOfTheMeshIsItsVertexColours) {
     write("red.obj", "v 0 0 0 1 0 0\nv 1 0 0 0.5 0.5 0.5\nv 0 0 -1 0 0 1\nf 1 2 3\n");
     succeed({"precompute", "red.obj", "-o", "red.prt", "--face-resolution", "16"});

@@ -126,6 +126,11 @@ TEST_F(Resume, StoppedByASignalItSaysHowToGoOn) {
                                                    "(tolerance 0.1), got another's (tolerance 0)"});
     fail(run({"--tolerance", "0", "--floor", "--resume"}),
          {"scene.prt.checkpoint: expected a checkpoint of this run"});
+    fs::resize_file(state, 100);
+    EXPECT_EQ(
+        relumine(run({"--tolerance", "0", "--resume"})).err,
+        "relumine: scene.prt.checkpoint/clusters.state: expected a checkpoint, got damaged data; without "
+        "--resume the work begins anew\n");
     // Without --resume it is done from the start, and the old checkpoint goes with the new.
     succeed(run({"--tolerance", "0.3"}));
     expect_no_leftovers({"knot.ply", "scene.prt"});

@@ -17,15 +17,22 @@ using Clock = std::chrono::steady_clock;
 
 class Signals : public AppTest {
 protected:
-    /// Sends the signal after `delay` and expects the end within a second or so.
-    void interrupt(const std::vector<std::string>& arguments, int signal,
+    /// Every texel of 6 x 1024 x 1024: hours.
+    const std::vector<std::string> Endless = {"precompute",  "knot.ply", "-o", "scene.prt",
+                                              "--tolerance", "0",        "-q"};
+
+    /// Sends the signals after `delay`, with a millisecond between them, and expects the end within a second or so.
+    void interrupt(const std::vector<std::string>& arguments, const std::vector<int>& signals,
                    std::chrono::milliseconds delay) const {
         const std::vector<std::string> before = files();
         Process process(folder(), arguments);
         std::this_thread::sleep_for(SanitizerFactor * delay);
         ASSERT_TRUE(process.is_running()) << "done before it could be stopped";
         const Clock::time_point sent = Clock::now();
-        process.send(signal);
+        for (const int signal : signals) {
+            process.send(signal);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
         const Result result = process.wait();
         EXPECT_LT(Clock::now() - sent, SanitizerFactor * std::chrono::milliseconds(1500))
             << result.described();
@@ -39,13 +46,24 @@ protected:
 TEST_F(Signals, PrecomputeStopsAtOnce) {
     succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
     write("scene.prt", "the old one");
-    // Every texel of 6 x 1024 x 1024: hours.
-    const std::vector<std::string> endless = {"precompute",  "knot.ply", "-o", "scene.prt",
-                                              "--tolerance", "0",        "-q"};
-    interrupt(endless, SIGINT, std::chrono::milliseconds(300));
-    interrupt(endless, SIGTERM, std::chrono::milliseconds(700));
+    interrupt(Endless, {SIGINT}, std::chrono::milliseconds(300));
+    interrupt(Endless, {SIGTERM}, std::chrono::milliseconds(700));
+    interrupt(Endless, {SIGHUP}, std::chrono::milliseconds(300));
+    // As `timeout` sends it: to the process, then to its group.
+    interrupt(Endless, {SIGTERM, SIGCONT, SIGTERM}, std::chrono::milliseconds(300));
     // While it starts and loads.
-    interrupt(endless, SIGINT, std::chrono::milliseconds(30));
+    interrupt(Endless, {SIGINT}, std::chrono::milliseconds(30));
+}
+
+TEST_F(Signals, AClosedTerminalIsNothingToNohup) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    Process process(folder(), Endless, {.ignored_signal = SIGHUP});
+    std::this_thread::sleep_for(SanitizerFactor * std::chrono::milliseconds(200));
+    process.send(SIGHUP);
+    std::this_thread::sleep_for(SanitizerFactor * std::chrono::milliseconds(300));
+    EXPECT_TRUE(process.is_running());
+    process.send(SIGTERM);
+    EXPECT_EQ(process.wait().err, "relumine: cancelled; nothing was written\n");
 }
 
 TEST_F(Signals, VerifyStopsAtOnce) {
@@ -53,7 +71,7 @@ TEST_F(Signals, VerifyStopsAtOnce) {
     write("white.hdr", white_hdr());
     succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.05", "-q"});
     interrupt({"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
-              SIGINT, std::chrono::milliseconds(1500));
+              {SIGINT}, std::chrono::milliseconds(1500));
 }
 
 TEST_F(Signals, ProgressIsPlainLinesWithTheTimeLeft) {

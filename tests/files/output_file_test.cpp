@@ -82,15 +82,14 @@ TEST_F(OutputFileTest, NamesTheTargetWhenItCannotBeWritten) {
     EXPECT_THROW(OutputFile{folder_}, std::runtime_error);
 }
 
-/// Runs in a process of its own that may write files of `max_bytes`, as a user without rights can have it; returns its message.
-std::string written_under_a_limit(const fs::path& target, std::size_t num_bytes, rlim_t max_bytes) {
+/// Writes in a process of its own, which `prepare` sets up; returns its message.
+template<class Prepare>
+std::string written_elsewhere(const fs::path& target, std::size_t num_bytes, const Prepare& prepare) {
     std::array<int, 2> pipe{};
     EXPECT_EQ(::pipe(pipe.data()), 0);
     const pid_t child = ::fork();
     if (child == 0) {
-        ::signal(SIGXFSZ, SIG_IGN);
-        const struct rlimit limit = {max_bytes, max_bytes};
-        ::setrlimit(RLIMIT_FSIZE, &limit);
+        prepare();
         std::string message = "nothing thrown";
         try {
             OutputFile file(target);
@@ -108,6 +107,27 @@ std::string written_under_a_limit(const fs::path& target, std::size_t num_bytes,
     ::close(pipe[0]);
     ::waitpid(child, nullptr, 0);
     return message;
+}
+
+/// In a process that may write files of `max_bytes`.
+std::string written_under_a_limit(const fs::path& target, std::size_t num_bytes, rlim_t max_bytes) {
+    return written_elsewhere(target, num_bytes, [&] {
+        ::signal(SIGXFSZ, SIG_IGN);
+        const struct rlimit limit = {max_bytes, max_bytes};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+    });
+}
+
+TEST_F(OutputFileTest, SaysWhereThereAreNoRights) {
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                                 fs::perms::others_exec);
+    constexpr uid_t Nobody = 65534; // root has all rights
+    const fs::path target = folder_ / "out.txt";
+    EXPECT_EQ(
+        written_elsewhere(target, 10, [] { static_cast<void>(::geteuid() == 0 ? ::seteuid(Nobody) : 0); }),
+        target.string() + ": cannot write: Permission denied");
+    fs::permissions(folder_, fs::perms::owner_all);
+    EXPECT_EQ(num_files(), 0u);
 }
 
 TEST_F(OutputFileTest, ALimitIsReportedWithTheBytesNeededAndTheOldFileStays) {

@@ -80,13 +80,5 @@ TEST(PanelLayout, PanelsFillTheWindowWithoutOverlaps) {
         }
 }
 
-TEST(SaneExposure, LeavesWhatIsFineAndLiftsWhatIsDark) {
-    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(0.9f))), 0.0f);
-    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(1.0f / 64.0f))), 6.0f);
-    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(256.0f))), -8.0f);
-    EXPECT_EQ(sane_exposure_ev(std::vector(100, glm::vec3(0.0f))), 0.0f);
-    EXPECT_EQ(sane_exposure_ev({}), 0.0f);
-}
-
 } // namespace
 } // namespace relumine::viewer

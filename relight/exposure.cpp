@@ -1,12 +1,12 @@
-#include "viewer/look.h"
+#include "relight/exposure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-namespace relumine::viewer {
+namespace relumine::relight {
 
-float sane_exposure_ev(std::span<const glm::vec3> radiance) {
+float suitable_exposure_ev(std::span<const glm::vec3> radiance) {
     std::vector<float> brightness;
     brightness.reserve(radiance.size());
     for (const glm::vec3& value : radiance)
@@ -20,4 +20,4 @@ float sane_exposure_ev(std::span<const glm::vec3> radiance) {
     return std::clamp(0.5f * std::round(-2.0f * std::log2(*bright)), -20.0f, 20.0f);
 }
 
-} // namespace relumine::viewer
+} // namespace relumine::relight
