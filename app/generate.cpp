@@ -107,8 +107,10 @@ void add_generate(CLI::App& program, Session& session) {
         ->capture_default_str();
     const CLI::Option* resolution =
         command
-            .add_option("--face-resolution", options->face_resolution,
-                        "R of an environment: cube 6 x R x R, lat-long 4R x 2R; `turn`: of its --env")
+            .add_option(
+                "--face-resolution", options->face_resolution,
+                "R of an environment: cube 6 x R x R, lat-long 4R x 2R; of a sequence 128 when it is not "
+                "given, of `turn` that of its --env")
             ->capture_default_str();
     session.add_common_options(command);
     command.callback([options, resolution, &session] { run(*options, resolution->count() > 0, session); });
