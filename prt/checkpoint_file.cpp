@@ -46,7 +46,7 @@ fs::path CheckpointFile::folder_for(const fs::path& output) {
     return folder;
 }
 
-CheckpointFile::CheckpointFile(fs::path output, Fingerprint fingerprint, Options options)
+CheckpointFile::CheckpointFile(const fs::path& output, Fingerprint fingerprint, Options options)
     : folder_(folder_for(output)), fingerprint_(std::move(fingerprint)), options_(std::move(options)),
       last_(Clock::now()) {
     if (!options_.resume || !fs::exists(folder_))

@@ -43,7 +43,7 @@ public:
 
     /// Nothing is written yet. With `resume`: throws UnusableCheckpoint "FOLDER: expected X, got Y" when the checkpoint there belongs to
     /// other work or is damaged, as load() does, and std::runtime_error when it is in use. There may be none.
-    CheckpointFile(std::filesystem::path output, Fingerprint fingerprint, Options options);
+    CheckpointFile(const std::filesystem::path& output, Fingerprint fingerprint, Options options);
     ~CheckpointFile() override;
 
     /// "out.prt.checkpoint" for "out.prt".
