@@ -47,7 +47,7 @@ TEST_F(MaxMemory, HoldsForHighlights) {
         return more;
     };
     // Room for the clusters, but not for some megabytes of highlights.
-    fail(run("66M", glossy({})),
+    fail(run("66M", glossy({"-q"})),
          {"knot.ply: expected highlights within ", " MB of memory, got an estimate of ",
           " MB; a larger --glossy-tolerance takes less"});
     const nlohmann::json report = succeed(run("300M", glossy({"--json"}))).json();
