@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <iterator>
@@ -132,6 +133,19 @@ bool Process::poll(bool block) {
 
 bool Process::is_running() {
     return !poll(false);
+}
+
+void Process::wait_until_it_takes(int signal) {
+    const std::string status = fmt::format("/proc/{}/status", pid_);
+    const std::string name = "SigBlk:";
+    while (is_running()) {
+        const std::string text = content(status);
+        const std::size_t at = text.find(name);
+        if (at != std::string::npos &&
+            (std::strtoull(text.c_str() + at + name.size(), nullptr, 16) >> (signal - 1) & 1u) != 0)
+            return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
 }
 
 Result Process::wait() {

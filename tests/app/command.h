@@ -53,6 +53,8 @@ public:
     void send(int signal) const;
     /// False when it ended.
     [[nodiscard]] bool is_running();
+    /// Waits until the program has come so far that it takes signals (its threads block those that one of them waits for).
+    void wait_until_it_takes(int signal);
     [[nodiscard]] Result wait();
 
 private:

@@ -21,11 +21,12 @@ protected:
     const std::vector<std::string> Endless = {"precompute",  "knot.ply", "-o", "scene.prt",
                                               "--tolerance", "0",        "-q"};
 
-    /// Sends the signals after `delay`, with a millisecond between them, and expects the end within a second or so.
+    /// Sends the signals `delay` after the program takes them, with a millisecond between them, and expects the end within a second or so.
     void interrupt(const std::vector<std::string>& arguments, const std::vector<int>& signals,
                    std::chrono::milliseconds delay) const {
         const std::vector<std::string> before = files();
         Process process(folder(), arguments);
+        process.wait_until_it_takes(SIGTERM);
         std::this_thread::sleep_for(SanitizerFactor * delay);
         ASSERT_TRUE(process.is_running()) << "done before it could be stopped";
         const Clock::time_point sent = Clock::now();
@@ -52,13 +53,14 @@ TEST_F(Signals, PrecomputeStopsAtOnce) {
     // As `timeout` sends it: to the process, then to its group.
     interrupt(Endless, {SIGTERM, SIGCONT, SIGTERM}, std::chrono::milliseconds(300));
     // While it starts and loads.
-    interrupt(Endless, {SIGINT}, std::chrono::milliseconds(30));
+    interrupt(Endless, {SIGINT}, std::chrono::milliseconds(0));
+    interrupt(Endless, {SIGINT}, std::chrono::milliseconds(10));
 }
 
 TEST_F(Signals, AClosedTerminalIsNothingToNohup) {
     succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
     Process process(folder(), Endless, {.ignored_signal = SIGHUP});
-    std::this_thread::sleep_for(SanitizerFactor * std::chrono::milliseconds(200));
+    process.wait_until_it_takes(SIGTERM);
     process.send(SIGHUP);
     std::this_thread::sleep_for(SanitizerFactor * std::chrono::milliseconds(300));
     EXPECT_TRUE(process.is_running());
