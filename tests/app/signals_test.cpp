@@ -27,7 +27,7 @@ protected:
         const std::vector<std::string> before = files();
         Process process(folder(), arguments);
         process.wait_until_it_takes(SIGTERM);
-        std::this_thread::sleep_for(SanitizerFactor * delay);
+        std::this_thread::sleep_for(delay);
         ASSERT_TRUE(process.is_running()) << "done before it could be stopped";
         const Clock::time_point sent = Clock::now();
         for (const int signal : signals) {
@@ -62,7 +62,7 @@ TEST_F(Signals, AClosedTerminalIsNothingToNohup) {
     Process process(folder(), Endless, {.ignored_signal = SIGHUP});
     process.wait_until_it_takes(SIGTERM);
     process.send(SIGHUP);
-    std::this_thread::sleep_for(SanitizerFactor * std::chrono::milliseconds(300));
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
     EXPECT_TRUE(process.is_running());
     process.send(SIGTERM);
     EXPECT_EQ(process.wait().err, "relumine: cancelled; nothing was written\n");
