@@ -124,8 +124,6 @@ void run(const Options& options, Session& session) {
     try {
         compute(options, scene, precompute, checkpoint, statistics, session, report);
         file_bytes = save(options, scene, precompute);
-    } catch (const prt::UnusableCheckpoint&) {
-        throw;
     } catch (const std::exception& error) {
         if (!checkpoint || !checkpoint->exists())
             throw;

@@ -33,11 +33,6 @@ struct StateHead {
 /// Work of less than this is not worth a file.
 constexpr double WorthwhileSeconds = 5.0;
 
-UnusableCheckpoint damaged(const fs::path& path) {
-    return UnusableCheckpoint(fmt::format(
-        "{}: expected a checkpoint, got damaged data; without --resume the work begins anew", path.string()));
-}
-
 } // namespace
 
 fs::path CheckpointFile::folder_for(const fs::path& output) {
@@ -63,24 +58,32 @@ CheckpointFile::CheckpointFile(const fs::path& output, Fingerprint fingerprint, 
 
 CheckpointFile::~CheckpointFile() = default;
 
-void CheckpointFile::check_fingerprint() const {
+/// The error to throw; what is there is no checkpoint of this work then.
+std::runtime_error CheckpointFile::damaged(const std::string& name) {
+    is_ours_ = false;
+    return std::runtime_error(
+        fmt::format("{}: expected a checkpoint, got damaged data; without --resume the work begins anew",
+                    file(name).string()));
+}
+
+void CheckpointFile::check_fingerprint() {
     const std::vector<std::byte> bytes = files::read(file(RunName));
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     const nlohmann::json json = nlohmann::json::parse(text, text + bytes.size(), nullptr, false);
     if (!json.is_object())
-        throw damaged(file(RunName));
+        throw damaged(RunName);
     for (const auto& [name, value] : fingerprint_) {
         const auto found = json.find(name);
         if (found != json.end() && *found == value)
             continue;
         const std::string got =
             found != json.end() && found->is_string() ? found->get<std::string>() : "none";
-        throw UnusableCheckpoint(fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
+        throw std::runtime_error(fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
                                              "({} {}); without --resume the work begins anew",
                                              folder_.string(), name, value, name, got));
     }
     if (json.size() != fingerprint_.size())
-        throw UnusableCheckpoint(
+        throw std::runtime_error(
             fmt::format("{}: expected a checkpoint of this run, got one with highlights; "
                         "without --resume the work begins anew",
                         folder_.string()));
@@ -135,7 +138,8 @@ Checkpoint::Saved CheckpointFile::load(const std::string& part, bool with_state)
     Saved saved;
     if (!is_ours_)
         return saved;
-    const fs::path state_file = file(part + ".state");
+    const std::string state_name = part + ".state";
+    const fs::path state_file = file(state_name);
     if (!with_state) {
         saved.records = log(part).read();
         return saved;
@@ -146,14 +150,14 @@ Checkpoint::Saved CheckpointFile::load(const std::string& part, bool with_state)
     StateHead head;
     const StateHead expected;
     if (bytes.size() < sizeof head)
-        throw damaged(state_file);
+        throw damaged(state_name);
     std::memcpy(&head, bytes.data(), sizeof head);
     if (head.mark != expected.mark || head.size != bytes.size() - sizeof head ||
         XXH64(bytes.data() + sizeof head, head.size, head.log_size) != head.checksum)
-        throw damaged(state_file);
+        throw damaged(state_name);
     saved.records = log(part).read(head.log_size);
     if (log(part).size() != head.log_size)
-        throw damaged(file(part + ".log"));
+        throw damaged(part + ".log");
     saved.state.assign(bytes.begin() + sizeof head, bytes.end());
     return saved;
 }

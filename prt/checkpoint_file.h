@@ -23,12 +23,6 @@ class FolderLock;
 
 namespace relumine::prt {
 
-/// A checkpoint that cannot be taken up. The message says what to do instead.
-class UnusableCheckpoint : public std::runtime_error {
-public:
-    using std::runtime_error::runtime_error;
-};
-
 /// The folder OUT.prt.checkpoint: `run.json`, the fingerprint; for each part `PART.log`, its records, and `PART.state`, which says how much
 /// of the log belongs to it. A log only grows and a state is replaced whole, so a crash at any moment leaves the last checkpoint or
 /// the one before. It appears with the first save. One process at a time uses it.
@@ -41,8 +35,8 @@ public:
             {}; ///< a save failed, or another process is at work
     };
 
-    /// Nothing is written yet. With `resume`: throws UnusableCheckpoint "FOLDER: expected X, got Y" when the checkpoint there belongs to
-    /// other work or is damaged, as load() does, and std::runtime_error when it is in use. There may be none.
+    /// Nothing is written yet. With `resume`: throws std::runtime_error "FOLDER: expected X, got Y" when the checkpoint there belongs to
+    /// other work, is damaged or in use. There may be none.
     CheckpointFile(const std::filesystem::path& output, Fingerprint fingerprint, Options options);
     ~CheckpointFile() override;
 
@@ -55,7 +49,7 @@ public:
     [[nodiscard]] bool save(const std::string& part, std::span<const std::byte> record,
                             std::span<const std::byte> state) override;
 
-    /// Whether there is something to resume from.
+    /// Whether there is something to resume from. No more when load() found it damaged.
     [[nodiscard]] bool exists() const { return is_ours_; }
     /// The work is done: the folder goes, an older run's, too, unless another process uses it.
     void remove();
@@ -63,7 +57,8 @@ public:
 private:
     using Clock = std::chrono::steady_clock;
 
-    void check_fingerprint() const;
+    void check_fingerprint();
+    [[nodiscard]] std::runtime_error damaged(const std::string& name);
     bool lock();
     void clear();
     void claim();
