@@ -176,8 +176,9 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
         mesh::save(path, scene.mesh, colors);
 }
 
-std::string OutputOptions::exposure_hint(const prt::Scene& scene, std::span<const glm::vec3> radiance) const {
-    if (exposure_option_->count() > 0 || extension_of(path) != ".png")
+std::string OutputOptions::exposure_hint(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+                                         const Session& session) const {
+    if (session.json || session.quiet || exposure_option_->count() > 0 || extension_of(path) != ".png")
         return "";
     const float better = relight::suitable_exposure_ev(coloured(albedo, scene, radiance));
     return better == 0.0f ? "" : fmt::format("; --exposure {} suits it better", better);

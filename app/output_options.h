@@ -16,6 +16,8 @@
 
 namespace relumine::app {
 
+class Session;
+
 /// -o and everything that shapes the output: camera, size, exposure, albedo.
 struct OutputOptions {
     std::string path;
@@ -42,9 +44,9 @@ struct OutputOptions {
               const cubemap::CubeMap& environment) const;
 
     /// What to tell the user where a .png comes out far too bright or too dark and no exposure was chosen: "; --exposure -3 suits it better",
-    /// else nothing.
-    [[nodiscard]] std::string exposure_hint(const prt::Scene& scene,
-                                            std::span<const glm::vec3> radiance) const;
+    /// else nothing, as where the session is silent.
+    [[nodiscard]] std::string exposure_hint(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+                                            const Session& session) const;
 
 private:
     const CLI::Option* exposure_option_ = nullptr;

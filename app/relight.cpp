@@ -52,7 +52,7 @@ void light_with_environment(const Options& options, Session& session) {
                             resolution, 1e3 * environment.seconds_load, 1e3 * environment.seconds_resample,
                             1e3 * times.seconds_bin, 1e3 * times.seconds_trace, times.num_sharp_lights,
                             1e3 * times.seconds_relight,
-                            options.output.exposure_hint(scene, relighter.radiance())));
+                            options.output.exposure_hint(scene, relighter.radiance(), session)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -94,7 +94,7 @@ void light_with_list(const Options& options, Session& session) {
         fmt::format("{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
                     radiance.size(), list.lights.size(), options.lights, 1e3 * seconds_light,
                     options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
-                    options.output.exposure_hint(lit.scene(), radiance)));
+                    options.output.exposure_hint(lit.scene(), radiance, session)));
     session.report({{"receivers", radiance.size()},
                     {"lights", list.lights.size()},
                     {"traced", !options.scene.clusters_only},
