@@ -15,15 +15,15 @@
 #include "app/commands.h"
 #include "app/frame_record.h"
 #include "app/movie.h"
-#include "cubemap/frame_sequence.h"
-#include "cubemap/read_ahead.h"
+#include "cubemap/image/frame_sequence.h"
+#include "cubemap/image/read_ahead.h"
 #include "files/output_file.h"
 #include "lights/frame_samples.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "prt/precompute.h"
-#include "relight/array_file.h"
 #include "relight/flicker.h"
+#include "relight/pictures/array_file.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {

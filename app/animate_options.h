@@ -11,8 +11,8 @@
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
-#include "cubemap/frame_pattern.h"
-#include "cubemap/frame_sequence.h"
+#include "cubemap/image/frame_pattern.h"
+#include "cubemap/image/frame_sequence.h"
 
 namespace relumine::app {
 

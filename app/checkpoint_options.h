@@ -8,7 +8,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/session.h"
-#include "prt/checkpoint_file.h"
+#include "prt/scene/checkpoint_file.h"
 
 namespace relumine::app {
 

@@ -19,8 +19,8 @@
 #include "app/lit_by.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
-#include "cubemap/environment.h"
-#include "cubemap/layer_file.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/layers/layer_file.h"
 #include "relight/contribution.h"
 #include "relight/light_editor.h"
 

@@ -12,10 +12,10 @@
 #include "app/environment_options.h"
 #include "app/output_options.h"
 #include "app/split_sun.h"
-#include "cubemap/convention.h"
-#include "cubemap/convert.h"
-#include "cubemap/image_layout.h"
-#include "cubemap/statistics.h"
+#include "cubemap/doctor/statistics.h"
+#include "cubemap/image/convention.h"
+#include "cubemap/image/image_layout.h"
+#include "cubemap/resample/convert.h"
 
 namespace relumine::app {
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cubemap/resample.h"
+#include "cubemap/resample/resample.h"
 
 namespace relumine::app {
 

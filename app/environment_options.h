@@ -10,7 +10,7 @@
 
 #include "app/session.h"
 #include "cubemap/cube_map.h"
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 
 namespace relumine::app {
 

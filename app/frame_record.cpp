@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 #include "files/output_file.h"
 
 namespace relumine::app {

@@ -8,7 +8,7 @@
 
 #include "app/commands.h"
 #include "app/generate_sequence.h"
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "data_gen/sequences.h"

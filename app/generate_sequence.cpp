@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "app/environment_options.h"
-#include "cubemap/environment.h"
-#include "cubemap/frame_pattern.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/image/frame_pattern.h"
 #include "data_gen/sequences.h"
 
 namespace relumine::app {

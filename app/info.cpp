@@ -14,8 +14,8 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "mesh/load.h"
-#include "prt/scene_check.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_check.h"
+#include "prt/scene/scene_file.h"
 
 namespace relumine::app {
 

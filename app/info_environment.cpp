@@ -10,14 +10,14 @@
 #include <fmt/ranges.h>
 
 #include "app/environment_options.h"
-#include "app/environment_picture.h"
 #include "app/output_options.h"
-#include "cubemap/clipped_sun.h"
-#include "cubemap/environment.h"
-#include "cubemap/seams.h"
-#include "cubemap/sky_angles.h"
-#include "cubemap/statistics.h"
-#include "cubemap/sun.h"
+#include "cubemap/doctor/clipped_sun.h"
+#include "cubemap/doctor/seams.h"
+#include "cubemap/doctor/sky_angles.h"
+#include "cubemap/doctor/statistics.h"
+#include "cubemap/doctor/sun.h"
+#include "cubemap/image/environment.h"
+#include "relight/pictures/environment_picture.h"
 
 namespace relumine::app {
 
@@ -157,7 +157,7 @@ nlohmann::json report(const cubemap::EnvironmentImage& image, const Findings& fo
 
 void describe_environment(const EnvironmentInfoOptions& options, const Session& session) {
     if (!options.picture.empty()) {
-        check_environment_picture(options.picture);
+        relight::check_environment_picture(options.picture);
         check_output(options.picture, {options.path});
     }
     cubemap::LoadOptions load_options{.fix_bad_pixels = true};
@@ -172,12 +172,12 @@ void describe_environment(const EnvironmentInfoOptions& options, const Session& 
     found.clipped = cubemap::clipped_sun(image, found.search, found.statistics);
     session.poll();
     if (!options.picture.empty()) {
-        SunMark mark;
+        relight::SunMark mark;
         if (found.clipped)
             mark = {.direction = found.clipped->direction, .label = "sun?"};
         if (found.search.sun)
             mark = {.direction = found.search.sun->direction, .label = found.clipped ? "sun?" : "sun"};
-        save_environment_picture(options.picture, image, mark);
+        relight::save_environment_picture(options.picture, image, mark);
     }
     say_image(image, session);
     say_light(found, session);

@@ -12,7 +12,7 @@
 #include "lights/place_lights.h"
 #include "relight/exact.h"
 #include "relight/light_packets.h"
-#include "relight/plot.h"
+#include "relight/pictures/plot.h"
 #include "relight/transfer_lights.h"
 
 namespace relumine::app {

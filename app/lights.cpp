@@ -19,10 +19,10 @@
 #include "app/receiver_options.h"
 #include "lights/light_export.h"
 #include "lights/place_lights.h"
-#include "lights/region_picture.h"
 #include "relight/exact.h"
 #include "relight/light_packets.h"
-#include "relight/picture.h"
+#include "relight/pictures/picture.h"
+#include "relight/pictures/region_picture.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {
@@ -181,10 +181,7 @@ void run(const Options& options, Session& session) {
         lights::export_lights(options.path, list, format_of(options), options.export_options);
     }
     if (!options.picture.empty()) {
-        lights::LatLongPicture picture = lights::region_picture(map, placement);
-        relight::save_picture(
-            options.picture,
-            {.width = picture.width, .height = picture.height, .pixels = std::move(picture.pixels)});
+        relight::save_picture(options.picture, relight::region_picture(map, placement));
     }
 
     const glm::dvec3 power = lights::total_irradiance(placement.lights);

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
-#include "cubemap/layer_composite.h"
+#include "cubemap/layers/layer_composite.h"
 #include "relight/contribution.h"
 
 namespace relumine::app {

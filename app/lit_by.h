@@ -8,7 +8,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/light_layer.h"
+#include "cubemap/layers/light_layer.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {

@@ -7,7 +7,7 @@
 
 #include "app/session.h"
 #include "mesh/load.h"
-#include "prt/receivers.h"
+#include "prt/receivers/receivers.h"
 
 namespace relumine::app {
 

@@ -5,8 +5,8 @@
 
 #include <CLI/CLI.hpp>
 
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/light_packets.h"
 
 namespace relumine::app {

@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/surface_sampling.h"
+#include "prt/glossy/surface_sampling.h"
 
 namespace relumine::app {
 

@@ -14,13 +14,13 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
-#include "cubemap/resample.h"
+#include "cubemap/resample/resample.h"
 #include "files/output_file.h"
 #include "mesh/save.h"
-#include "relight/array_file.h"
-#include "relight/exposure.h"
-#include "relight/picture.h"
-#include "relight/receiver_picture.h"
+#include "relight/pictures/array_file.h"
+#include "relight/pictures/exposure.h"
+#include "relight/pictures/picture.h"
+#include "relight/pictures/receiver_picture.h"
 
 namespace relumine::app {
 

@@ -12,7 +12,7 @@
 
 #include "app/lit_scene.h"
 #include "cubemap/cube_map.h"
-#include "relight/picture.h"
+#include "relight/pictures/picture.h"
 
 namespace relumine::app {
 

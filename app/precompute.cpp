@@ -16,11 +16,11 @@
 #include "app/surface_options.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
-#include "prt/beam_scene.h"
-#include "prt/fingerprint.h"
-#include "prt/glossy_precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/scene/fingerprint.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::app {
 

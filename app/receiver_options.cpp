@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "prt/pixel_receivers.h"
-#include "prt/texel_receivers.h"
-#include "relight/picture.h"
+#include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/texel_receivers.h"
+#include "relight/pictures/picture.h"
 
 namespace relumine::app {
 

@@ -8,8 +8,8 @@
 #include <CLI/CLI.hpp>
 
 #include "app/session.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::app {
 

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/sky_angles.h"
-#include "cubemap/sun.h"
+#include "cubemap/doctor/sky_angles.h"
+#include "cubemap/doctor/sun.h"
 #include "lights/light_file.h"
 #include "lights/sun_split.h"
 

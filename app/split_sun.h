@@ -7,7 +7,7 @@
 #include <glm/mat3x3.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 #include "files/output_file.h"
 
 namespace relumine::app {

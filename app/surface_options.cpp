@@ -6,7 +6,7 @@
 
 #include "app/material_option.h"
 #include "app/memory_option.h"
-#include "prt/surface_sampling.h"
+#include "prt/glossy/surface_sampling.h"
 
 namespace relumine::app {
 

@@ -7,10 +7,10 @@
 #include <CLI/CLI.hpp>
 
 #include "app/session.h"
-#include "prt/glossy_precompute.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::app {
 

@@ -15,7 +15,7 @@
 #include "app/receiver_options.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
-#include "relight/exposure.h"
+#include "relight/pictures/exposure.h"
 #include "viewer/view.h"
 #endif
 

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/layer_composite.h"
+#include "cubemap/layers/layer_composite.h"
 #include "data_gen/environments.h"
 
 namespace relumine::data_gen {

@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/sky_angles.h"
+#include "cubemap/doctor/sky_angles.h"
 
 namespace relumine::data_gen {
 

@@ -2,11 +2,11 @@
 #include <cstdio>
 #include <vector>
 
-#include "cubemap/layer_file.h"
+#include "cubemap/layers/layer_file.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/contribution.h"
 #include "relight/light_editor.h"
 

@@ -6,8 +6,8 @@
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "relight/picture.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/pictures/picture.h"
 #include "relight/relighter.h"
 
 int main() {

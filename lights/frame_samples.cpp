@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/resample.h"
+#include "cubemap/resample/resample.h"
 #include "lights/importance_sampling.h"
 #include "lights/lat_long_grid.h"
 #include "lights/place_lights.h"

@@ -11,7 +11,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 
 namespace relumine::lights {
 

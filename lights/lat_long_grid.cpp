@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "cubemap/image_layout.h"
+#include "cubemap/image/image_layout.h"
 
 namespace relumine::lights {
 

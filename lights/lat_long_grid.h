@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 
 namespace relumine::lights {
 

@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/json_value.h"
+#include "files/json_value.h"
 #include "files/output_file.h"
 
 namespace relumine::lights {
@@ -53,22 +53,22 @@ public:
     explicit LightFileReader(const std::filesystem::path& path) : path_(path), json_(path.string()) {}
 
     LightList read() const {
-        const cubemap::JsonValue root = json_.parse(files::read(path_));
+        const files::JsonValue root = json_.parse(files::read(path_));
         const auto& members = json_.object(root, "a light list");
         known(members, std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
               "a light list");
-        const cubemap::JsonValue& version = required(root, members, "version");
+        const files::JsonValue& version = required(root, members, "version");
         if (const double got = json_.number(version, "\"version\""); got != Version)
             json_.refuse(version.line, fmt::format("version {}", Version), fmt::format("{}", got));
         LightList result;
-        if (const auto* value = cubemap::JsonReader::find(members, "environment"))
+        if (const auto* value = files::JsonReader::find(members, "environment"))
             result.environment = json_.string(*value, "\"environment\"");
-        if (const auto* value = cubemap::JsonReader::find(members, "method"))
+        if (const auto* value = files::JsonReader::find(members, "method"))
             result.method = json_.string(*value, "\"method\"");
-        if (const auto* value = cubemap::JsonReader::find(members, "seed"))
+        if (const auto* value = files::JsonReader::find(members, "seed"))
             result.seed = seed(*value);
-        const cubemap::JsonValue& lights = required(root, members, "lights");
-        for (const cubemap::JsonValue& value : json_.array(lights, "\"lights\""))
+        const files::JsonValue& lights = required(root, members, "lights");
+        for (const files::JsonValue& value : json_.array(lights, "\"lights\""))
             result.lights.push_back(light(value));
         if (result.lights.empty())
             json_.refuse(lights.line, "one light at least", "none");
@@ -76,16 +76,15 @@ public:
     }
 
 private:
-    const cubemap::JsonValue& required(const cubemap::JsonValue& owner,
-                                       const cubemap::JsonValue::Object& members,
-                                       std::string_view field) const {
-        const cubemap::JsonValue* found = cubemap::JsonReader::find(members, field);
+    const files::JsonValue& required(const files::JsonValue& owner, const files::JsonValue::Object& members,
+                                     std::string_view field) const {
+        const files::JsonValue* found = files::JsonReader::find(members, field);
         if (found == nullptr)
             json_.refuse(owner.line, fmt::format("\"{}\"", field), "none");
         return *found;
     }
 
-    void known(const cubemap::JsonValue::Object& members, std::span<const std::string_view> names,
+    void known(const files::JsonValue::Object& members, std::span<const std::string_view> names,
                std::string_view what) const {
         for (const auto& [name, value] : members) {
             if (std::find(names.begin(), names.end(), name) == names.end())
@@ -94,7 +93,7 @@ private:
         }
     }
 
-    glm::dvec3 vector3(const cubemap::JsonValue& value, std::string_view what) const {
+    glm::dvec3 vector3(const files::JsonValue& value, std::string_view what) const {
         const auto& array = json_.array(value, what);
         if (array.size() != 3)
             json_.refuse(value.line, fmt::format("{} of 3 numbers", what), fmt::format("{}", array.size()));
@@ -102,7 +101,7 @@ private:
     }
 
     /// Numbers beyond 2^53 are not whole in JSON.
-    std::uint64_t seed(const cubemap::JsonValue& value) const {
+    std::uint64_t seed(const files::JsonValue& value) const {
         const double number = json_.number(value, "\"seed\"");
         if (!(number >= 0.0 && number <= 0x1p53 && number == std::floor(number)))
             json_.refuse(value.line, "\"seed\" to be a whole number from 0 to 2^53",
@@ -110,16 +109,16 @@ private:
         return static_cast<std::uint64_t>(number);
     }
 
-    DistantLight light(const cubemap::JsonValue& value) const {
+    DistantLight light(const files::JsonValue& value) const {
         const auto& members = json_.object(value, "a light");
         known(members, std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"}, "a light");
         DistantLight result;
         result.direction = vector3(required(value, members, "direction"), "\"direction\"");
         result.irradiance = vector3(required(value, members, "irradiance"), "\"irradiance\"");
-        if (const auto* solid_angle = cubemap::JsonReader::find(members, "solid_angle"))
+        if (const auto* solid_angle = files::JsonReader::find(members, "solid_angle"))
             result.solid_angle = json_.number(*solid_angle, "\"solid_angle\"");
         if (const auto wrong = fault(result))
-            json_.refuse(cubemap::JsonReader::find(members, wrong->field)->line, wrong->expected, wrong->got);
+            json_.refuse(files::JsonReader::find(members, wrong->field)->line, wrong->expected, wrong->got);
         // What was written by hand or with few digits; our own files stay as they are, bit by bit.
         if (std::abs(glm::length(result.direction) - 1.0) > 1e-12)
             result.direction = glm::normalize(result.direction);
@@ -127,7 +126,7 @@ private:
     }
 
     std::filesystem::path path_;
-    cubemap::JsonReader json_;
+    files::JsonReader json_;
 };
 
 } // namespace

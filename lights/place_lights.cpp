@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "cubemap/resample.h"
+#include "cubemap/resample/resample.h"
 #include "lights/importance_sampling.h"
 #include "lights/median_cut.h"
 #include "lights/region_cuts.h"

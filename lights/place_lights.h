@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/environment.h"
+#include "cubemap/image/environment.h"
 #include "lights/lat_long_grid.h"
 #include "lights/light_list.h"
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/environment.h"
-#include "cubemap/sun.h"
+#include "cubemap/doctor/sun.h"
+#include "cubemap/image/environment.h"
 #include "lights/light_list.h"
 
 namespace relumine::lights {

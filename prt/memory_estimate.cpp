@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "prt/receiver_order.h"
+#include "prt/receivers/receiver_order.h"
 
 namespace relumine::prt {
 

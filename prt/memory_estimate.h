@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "prt/blockers.h"
 #include "prt/precompute.h"
-#include "prt/receivers.h"
+#include "prt/receivers/receivers.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "prt/clustering.h"
+#include "prt/clusters/clustering.h"
 
 namespace relumine::prt {
 

@@ -8,10 +8,10 @@
 #include <stdexcept>
 #include <stop_token>
 
-#include "prt/blockers.h"
 #include "prt/checkpoint.h"
-#include "prt/receivers.h"
+#include "prt/receivers/receivers.h"
 #include "prt/transfer.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
 

@@ -7,11 +7,11 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/glossy_transfer.h"
-#include "prt/quadtree.h"
-#include "prt/receivers.h"
-#include "prt/surface.h"
-#include "prt/visible_counts.h"
+#include "prt/clusters/quadtree.h"
+#include "prt/clusters/visible_counts.h"
+#include "prt/glossy/glossy_transfer.h"
+#include "prt/glossy/surface.h"
+#include "prt/receivers/receivers.h"
 
 namespace relumine::prt {
 

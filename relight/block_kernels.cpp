@@ -4,7 +4,7 @@
 #include <bit>
 #include <numbers>
 
-#include "prt/lattice.h"
+#include "prt/clusters/lattice.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE

@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/visible_counts.h"
+#include "prt/clusters/visible_counts.h"
 
 namespace relumine::relight {
 

@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/quadtree.h"
+#include "prt/clusters/quadtree.h"
 
 namespace relumine::relight {
 

@@ -12,7 +12,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "prt/brdf.h"
+#include "prt/glossy/brdf.h"
 #include "prt/precompute.h"
 
 namespace relumine::relight {

@@ -11,9 +11,9 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/blockers.h"
-#include "prt/receivers.h"
+#include "prt/receivers/receivers.h"
 #include "prt/transfer.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::relight {
 

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 
 #include "lights/lat_long_grid.h"
-#include "relight/array_file.h"
-#include "relight/plot.h"
+#include "relight/pictures/array_file.h"
+#include "relight/pictures/plot.h"
 
 namespace relumine::relight {
 

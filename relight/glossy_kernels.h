@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "prt/glossy_transfer.h"
+#include "prt/glossy/glossy_transfer.h"
 #include "relight/block_kernels.h"
 
 namespace relumine::relight {

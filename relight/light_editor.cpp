@@ -13,7 +13,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "cubemap/region_turn.h"
+#include "cubemap/layers/region_turn.h"
 
 namespace relumine::relight {
 

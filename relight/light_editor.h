@@ -11,8 +11,8 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/layer_composite.h"
-#include "cubemap/light_layer.h"
+#include "cubemap/layers/layer_composite.h"
+#include "cubemap/layers/light_layer.h"
 #include "prt/transfer.h"
 #include "relight/relighter.h"
 

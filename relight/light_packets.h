@@ -9,10 +9,10 @@
 #include <glm/vec3.hpp>
 
 #include "lights/light_list.h"
-#include "prt/blockers.h"
-#include "prt/brdf.h"
-#include "prt/lobe_kernel.h"
-#include "prt/receivers.h"
+#include "prt/glossy/brdf.h"
+#include "prt/glossy/lobe_kernel.h"
+#include "prt/receivers/receivers.h"
+#include "prt/visibility/blockers.h"
 #include "relight/cluster_lights.h"
 #include "relight/sharp_lights.h"
 

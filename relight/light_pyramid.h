@@ -7,7 +7,7 @@
 
 #include "cubemap/cube_map.h"
 #include "lights/light_list.h"
-#include "prt/cell_index.h"
+#include "prt/clusters/cell_index.h"
 #include "relight/cluster_lights.h"
 #include "relight/sharp_lights.h"
 

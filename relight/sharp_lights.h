@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/quadtree.h"
+#include "prt/clusters/quadtree.h"
 #include "relight/cluster_lights.h"
 
 namespace relumine::relight {

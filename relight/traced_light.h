@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/brdf.h"
+#include "prt/glossy/brdf.h"
 #include "prt/transfer.h"
 #include "relight/block_kernels.h"
 #include "relight/light_packets.h"

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/layer_composite.h"
+#include "cubemap/layers/layer_composite.h"
 
 namespace relumine::viewer {
 

@@ -13,7 +13,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/light_layer.h"
+#include "cubemap/layers/light_layer.h"
 #include "cubemap/texel_rectangle.h"
 #include "relight/light_editor.h"
 #include "viewer/region_edit.h"

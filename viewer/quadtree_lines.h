@@ -5,7 +5,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "prt/quadtree.h"
+#include "prt/clusters/quadtree.h"
 
 namespace relumine::viewer {
 

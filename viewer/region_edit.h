@@ -3,8 +3,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/light_layer.h"
-#include "cubemap/region_turn.h"
+#include "cubemap/layers/light_layer.h"
+#include "cubemap/layers/region_turn.h"
 #include "viewer/region_outline.h"
 
 namespace relumine::viewer {

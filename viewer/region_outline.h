@@ -5,7 +5,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/light_layer.h"
+#include "cubemap/layers/light_layer.h"
 
 namespace relumine::viewer {
 

@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/environment.h"
-#include "cubemap/picture.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/layers/picture.h"
 
 namespace relumine::viewer {
 

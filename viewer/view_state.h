@@ -8,9 +8,9 @@
 #include <string>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/layer_file.h"
+#include "cubemap/layers/layer_file.h"
 #include "mesh/triangle_mesh.h"
-#include "prt/ray_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
 #include "viewer/look.h"

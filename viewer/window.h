@@ -9,7 +9,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "relight/picture.h"
+#include "relight/pictures/picture.h"
 #include "viewer/panel_layout.h"
 
 namespace relumine::viewer {

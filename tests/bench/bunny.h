@@ -5,12 +5,12 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/light_layer.h"
+#include "cubemap/layers/light_layer.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::bench {
 

@@ -11,11 +11,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "cubemap/environment.h"
-#include "cubemap/resample.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/resample/resample.h"
 #include "data_gen/sequences.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/relighter.h"
 #include "tests/bench/median.h"
 

@@ -13,10 +13,10 @@
 
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
-#include "prt/beam_scene.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "relight/plot.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/pictures/plot.h"
 #include "relight/relighter.h"
 #include "tests/bench/median.h"
 #include "tests/bench/process_usage.h"

@@ -6,14 +6,14 @@
 
 #include <benchmark/benchmark.h>
 
-#include "cubemap/convert.h"
-#include "cubemap/layer_composite.h"
+#include "cubemap/layers/layer_composite.h"
+#include "cubemap/resample/convert.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/light_editor.h"
 #include "relight/relighter.h"
 

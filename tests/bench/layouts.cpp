@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/convert.h"
-#include "cubemap/resample.h"
+#include "cubemap/resample/convert.h"
+#include "cubemap/resample/resample.h"
 #include "tests/cubemap/sunny_sky.h"
 
 using namespace relumine::cubemap;

@@ -21,10 +21,10 @@
 #include "data_gen/scenes.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
-#include "prt/beam_scene.h"
-#include "prt/lattice.h"
+#include "prt/clusters/lattice.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "tests/bench/process_usage.h"
 
 namespace {

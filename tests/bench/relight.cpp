@@ -12,9 +12,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/environment.h"
-#include "cubemap/resample.h"
-#include "prt/ray_scene.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/resample/resample.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/exact.h"
 #include "relight/light_editor.h"
 #include "tests/bench/bunny.h"

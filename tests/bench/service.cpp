@@ -17,7 +17,7 @@
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/light_editor.h"
 #include "tests/bench/median.h"
 

@@ -15,17 +15,17 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/environment.h"
-#include "cubemap/resample.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/resample/resample.h"
 #include "mesh/floor.h"
 #include "mesh/load.h"
-#include "prt/beam_scene.h"
-#include "prt/glossy_precompute.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/exact.h"
-#include "relight/picture.h"
+#include "relight/pictures/picture.h"
 #include "relight/relighter.h"
 #include "tests/bench/median.h"
 

@@ -12,12 +12,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/environment.h"
-#include "cubemap/resample.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/resample/resample.h"
 #include "data_gen/sequences.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "prt/ray_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/exact.h"
 #include "relight/flicker.h"
 #include "relight/light_packets.h"

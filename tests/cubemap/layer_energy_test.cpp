@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "cubemap/layer_composite.h"
+#include "cubemap/layers/layer_composite.h"
 #include "tests/cubemap/layer_places.h"
 
 namespace relumine::cubemap {

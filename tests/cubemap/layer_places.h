@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "cubemap/light_layer.h"
+#include "cubemap/layers/light_layer.h"
 
 namespace relumine::cubemap {
 

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "cubemap/convert.h"
-#include "cubemap/image_file.h"
-#include "cubemap/resample.h"
+#include "cubemap/image/image_file.h"
+#include "cubemap/resample/convert.h"
+#include "cubemap/resample/resample.h"
 #include "files/output_file.h"
 #include "tests/cubemap/test_images.h"
 

@@ -12,8 +12,8 @@
 #include <gtest/gtest.h>
 
 #include "cubemap/cube_map.h"
-#include "cubemap/environment.h"
-#include "cubemap/image_layout.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/image/image_layout.h"
 
 namespace relumine::cubemap {
 

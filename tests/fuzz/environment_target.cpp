@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cubemap/environment.h"
-#include "cubemap/image_size.h"
-#include "cubemap/picture.h"
-#include "cubemap/resample.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/image/image_size.h"
+#include "cubemap/layers/picture.h"
+#include "cubemap/resample/resample.h"
 
 namespace relumine::fuzz {
 

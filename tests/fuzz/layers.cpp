@@ -1,5 +1,5 @@
-#include "cubemap/layer_composite.h"
-#include "cubemap/layer_file.h"
+#include "cubemap/layers/layer_composite.h"
+#include "cubemap/layers/layer_file.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

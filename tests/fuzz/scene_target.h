@@ -1,7 +1,7 @@
 // What both ways into a .prt scene have in common for fuzzing.
 #pragma once
 
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
 
 namespace relumine::fuzz {
 

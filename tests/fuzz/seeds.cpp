@@ -14,14 +14,14 @@
 #include <fmt/format.h>
 #include <stb/stb_image_write.h>
 
-#include "cubemap/image_file.h"
+#include "cubemap/image/image_file.h"
 #include "files/output_file.h"
 #include "mesh/load.h"
 #include "mesh/save.h"
-#include "prt/glossy_precompute.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 #include "tests/app/small_files.h"
 #include "tests/fuzz/section_names.h"
 #include "tests/mesh/texture_files.h"

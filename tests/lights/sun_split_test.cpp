@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "cubemap/image_layout.h"
-#include "cubemap/resample.h"
+#include "cubemap/image/image_layout.h"
+#include "cubemap/resample/resample.h"
 #include "data_gen/environments.h"
 #include "lights/disc_light.h"
 

@@ -7,8 +7,8 @@
 #include <ostream>
 #include <random>
 
-#include "cubemap/environment.h"
-#include "cubemap/image_layout.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/image/image_layout.h"
 #include "lights/lat_long_grid.h"
 
 namespace relumine::lights {

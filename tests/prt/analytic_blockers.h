@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "prt/blockers.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::scenes {
 

@@ -12,12 +12,12 @@
 #include <xxhash.h>
 
 #include "files/output_file.h"
-#include "prt/beam_scene.h"
-#include "prt/glossy_precompute.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/scene_file.h"
-#include "prt/section_file.h"
+#include "prt/scene/scene_file.h"
+#include "prt/scene/section_file.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "tests/prt/every_target.h"
 #include "tests/prt/scenes.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "prt/ray_scene.h"
+#include "prt/visibility/ray_scene.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"
 

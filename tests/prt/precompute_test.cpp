@@ -15,9 +15,9 @@
 #include <tbb/global_control.h>
 
 #include "cubemap/cube_map.h"
-#include "prt/lattice.h"
-#include "prt/ray_scene.h"
-#include "prt/receiver_order.h"
+#include "prt/clusters/lattice.h"
+#include "prt/receivers/receiver_order.h"
+#include "prt/visibility/ray_scene.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"

@@ -12,8 +12,8 @@
 
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "relight/array_file.h"
 #include "relight/light_packets.h"
+#include "relight/pictures/array_file.h"
 #include "relight/relighter.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"

@@ -11,9 +11,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "relight/array_file.h"
 #include "relight/binned_environment.h"
-#include "relight/picture.h"
+#include "relight/pictures/array_file.h"
+#include "relight/pictures/picture.h"
 #include "relight/relighter.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"

@@ -3,7 +3,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "prt/glossy_precompute.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "tests/relight/relit_scene.h"
 
 namespace relumine::scenes {

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "prt/brdf.h"
+#include "prt/glossy/brdf.h"
 #include "relight/exact.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"

@@ -7,8 +7,8 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/receivers.h"
+#include "prt/receivers/receivers.h"
+#include "prt/visibility/ray_scene.h"
 #include "relight/light_packets.h"
 #include "tests/prt/scenes.h"
 

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "prt/lattice.h"
+#include "prt/clusters/lattice.h"
 #include "tests/prt/every_target.h"
 #include "tests/relight/relit_scene.h"
 

@@ -10,13 +10,13 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "cubemap/environment.h"
-#include "cubemap/light_layer.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/layers/light_layer.h"
 #include "data_gen/scenes.h"
 #include "prt/precompute.h"
-#include "prt/ray_scene.h"
-#include "prt/receivers.h"
-#include "prt/scene_file.h"
+#include "prt/receivers/receivers.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
 #include "viewer/view_state.h"
 
 namespace relumine::viewer {

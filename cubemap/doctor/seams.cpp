@@ -1,0 +1,206 @@
+#include "cubemap/doctor/seams.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cubemap/doctor/bright_spot.h"
+#include "cubemap/image/image_layout.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+// How far out of line is a fault, in stops. The factors are chosen so that none of some twenty measured environments has a fault that
+// cannot be seen in it, and that a lost row or a turned face has one.
+constexpr double WrapFactor = 2.0, WrapLeastEv = 0.15; ///< against the most uneven hundredth of the columns
+constexpr double PoleFactor = 3.0, PoleLeastEv = 0.2;  ///< against the most uneven of the next rows
+constexpr double AroundFactor = 4.0, AroundLeastEv = 0.4; ///< around the pole, against one row's step
+constexpr double EdgeFactor = 2.5, EdgeLeastEv = 0.15;    ///< against one texel's step beside the edge
+constexpr std::size_t NumPoleRows = 8;
+constexpr std::uint32_t LeastHeight = 16, LeastFace = 8;
+/// Luminance below this part of the mean is dark, however many stops it varies.
+constexpr double DarkPart = 1e-2;
+
+double quantile(std::vector<double> values, double part) {
+    const auto at = values.begin() + std::lround(part * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+double median(std::vector<double> values) {
+    return quantile(std::move(values), 0.5);
+}
+
+/// Luminance in stops, pixel by pixel.
+std::vector<double> stops(const EnvironmentImage& image) {
+    double mean = 0.0;
+    for (const glm::vec3& pixel : image.pixels)
+        mean += luminance(glm::dvec3(pixel));
+    mean /= static_cast<double>(image.pixels.size());
+    std::vector<double> result;
+    result.reserve(image.pixels.size());
+    for (const glm::vec3& pixel : image.pixels)
+        result.push_back(mean > 0.0 ? std::log2(luminance(glm::dvec3(pixel)) / mean + DarkPart) : 0.0);
+    return result;
+}
+
+class LatLongCheck {
+public:
+    LatLongCheck(const EnvironmentImage& image, std::vector<SeamFault>& faults)
+        : width_(image.width), height_(image.height), stops_(stops(image)),
+          rows_(detail::lat_long_rows({image.layout, image.sampling, image.width, image.height})),
+          faults_(faults) {}
+
+    void wrap() const {
+        std::vector<double> steps;
+        for (std::size_t x = 0; x + 1 < width_; ++x)
+            steps.push_back(step(x, x + 1));
+        const double seam = step(width_ - 1, 0);
+        const double usual = quantile(steps, 0.99);
+        if (seam > WrapFactor * usual && seam > WrapLeastEv)
+            faults_.push_back({"left and right edge", seam, median(steps)});
+    }
+
+    void pole(bool is_top) const {
+        const auto row = [&](std::size_t i) {
+            const std::size_t y = is_top ? i : height_ - 1 - i;
+            return std::span(stops_).subspan(y * width_, width_);
+        };
+        std::vector<double> levels;
+        for (std::size_t i = 0; i <= NumPoleRows; ++i)
+            levels.push_back(median({row(i).begin(), row(i).end()}));
+        // Rows change from one to the next, and grain makes the pole, where all pixels may be one sample, differ from the mean.
+        double usual = 0.0;
+        for (std::size_t i = 1; i < NumPoleRows; ++i) {
+            std::vector<double> grain;
+            for (const double value : row(i))
+                grain.push_back(std::abs(value - levels[i]));
+            usual = std::max({usual, std::abs(levels[i + 1] - levels[i]), median(grain)});
+        }
+        const double seam = std::abs(levels[1] - levels[0]);
+        const std::string name = is_top ? "top row" : "bottom row";
+        if (seam > PoleFactor * usual && seam > PoleLeastEv) {
+            faults_.push_back({name, seam, usual});
+            return;
+        }
+        // All pixels of the row lie within one row's height of each other.
+        std::vector<double> around, down;
+        for (std::size_t x = 0; x < width_; ++x) {
+            around.push_back(std::abs(row(0)[x] - levels[0]));
+            down.push_back(std::abs(row(0)[x] - row(1)[x]));
+        }
+        const double spread = median(around), beside = median(down);
+        if (spread > AroundFactor * beside && spread > AroundLeastEv)
+            faults_.push_back({name + " around the pole", spread, beside});
+    }
+
+private:
+    /// Mean step between two columns, rows weighted with their solid angles.
+    [[nodiscard]] double step(std::size_t first, std::size_t second) const {
+        double sum = 0.0, weights = 0.0;
+        for (std::size_t y = 0; y < height_; ++y) {
+            sum += rows_[y].height * std::abs(stops_[y * width_ + first] - stops_[y * width_ + second]);
+            weights += rows_[y].height;
+        }
+        return sum / weights;
+    }
+
+    std::size_t width_, height_;
+    std::vector<double> stops_;
+    std::vector<detail::LatLongRow> rows_;
+    std::vector<SeamFault>& faults_;
+};
+
+/// A texel of a face.
+struct Texel {
+    Face face;
+    std::uint32_t x, y;
+};
+
+/// One texel further into the face from the border it lies on.
+Texel inwards(Texel texel, bool across, std::uint32_t resolution) {
+    std::uint32_t& position = across ? texel.x : texel.y;
+    position = position < resolution / 2 ? position + 1 : position - 1;
+    return texel;
+}
+
+/// A face's border, and what lies beyond.
+struct Border {
+    Face face;
+    bool across; ///< left or right border, else top or bottom
+    bool far;    ///< right or bottom
+};
+
+/// The texel beyond a border, and whether it lies on a left or right border of its face.
+std::pair<Texel, bool> beyond(const Border& border, double along, std::uint32_t resolution) {
+    constexpr double Outside = 1e-7;
+    const double out = border.far ? 1.0 + Outside : -Outside;
+    const FacePoint point =
+        face_point(border.across ? cube_point(border.face, out, along) : cube_point(border.face, along, out));
+    const auto index = [&](double position) {
+        return static_cast<std::uint32_t>(std::clamp(position * resolution, 0.0, resolution - 1.0));
+    };
+    const double from_side = std::min(point.s, 1.0 - point.s), from_top = std::min(point.t, 1.0 - point.t);
+    return {{point.face, index(point.s), index(point.t)}, from_side < from_top};
+}
+
+std::string_view axis_name(Face face) {
+    static constexpr std::array<std::string_view, NumFaces> Names = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+    return Names[static_cast<std::size_t>(face)];
+}
+
+void check_edges(const EnvironmentImage& image, const FaceCells& cells, std::vector<SeamFault>& faults) {
+    const std::uint32_t resolution = cells.resolution();
+    const std::vector<double> values = stops(image);
+    const auto at = [&](const Texel& texel) {
+        return values[cells.pixel(texel.face, texel.x, texel.y)];
+    };
+    for (const Face face : AllFaces) {
+        for (int side = 0; side < 4; ++side) {
+            const Border border{face, side < 2, side % 2 == 1};
+            std::vector<double> over, beside;
+            Face other = face;
+            for (std::uint32_t i = 0; i < resolution; ++i) {
+                const std::uint32_t end = border.far ? resolution - 1 : 0;
+                const Texel here = border.across ? Texel{face, end, i} : Texel{face, i, end};
+                // Texel i has the same number on the other face, or the same counted from the other end, with either sampling.
+                const auto [there, there_across] = beyond(border, (i + 0.5) / resolution, resolution);
+                other = there.face;
+                over.push_back(std::abs(at(here) - at(there)));
+                beside.push_back(std::abs(at(here) - at(inwards(here, border.across, resolution))));
+                beside.push_back(std::abs(at(there) - at(inwards(there, there_across, resolution))));
+            }
+            const double step = median(over), usual = median(beside);
+            if (face < other && step > EdgeFactor * usual && step > EdgeLeastEv)
+                faults.push_back(
+                    {fmt::format("edge of {} and {}", axis_name(face), axis_name(other)), step, usual});
+        }
+    }
+}
+
+} // namespace
+
+std::vector<SeamFault> seam_faults(const EnvironmentImage& image) {
+    std::vector<SeamFault> faults;
+    if (image.layout == Layout::LatLong) {
+        if (image.height < LeastHeight || image.width < 2 * LeastHeight)
+            return faults;
+        const LatLongCheck check(image, faults);
+        check.wrap();
+        check.pole(true);
+        check.pole(false);
+    } else if (has_faces(image.layout)) {
+        const FaceCells cells(image.layout, image.width, image.height);
+        if (cells.resolution() >= LeastFace)
+            check_edges(image, cells, faults);
+    }
+    return faults;
+}
+
+} // namespace relumine::cubemap

@@ -1,0 +1,307 @@
+#include "cubemap/image/environment.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cubemap/image/image_file.h"
+#include "cubemap/image/image_layout.h"
+#include "cubemap/resample/resample.h"
+#include "files/output_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+/// Width of an octahedral map over a cube face's resolution: pixels as wide as a lat-long's of width 4 R, 4 R / sqrt(pi).
+constexpr double OctahedralWidth = 2.25;
+
+/// The layout that the proportions suggest. Squares do not tell.
+std::optional<Layout> guess_layout(std::uint32_t width, std::uint32_t height) {
+    if (width == 2 * std::uint64_t{height})
+        return Layout::LatLong;
+    for (const Layout layout : AllLayouts) {
+        if (has_faces(layout) && fits(layout, width, height))
+            return layout;
+    }
+    return std::nullopt;
+}
+
+std::string_view proportions(Layout layout) {
+    switch (layout) {
+    case Layout::LatLong:
+        return "2:1";
+    case Layout::Cube:
+        return "1:6";
+    case Layout::VerticalCross:
+        return "3:4";
+    case Layout::HorizontalStrip:
+        return "6:1";
+    case Layout::HorizontalCross:
+        return "4:3";
+    default:
+        return "1:1";
+    }
+}
+
+/// Decides layout and sampling and says why.
+void interpret(const ImageFile& file, const LoadOptions& options, const std::string& path,
+               EnvironmentImage& image) {
+    const std::string size = fmt::format("{}x{}", image.width, image.height);
+    std::string why;
+    if (options.layout) {
+        image.layout = *options.layout;
+        why = fmt::format("{} as asked for", name(image.layout));
+    } else if (file.envmap) {
+        image.layout = *file.envmap;
+        why = fmt::format("{} as the envmap attribute says", name(image.layout));
+    } else {
+        const auto layout = guess_layout(image.width, image.height);
+        if (!layout)
+            throw std::runtime_error(
+                image.width == image.height
+                    ? fmt::format(
+                          "{}: expected --layout angular, mirrorball or octahedral for a square picture "
+                          "(or a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 cross), got {}",
+                          path, size)
+                    : fmt::format(
+                          "{}: expected a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 cross, or a 1:1 "
+                          "picture with --layout, got {}",
+                          path, size));
+        image.layout = *layout;
+        why = fmt::format("{} image without envmap attribute", proportions(image.layout));
+    }
+    if (!fits(image.layout, image.width, image.height))
+        throw std::runtime_error(fmt::format("{}: expected a {} image for layout {}, got {}", path,
+                                             proportions(image.layout), name(image.layout), size));
+    // The attribute's border rule belongs to the attribute's layout.
+    image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;
+    why += image.sampling == Sampling::Borders ? ", samples on the borders" : ", samples at texel centres";
+    image.assumptions =
+        fmt::format("{}{}{}", why, file.remarks.empty() ? "" : ", ", fmt::join(file.remarks, ", "));
+}
+
+BadPixels find_bad_pixels(const EnvironmentImage& image) {
+    BadPixels bad;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+        const glm::vec3& pixel = image.pixels[i];
+        if (pixel.x >= 0.0f && pixel.y >= 0.0f && pixel.z >= 0.0f &&
+            std::isfinite(pixel.x + pixel.y + pixel.z))
+            continue;
+        const auto any = [&](auto test) {
+            return test(pixel.x) || test(pixel.y) || test(pixel.z);
+        };
+        std::size_t* count = nullptr;
+        if (any([](float value) { return std::isnan(value); }))
+            count = &bad.num_nan;
+        else if (any([](float value) { return std::isinf(value); }))
+            count = &bad.num_infinite;
+        else if (any([](float value) { return value < 0.0f; }))
+            count = &bad.num_negative;
+        else
+            continue; // only the sum of the three was infinite
+        if (bad.count() == 0) {
+            bad.first_x = static_cast<std::uint32_t>(i % image.width);
+            bad.first_y = static_cast<std::uint32_t>(i / image.width);
+        }
+        ++*count;
+    }
+    return bad;
+}
+
+/// NaN and negative become 0, infinity the largest finite value.
+void fix_bad_pixels(EnvironmentImage& image) {
+    float largest = 0.0f;
+    for (const glm::vec3& pixel : image.pixels) {
+        for (int channel = 0; channel < 3; ++channel) {
+            if (std::isfinite(pixel[channel]))
+                largest = std::max(largest, pixel[channel]);
+        }
+    }
+    for (glm::vec3& pixel : image.pixels) {
+        for (int channel = 0; channel < 3; ++channel) {
+            float& value = pixel[channel];
+            if (!(value >= 0.0f))
+                value = 0.0f; // NaN too
+            else if (std::isinf(value))
+                value = largest;
+        }
+    }
+    image.fixed = true;
+}
+
+/// Where six files are meant, `{face}` stands for px, nx, ...
+constexpr std::string_view FacePlace = "{face}";
+
+ImageFile decode(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = files::read(path);
+    if (!is_exr(bytes) && !is_hdr(bytes))
+        throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}",
+                                             path.string(),
+                                             bytes.empty() ? "an empty file" : "something else"));
+    return is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
+}
+
+/// Six square files, one below the other.
+ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
+    ImageFile all;
+    for (const std::filesystem::path& path : paths) {
+        ImageFile face = decode(path);
+        if (face.width != face.height)
+            throw std::runtime_error(fmt::format("{}: expected a square cube face, got {}x{}", path.string(),
+                                                 face.width, face.height));
+        if (!all.pixels.empty() && face.width != all.width)
+            throw std::runtime_error(fmt::format("{}: expected {}x{} pixels as in {}, got {}x{}",
+                                                 path.string(), all.width, all.width, paths.front().string(),
+                                                 face.width, face.height));
+        all.width = face.width;
+        all.height += face.height;
+        all.pixels.insert(all.pixels.end(), face.pixels.begin(), face.pixels.end());
+        if (all.remarks.empty())
+            all.remarks = face.remarks;
+    }
+    return all;
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return extension;
+}
+
+} // namespace
+
+std::vector<std::filesystem::path> environment_files(const std::filesystem::path& path) {
+    const std::string text = path.string();
+    const std::size_t place = text.find(FacePlace);
+    if (place == std::string::npos)
+        return {path};
+    std::vector<std::filesystem::path> paths;
+    for (const std::string_view face : FaceFileNames)
+        paths.emplace_back(
+            fmt::format("{}{}{}", text.substr(0, place), face, text.substr(place + FacePlace.size())));
+    return paths;
+}
+
+EnvironmentImage load_environment(const std::filesystem::path& path, const LoadOptions& options) {
+    const std::vector<std::filesystem::path> paths = environment_files(path);
+    if (paths.size() > 1 && options.layout && *options.layout != Layout::Cube)
+        throw std::runtime_error(fmt::format("{}: expected layout cube for six files, got {}", path.string(),
+                                             name(*options.layout)));
+    ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
+    EnvironmentImage image;
+    image.width = file.width;
+    image.height = file.height;
+    image.pixels = std::move(file.pixels);
+    interpret(file, options, path.string(), image);
+    if (paths.size() > 1)
+        image.assumptions = fmt::format("cube of six files, {}", image.assumptions);
+
+    image.bad_pixels = find_bad_pixels(image);
+    if (image.bad_pixels.count() == 0)
+        return image;
+    if (options.fix_bad_pixels)
+        fix_bad_pixels(image);
+    else if (options.refuse_bad_pixels)
+        throw std::runtime_error(
+            fmt::format("{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels, first at "
+                        "({}, {}); use --fix-env",
+                        path.string(), image.bad_pixels.num_nan + image.bad_pixels.num_infinite,
+                        image.bad_pixels.num_negative, image.bad_pixels.first_x, image.bad_pixels.first_y));
+    return image;
+}
+
+std::uint32_t natural_resolution(const EnvironmentImage& image) {
+    if (has_faces(image.layout))
+        return FaceCells(image.layout, image.width, image.height).resolution();
+    if (image.layout == Layout::Octahedral)
+        return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
+    return std::max(1U, (image.width + 2) / 4);
+}
+
+ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
+    const std::uint32_t r = face_resolution;
+    switch (layout) {
+    case Layout::LatLong:
+        return {4 * r, 2 * r};
+    case Layout::Cube:
+        return {r, 6 * r};
+    case Layout::VerticalCross:
+        return {3 * r, 4 * r};
+    case Layout::HorizontalStrip:
+        return {6 * r, r};
+    case Layout::HorizontalCross:
+        return {4 * r, 3 * r};
+    case Layout::AngularMap:
+    case Layout::MirrorBall:
+        return {4 * r, 4 * r};
+    case Layout::Octahedral:
+        break;
+    }
+    const auto width = std::max(1U, static_cast<std::uint32_t>(std::lround(OctahedralWidth * r)));
+    return {width, width};
+}
+
+void check_environment_name(const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension != ".exr" && extension != ".hdr")
+        throw std::invalid_argument(
+            fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(), extension));
+}
+
+void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {
+    check_environment_name(path);
+    const std::vector<std::filesystem::path> paths = environment_files(path);
+    if (paths.size() > 1 && image.layout != Layout::Cube)
+        throw std::invalid_argument(
+            fmt::format("{}: expected layout cube for six files, got {}", path.string(), name(image.layout)));
+    const auto encode = [&](const EnvironmentImage& part) {
+        return extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
+    };
+    std::vector<std::unique_ptr<files::OutputFile>> outputs;
+    for (const std::filesystem::path& each : paths)
+        outputs.push_back(std::make_unique<files::OutputFile>(each));
+    try {
+        if (paths.size() == 1) {
+            outputs.front()->write(encode(image));
+        } else {
+            EnvironmentImage face;
+            face.width = face.height = image.width;
+            face.sampling = Sampling::TexelCentres;
+            const std::size_t num_pixels = std::size_t{face.width} * face.width;
+            for (std::size_t i = 0; i < paths.size(); ++i) {
+                const auto first = image.pixels.begin() + static_cast<std::ptrdiff_t>(i * num_pixels);
+                face.pixels.assign(first, first + static_cast<std::ptrdiff_t>(num_pixels));
+                outputs[i]->write(encode(face));
+            }
+        }
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
+    }
+    for (const auto& output : outputs)
+        output->commit();
+}
+
+Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
+    // The specification of the `envmap` attribute puts samples on the borders; it knows two layouts, and .hdr no attribute.
+    const bool has_attribute = extension_of(path) == ".exr" && environment_files(path).size() == 1 &&
+                               (layout == Layout::LatLong || layout == Layout::Cube);
+    return has_attribute ? Sampling::Borders : Sampling::TexelCentres;
+}
+
+void save_environment(const std::filesystem::path& path, const CubeMap& map, Layout layout) {
+    check_environment_name(path);
+    const ImageSize size = natural_size(layout, map.resolution);
+    for (const std::filesystem::path& each : environment_files(path))
+        files::OutputFile{each}; // whatever cannot be written is found before the work
+    save_image(path, to_image(map, layout, size.width, size.height, default_sampling(path, layout)));
+}
+
+} // namespace relumine::cubemap

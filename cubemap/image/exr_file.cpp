@@ -1,0 +1,396 @@
+// OpenEXR pictures in memory, in and out.
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <set>
+#include <stdexcept>
+
+#include <ImfArray.h>
+#include <ImfChannelList.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfIO.h>
+#include <ImfInputPart.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfOutputFile.h>
+#include <ImfPartType.h>
+#include <ImfRgbaFile.h>
+#include <ImfStandardAttributes.h>
+#include <ImfStdIO.h>
+#include <ImfTileDescription.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
+
+#include "cubemap/image/exr_header.h"
+#include "cubemap/image/image_file.h"
+#include "cubemap/image/image_layout.h"
+#include "files/output_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+class MemoryInput : public Imf::IStream {
+public:
+    explicit MemoryInput(std::span<const std::byte> bytes) : Imf::IStream("file"), bytes_(bytes) {}
+    bool read(char* destination, int n) override {
+        if (n < 0 || static_cast<std::size_t>(n) > bytes_.size() - position_)
+            throw std::runtime_error("the file ends too early");
+        std::memcpy(destination, bytes_.data() + position_, static_cast<std::size_t>(n));
+        position_ += static_cast<std::size_t>(n);
+        return position_ < bytes_.size();
+    }
+    std::uint64_t tellg() override { return position_; }
+    void seekg(std::uint64_t position) override {
+        if (position > bytes_.size())
+            throw std::runtime_error("the file ends too early");
+        position_ = position;
+    }
+
+private:
+    std::span<const std::byte> bytes_;
+    std::size_t position_ = 0;
+};
+
+class MemoryOutput : public Imf::OStream {
+public:
+    MemoryOutput() : Imf::OStream("file") {}
+    void write(const char* source, int n) override {
+        const std::size_t end = position_ + static_cast<std::size_t>(n);
+        if (end > bytes.size())
+            bytes.resize(end);
+        std::memcpy(bytes.data() + position_, source, static_cast<std::size_t>(n));
+        position_ = end;
+    }
+    std::uint64_t tellp() override { return position_; }
+    void seekp(std::uint64_t position) override { position_ = position; }
+
+    std::vector<std::byte> bytes;
+
+private:
+    std::size_t position_ = 0;
+};
+
+/// Where a part keeps what its pixels look like.
+struct Channels {
+    enum class Kind { Rgb, LuminanceChroma, Luminance } kind = Kind::Rgb;
+    std::array<std::string, 3> names; ///< of red, green and blue, or three times luminance
+    std::string layer;                ///< their common prefix with its dot, or nothing
+};
+
+/// The channels of plain R, G and B; else of the only layer that has all three; else of luminance.
+std::optional<Channels> find_channels(const Imf::ChannelList& list) {
+    const auto has = [&](const std::string& channel) {
+        return list.findChannel(channel.c_str()) != nullptr;
+    };
+    std::set<std::string> layers;
+    for (auto channel = list.begin(); channel != list.end(); ++channel) {
+        const std::string name = channel.name();
+        const std::string layer = name.substr(0, name.rfind('.') + 1);
+        if (has(layer + "R") && has(layer + "G") && has(layer + "B"))
+            layers.insert(layer);
+    }
+    if (layers.contains("") || layers.size() == 1) {
+        const std::string layer = layers.contains("") ? "" : *layers.begin();
+        return Channels{Channels::Kind::Rgb, {layer + "R", layer + "G", layer + "B"}, layer};
+    }
+    if (!has("Y"))
+        return std::nullopt;
+    return Channels{has("RY") && has("BY") ? Channels::Kind::LuminanceChroma : Channels::Kind::Luminance,
+                    {"Y", "Y", "Y"},
+                    ""};
+}
+
+std::string names_of(const Imf::ChannelList& list) {
+    std::vector<std::string> names;
+    for (auto channel = list.begin(); channel != list.end(); ++channel)
+        names.emplace_back(channel.name());
+    return names.empty() ? "none" : fmt::format("{:.200}", fmt::format("{}", fmt::join(names, ", ")));
+}
+
+struct Window {
+    int x = 0, y = 0;
+    std::uint32_t width = 0, height = 0;
+};
+
+class Decoder {
+public:
+    Decoder(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+
+    ImageFile decode() {
+        MemoryInput stream(bytes_);
+        check_exr_header(stream, bytes_.size());
+        Imf::MultiPartInputFile file(stream, 0);
+        choose_part(file);
+        const Imf::Header& header = file.header(part_);
+        window_ = window(header.dataWindow());
+        check_size(header);
+
+        ImageFile image;
+        image.width = window_.width;
+        image.height = window_.height;
+        image.pixels.resize(static_cast<std::size_t>(image.width) * image.height);
+        if (channels_.kind == Channels::Kind::LuminanceChroma)
+            read_luminance_chroma(image);
+        else
+            read_bands(header, image);
+        describe(header, file.parts(), image);
+        return image;
+    }
+
+    /// The size that decode() would give; the header only.
+    ImageSize size(const std::filesystem::path& path) {
+        Imf::StdIFStream stream(path.c_str());
+        check_exr_header(stream, files::size(path));
+        Imf::MultiPartInputFile file(stream, 0);
+        choose_part(file);
+        const Imf::Header& header = file.header(part_);
+        const Window inner = window(header.dataWindow());
+        const Window outer = window(header.displayWindow());
+        return fills_display_window(header) ? ImageSize{outer.width, outer.height}
+                                            : ImageSize{inner.width, inner.height};
+    }
+
+private:
+    [[noreturn]] void fail(const std::string& expected, const std::string& got) const {
+        throw std::runtime_error(fmt::format("{}: expected {}, got {}", name_, expected, got));
+    }
+
+    /// The first flat part with R, G and B, else the first with luminance.
+    void choose_part(const Imf::MultiPartInputFile& file) {
+        std::string found;
+        bool is_chosen = false;
+        for (int part = 0; part < file.parts(); ++part) {
+            const Imf::Header& header = file.header(part);
+            const bool deep = header.hasType() && Imf::isDeepData(header.type());
+            found += (part == 0 ? "" : "; ") + names_of(header.channels()) + (deep ? " (deep)" : "");
+            const auto channels = deep ? std::nullopt : find_channels(header.channels());
+            if (!channels || (is_chosen && channels->kind != Channels::Kind::Rgb))
+                continue;
+            part_ = part;
+            channels_ = *channels;
+            is_chosen = true;
+            if (channels->kind == Channels::Kind::Rgb)
+                break;
+        }
+        if (!is_chosen)
+            fail("channels R, G and B, or Y", fmt::format("{:.200}", found));
+    }
+
+    [[nodiscard]] static Window window(const Imath::Box2i& box) {
+        const auto extent = [](int low, int high) {
+            return static_cast<std::int64_t>(high) - low + 1;
+        };
+        const std::int64_t width = extent(box.min.x, box.max.x), height = extent(box.min.y, box.max.y);
+        if (width < 1 || height < 1)
+            return {box.min.x, box.min.y, 0, 0};
+        return {box.min.x, box.min.y, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+    }
+
+    /// Refuses what the file cannot hold before anything is allocated for it.
+    void check_size(const Imf::Header& header) const {
+        const std::uint64_t num_pixels = std::uint64_t{window_.width} * window_.height;
+        const std::string size = fmt::format("{}x{}", window_.width, window_.height);
+        if (num_pixels == 0 || num_pixels > MaxPixels)
+            fail("a size that an environment can have", size);
+        // Measured on black pictures of 4096x2048: 12 bytes per pixel are up to 1862 times the file, with DWA 23426 times.
+        const bool is_dwa =
+            header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
+        const std::uint64_t largest_ratio = is_dwa ? 50000 : 4000;
+        constexpr std::uint64_t AlwaysAllowed = std::uint64_t{64} << 20;
+        if (num_pixels * 12 > std::max(AlwaysAllowed, bytes_.size() * largest_ratio))
+            fail(fmt::format("data for {} pixels", size), fmt::format("{} bytes", bytes_.size()));
+        if (header.hasTileDescription()) {
+            const Imf::TileDescription& tiles = header.tileDescription();
+            if (std::uint64_t{tiles.xSize} * tiles.ySize > std::max(num_pixels * 4, AlwaysAllowed / 12))
+                fail(fmt::format("tiles for {} pixels", size),
+                     fmt::format("{}x{}", tiles.xSize, tiles.ySize));
+        }
+    }
+
+    /// Bands of rows, each through its own reader of the same bytes: OpenEXR's own threads would have to be switched on for the whole
+    /// program.
+    void read_bands(const Imf::Header& header, ImageFile& image) const {
+        // Divisible by the rows of every compression's blocks (1, 16, 32 or 256).
+        const std::uint32_t band_height =
+            header.hasTileDescription() ? std::max(256U, header.tileDescription().ySize) : 256U;
+        const std::uint32_t num_bands = (window_.height + band_height - 1) / band_height;
+        tbb::parallel_for(0U, num_bands, [&](std::uint32_t band) {
+            MemoryInput stream(bytes_);
+            Imf::MultiPartInputFile file(stream, 0);
+            Imf::InputPart part(file, part_);
+            // The frame buffer is addressed by the data window's coordinates, so its base lies before the pixels.
+            const auto stride = static_cast<std::ptrdiff_t>(sizeof(glm::vec3));
+            const std::ptrdiff_t row_stride = stride * window_.width;
+            char* base =
+                reinterpret_cast<char*>(image.pixels.data()) - window_.x * stride - window_.y * row_stride;
+            Imf::FrameBuffer buffer;
+            const std::size_t num_channels = channels_.kind == Channels::Kind::Luminance ? 1 : 3;
+            for (std::size_t i = 0; i < num_channels; ++i)
+                buffer.insert(channels_.names[i], Imf::Slice(Imf::FLOAT, base + i * sizeof(float),
+                                                             static_cast<std::size_t>(stride),
+                                                             static_cast<std::size_t>(row_stride)));
+            part.setFrameBuffer(buffer);
+            const std::uint32_t first = band * band_height;
+            const std::uint32_t last = std::min(first + band_height, window_.height) - 1;
+            part.readPixels(window_.y + static_cast<int>(first), window_.y + static_cast<int>(last));
+        });
+        if (channels_.kind == Channels::Kind::Luminance) {
+            for (glm::vec3& pixel : image.pixels)
+                pixel = glm::vec3(pixel.x);
+        }
+    }
+
+    void read_luminance_chroma(ImageFile& image) const {
+        if (part_ != 0)
+            fail("luminance and chroma in the first part", fmt::format("part {}", part_));
+        MemoryInput stream(bytes_);
+        Imf::RgbaInputFile file(stream, 0);
+        std::vector<Imf::Rgba> row(image.width);
+        for (std::uint32_t y = 0; y < image.height; ++y) {
+            const int line = window_.y + static_cast<int>(y);
+            file.setFrameBuffer(row.data() - window_.x, 1, 0);
+            file.readPixels(line);
+            for (std::uint32_t x = 0; x < image.width; ++x)
+                image.pixels[static_cast<std::size_t>(y) * image.width + x] = {row[x].r, row[x].g, row[x].b};
+        }
+    }
+
+    void describe(const Imf::Header& header, int num_parts, ImageFile& image) const {
+        if (Imf::hasEnvmap(header)) {
+            if (Imf::envmap(header) == Imf::ENVMAP_LATLONG)
+                image.envmap = Layout::LatLong;
+            else if (Imf::envmap(header) == Imf::ENVMAP_CUBE)
+                image.envmap = Layout::Cube;
+        }
+        if (num_parts > 1)
+            image.remarks.push_back(fmt::format("part {} of {}", part_ + 1, num_parts));
+        if (!channels_.layer.empty())
+            image.remarks.push_back(
+                fmt::format("layer {}", channels_.layer.substr(0, channels_.layer.size() - 1)));
+        if (channels_.kind == Channels::Kind::Luminance)
+            image.remarks.emplace_back("luminance only");
+        if (channels_.kind == Channels::Kind::LuminanceChroma)
+            image.remarks.emplace_back("luminance and chroma");
+        if (Imf::hasChromaticities(header))
+            image.remarks.emplace_back("chromaticities not converted");
+        fill_display_window(header, image);
+    }
+
+    /// A data window smaller than an environment's display window is the part of it that is not black.
+    [[nodiscard]] static bool fills_display_window(const Imf::Header& header) {
+        if (Imf::hasEnvmap(header) &&
+            (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
+            return false;
+        const Window display = window(header.displayWindow());
+        const bool is_environment =
+            display.width == 2 * std::uint64_t{display.height} ||
+            std::any_of(AllLayouts.begin(), AllLayouts.end(), [&](Layout layout) {
+                return layout != Layout::LatLong && fits(layout, display.width, display.height);
+            });
+        const Imath::Box2i& inner = header.dataWindow();
+        const Imath::Box2i& outer = header.displayWindow();
+        const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
+        return is_environment && num_pixels != 0 && num_pixels <= MaxPixels && inner != outer &&
+               outer.intersects(inner.min) && outer.intersects(inner.max);
+    }
+
+    void fill_display_window(const Imf::Header& header, ImageFile& image) const {
+        if (!fills_display_window(header))
+            return;
+        const Window display = window(header.displayWindow());
+        const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
+        // A tiny picture in a huge frame is taken at its word only as far as memory is cheap.
+        if (num_pixels > std::max<std::uint64_t>(image.pixels.size() * 64, std::uint64_t{1} << 22))
+            fail(fmt::format("data for {}x{} pixels", display.width, display.height),
+                 fmt::format("{}x{}", image.width, image.height));
+        std::vector<glm::vec3> pixels(num_pixels, glm::vec3(0.0f));
+        const auto left = static_cast<std::size_t>(static_cast<std::int64_t>(window_.x) - display.x);
+        const auto top = static_cast<std::size_t>(static_cast<std::int64_t>(window_.y) - display.y);
+        for (std::size_t y = 0; y < image.height; ++y)
+            std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(y * image.width), image.width,
+                        pixels.begin() + static_cast<std::ptrdiff_t>((top + y) * display.width + left));
+        image.pixels = std::move(pixels);
+        image.width = display.width;
+        image.height = display.height;
+        image.remarks.emplace_back("black outside the data window");
+    }
+
+    std::span<const std::byte> bytes_;
+    const std::string& name_;
+    int part_ = 0;
+    Channels channels_;
+    Window window_;
+};
+
+} // namespace
+
+bool is_exr(std::span<const std::byte> bytes) {
+    constexpr std::array<std::byte, 4> Magic = {std::byte{0x76}, std::byte{0x2f}, std::byte{0x31},
+                                                std::byte{0x01}};
+    return bytes.size() >= Magic.size() && std::equal(Magic.begin(), Magic.end(), bytes.begin());
+}
+
+namespace {
+
+/// Runs `read` and gives OpenEXR's complaints the form of ours.
+template<typename Read>
+auto with_own_messages(const std::string& name, const Read& read) {
+    try {
+        return read();
+    } catch (const std::exception& error) {
+        std::string message = error.what();
+        if (message.starts_with(name + ": ")) // our own, complete already
+            throw;
+        std::replace(message.begin(), message.end(), '\n', ' ');
+        // OpenEXR quotes the name of the stream, which is always "file" here.
+        for (std::size_t at = 0; (at = message.find("\"file\"")) != std::string::npos;)
+            message.replace(at, 6, "it");
+        throw std::runtime_error(fmt::format("{}: expected an intact OpenEXR image, got: {}", name, message));
+    }
+}
+
+} // namespace
+
+ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) {
+    return with_own_messages(name, [&] { return Decoder(bytes, name).decode(); });
+}
+
+ImageSize exr_size(const std::filesystem::path& path) {
+    const std::string name = path.string();
+    return with_own_messages(name, [&] { return Decoder({}, name).size(path); });
+}
+
+std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const float> alpha) {
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    if (image.sampling == Sampling::Borders &&
+        (image.layout == Layout::LatLong || image.layout == Layout::Cube))
+        Imf::addEnvmap(header, image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
+    Imf::FrameBuffer buffer;
+    // OpenEXR reads only, but its frame buffers are for both ways.
+    char* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data()));
+    std::size_t offset = 0;
+    for (const char* channel : {"R", "G", "B"}) {
+        header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
+        buffer.insert(channel, Imf::Slice(Imf::FLOAT, base + offset, sizeof(glm::vec3),
+                                          sizeof(glm::vec3) * image.width));
+        offset += sizeof(float);
+    }
+    if (!alpha.empty()) {
+        header.channels().insert("A", Imf::Channel(Imf::FLOAT));
+        buffer.insert("A",
+                      Imf::Slice(Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(alpha.data())),
+                                 sizeof(float), sizeof(float) * image.width));
+    }
+    MemoryOutput stream;
+    {
+        Imf::OutputFile file(stream, header, 0);
+        file.setFrameBuffer(buffer);
+        file.writePixels(static_cast<int>(image.height));
+    }
+    return std::move(stream.bytes);
+}
+
+} // namespace relumine::cubemap

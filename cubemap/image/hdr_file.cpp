@@ -1,0 +1,308 @@
+// Radiance pictures (.hdr, .pic): RGBE, flat or run-length encoded the old or the new way.
+//
+// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991, and the file format page of Radiance. Written out here because the
+// widespread single-file decoders read truncated files as if they were whole, or never return from them.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "cubemap/image/image_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+using Rgbe = std::array<std::uint8_t, 4>;
+
+/// Scanlines of other lengths are never run-length encoded the new way.
+bool can_be_run_length_encoded(std::uint32_t width) {
+    return width >= 8 && width <= 0x7fff;
+}
+
+class Decoder {
+public:
+    /// `num_bytes`: of the whole file, of which `bytes` may be the beginning.
+    Decoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
+        : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), num_bytes_(num_bytes),
+          name_(name) {}
+
+    ImageSize size() {
+        read_header();
+        read_size();
+        return {width_, height_};
+    }
+
+    ImageFile decode() {
+        read_header();
+        read_size();
+        ImageFile image;
+        image.width = width_;
+        image.height = height_;
+        image.pixels.resize(static_cast<std::size_t>(width_) * height_);
+        std::vector<Rgbe> scanline(width_);
+        for (std::uint32_t row = 0; row < height_; ++row) {
+            read_scanline(scanline, row);
+            const std::size_t y = bottom_up_ ? height_ - 1 - row : row;
+            for (std::uint32_t column = 0; column < width_; ++column) {
+                const std::size_t x = right_to_left_ ? width_ - 1 - column : column;
+                image.pixels[y * width_ + x] = radiance(scanline[column]);
+            }
+        }
+        if (exposure_ != glm::dvec3(1.0))
+            image.remarks.emplace_back("exposure of the header divided out");
+        return image;
+    }
+
+private:
+    [[noreturn]] void fail(std::string_view expected, const std::string& got) const {
+        throw std::runtime_error(fmt::format("{}: expected {}, got {}", name_, expected, got));
+    }
+
+    std::string_view read_line() {
+        const std::size_t begin = position_;
+        while (position_ < bytes_.size() && bytes_[position_] != '\n')
+            ++position_;
+        if (position_ == bytes_.size())
+            fail("a Radiance header", "the end of the file");
+        std::string_view line(reinterpret_cast<const char*>(bytes_.data()) + begin, position_ - begin);
+        ++position_;
+        if (!line.empty() && line.back() == '\r')
+            line.remove_suffix(1);
+        return line;
+    }
+
+    void read_header() {
+        read_line(); // "#?RADIANCE" or another program's name
+        for (std::string_view line = read_line(); !line.empty(); line = read_line()) {
+            if (line.starts_with("FORMAT=") && line != "FORMAT=32-bit_rle_rgbe")
+                fail("FORMAT=32-bit_rle_rgbe", fmt::format("{:.60}", printable(line)));
+            if (line.starts_with("EXPOSURE="))
+                exposure_ *= multiplier(line.substr(9));
+            if (line.starts_with("COLORCORR="))
+                read_color_correction(line.substr(10));
+        }
+        if (!(std::min({exposure_.x, exposure_.y, exposure_.z}) > 1e-30 &&
+              std::max({exposure_.x, exposure_.y, exposure_.z}) < 1e30))
+            fail("a positive exposure", fmt::format("{}", exposure_.x));
+    }
+
+    void read_color_correction(std::string_view text) {
+        for (int channel = 0; channel < 3; ++channel) {
+            text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+            exposure_[channel] *= multiplier(text);
+            text.remove_prefix(std::min(text.find(' '), text.size()));
+        }
+    }
+
+    [[nodiscard]] double multiplier(std::string_view text) const {
+        const std::string number(text);
+        char* end = nullptr;
+        const double value = std::strtod(number.c_str(), &end);
+        if (end == number.c_str())
+            fail("a number after EXPOSURE= or COLORCORR=", fmt::format("'{:.60}'", printable(text)));
+        return value;
+    }
+
+    /// The resolution line, such as "-Y 512 +X 1024", and whether the file can hold that much.
+    void read_size() {
+        const std::string line(read_line());
+        std::array<char, 2> signs{}, axes{};
+        std::array<unsigned long long, 2> sizes{};
+        if (std::sscanf(line.c_str(), "%c%c %19llu %c%c %19llu", &signs[0], &axes[0], &sizes[0], &signs[1],
+                        &axes[1], &sizes[1]) != 6)
+            fail("a resolution line such as -Y 512 +X 1024", fmt::format("'{:.60}'", printable(line)));
+        const auto is_sign = [](char c) {
+            return c == '+' || c == '-';
+        };
+        if (axes[0] != 'Y' || axes[1] != 'X' || !is_sign(signs[0]) || !is_sign(signs[1]))
+            fail("rows of pixels (-Y H +X W)", fmt::format("'{:.60}'", printable(line)));
+        bottom_up_ = signs[0] == '+';
+        right_to_left_ = signs[1] == '-';
+
+        const auto [height, width] = sizes;
+        // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1; the old runs could, but hardly do.
+        constexpr std::size_t AlwaysAllowed = std::size_t{1} << 22;
+        const std::size_t num_bytes = num_bytes_ - position_;
+        if (width == 0 || height == 0 || width > MaxPixels || height > MaxPixels ||
+            width * height > MaxPixels)
+            fail("a size that an environment can have", fmt::format("{}x{}", width, height));
+        if (width * height > std::max(AlwaysAllowed, num_bytes * 16))
+            fail(fmt::format("data for {}x{} pixels", width, height), fmt::format("{} bytes", num_bytes));
+        width_ = static_cast<std::uint32_t>(width);
+        height_ = static_cast<std::uint32_t>(height);
+    }
+
+    std::uint8_t next(std::uint32_t row) {
+        if (position_ >= bytes_.size())
+            fail(fmt::format("{} rows", height_), fmt::format("a file that ends in row {}", row));
+        return bytes_[position_++];
+    }
+
+    Rgbe next_pixel(std::uint32_t row) { return {next(row), next(row), next(row), next(row)}; }
+
+    void read_scanline(std::vector<Rgbe>& scanline, std::uint32_t row) {
+        const Rgbe start = next_pixel(row);
+        if (!can_be_run_length_encoded(width_) || start[0] != 2 || start[1] != 2 || (start[2] & 0x80) != 0) {
+            read_old_scanline(scanline, start, row);
+            return;
+        }
+        if ((start[2] << 8 | start[3]) != static_cast<int>(width_))
+            fail(fmt::format("{} pixels in row {}", width_, row), std::to_string(start[2] << 8 | start[3]));
+        for (std::size_t channel = 0; channel < 4; ++channel) {
+            for (std::uint32_t x = 0; x < width_;) {
+                const std::uint32_t code = next(row);
+                const std::uint32_t count = code > 128 ? code - 128 : code;
+                if (count == 0 || count > width_ - x)
+                    fail(fmt::format("runs that fill row {}", row), "a damaged one");
+                if (code > 128) {
+                    const std::uint8_t value = next(row);
+                    for (std::uint32_t i = 0; i < count; ++i)
+                        scanline[x++][channel] = value;
+                } else {
+                    for (std::uint32_t i = 0; i < count; ++i)
+                        scanline[x++][channel] = next(row);
+                }
+            }
+        }
+    }
+
+    /// Flat pixels; (1, 1, 1, n) repeats the pixel before n times, and right after another repetition n * 256 times.
+    void read_old_scanline(std::vector<Rgbe>& scanline, Rgbe pixel, std::uint32_t row) {
+        std::uint32_t shift = 0;
+        for (std::uint32_t x = 0; x < width_;) {
+            if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
+                const std::uint64_t count = shift <= 24 ? std::uint64_t{pixel[3]} << shift : 0;
+                if (x == 0 || count == 0 || count > width_ - x)
+                    fail(fmt::format("runs that fill row {}", row), "a damaged one");
+                std::fill_n(scanline.begin() + x, count, scanline[x - 1]);
+                x += static_cast<std::uint32_t>(count);
+                shift += 8;
+            } else {
+                scanline[x++] = pixel;
+                shift = 0;
+            }
+            if (x < width_)
+                pixel = next_pixel(row);
+        }
+    }
+
+    [[nodiscard]] glm::vec3 radiance(const Rgbe& pixel) const {
+        if (pixel[3] == 0)
+            return glm::vec3(0.0f);
+        return glm::vec3(glm::dvec3(pixel[0], pixel[1], pixel[2]) * std::ldexp(1.0, pixel[3] - 136) /
+                         exposure_);
+    }
+
+    [[nodiscard]] static std::string printable(std::string_view text) {
+        std::string result(text);
+        std::replace_if(
+            result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
+        return result;
+    }
+
+    std::span<const std::uint8_t> bytes_;
+    std::size_t num_bytes_;
+    const std::string& name_;
+    std::size_t position_ = 0;
+    glm::dvec3 exposure_{1.0};
+    std::uint32_t width_ = 0, height_ = 0;
+    bool bottom_up_ = false, right_to_left_ = false;
+};
+
+Rgbe rgbe(const glm::vec3& radiance) {
+    const float largest = std::max({radiance.x, radiance.y, radiance.z});
+    const auto fits = [](float value) {
+        return value >= 0.0f && value < 1.6e38f;
+    }; // no NaN
+    if (!fits(radiance.x) || !fits(radiance.y) || !fits(radiance.z))
+        throw std::invalid_argument(
+            "expected radiance from 0 to 1.6e38 for a .hdr file, got a NaN, infinite, negative "
+            "or larger value");
+    if (largest < 1e-38f)
+        return {0, 0, 0, 0};
+    int exponent = 0;
+    std::frexp(largest, &exponent);
+    if (std::lround(std::ldexp(largest, 8 - exponent)) > 255)
+        ++exponent; // the largest mantissa would round up to 256
+    const auto mantissa = [&](float value) {
+        return static_cast<std::uint8_t>(std::lround(std::ldexp(value, 8 - exponent)));
+    };
+    return {mantissa(radiance.x), mantissa(radiance.y), mantissa(radiance.z),
+            static_cast<std::uint8_t>(exponent + 128)};
+}
+
+/// One channel of a scanline in runs of up to 127 equal bytes and stretches of up to 128 others.
+void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel, std::vector<std::uint8_t>& out) {
+    constexpr std::size_t ShortestRun = 4, LongestRun = 127, LongestStretch = 128;
+    const auto run_length = [&](std::size_t begin) {
+        std::size_t end = begin + 1;
+        while (end < scanline.size() && end - begin < LongestRun &&
+               scanline[end][channel] == scanline[begin][channel])
+            ++end;
+        return end - begin;
+    };
+    for (std::size_t x = 0; x < scanline.size();) {
+        std::size_t stretch = 0;
+        std::size_t run = run_length(x);
+        while (run < ShortestRun && stretch + run <= LongestStretch && x + stretch < scanline.size()) {
+            stretch += run;
+            run = x + stretch < scanline.size() ? run_length(x + stretch) : 0;
+        }
+        if (stretch > 0) {
+            out.push_back(static_cast<std::uint8_t>(stretch));
+            for (std::size_t i = 0; i < stretch; ++i)
+                out.push_back(scanline[x + i][channel]);
+            x += stretch;
+        } else {
+            out.push_back(static_cast<std::uint8_t>(128 + run));
+            out.push_back(scanline[x][channel]);
+            x += run;
+        }
+    }
+}
+
+} // namespace
+
+bool is_hdr(std::span<const std::byte> bytes) {
+    return bytes.size() >= 2 && bytes[0] == std::byte{'#'} && bytes[1] == std::byte{'?'};
+}
+
+ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name) {
+    return Decoder(bytes, bytes.size(), name).decode();
+}
+
+ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes, const std::string& name) {
+    return Decoder(head, num_bytes, name).size();
+}
+
+std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {
+    const std::string header =
+        fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+    std::vector<std::uint8_t> out(header.begin(), header.end());
+    std::vector<Rgbe> scanline(image.width);
+    for (std::size_t y = 0; y < image.height; ++y) {
+        std::transform(image.pixels.begin() + static_cast<std::ptrdiff_t>(y * image.width),
+                       image.pixels.begin() + static_cast<std::ptrdiff_t>((y + 1) * image.width),
+                       scanline.begin(), rgbe);
+        if (!can_be_run_length_encoded(image.width)) {
+            for (const Rgbe& pixel : scanline)
+                out.insert(out.end(), pixel.begin(), pixel.end());
+            continue;
+        }
+        const auto width = static_cast<std::uint16_t>(image.width);
+        out.insert(out.end(),
+                   {2, 2, static_cast<std::uint8_t>(width >> 8), static_cast<std::uint8_t>(width & 0xff)});
+        for (std::size_t channel = 0; channel < 4; ++channel)
+            append_runs(scanline, channel, out);
+    }
+    std::vector<std::byte> bytes(out.size());
+    std::memcpy(bytes.data(), out.data(), out.size());
+    return bytes;
+}
+
+} // namespace relumine::cubemap

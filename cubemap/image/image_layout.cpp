@@ -1,0 +1,223 @@
+#include "cubemap/image/image_layout.h"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "cubemap/resample/patch.h"
+#include "cubemap/resample/projection.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+constexpr double Pi = std::numbers::pi;
+
+} // namespace
+
+std::string_view name(Layout layout) {
+    switch (layout) {
+    case Layout::LatLong:
+        return "lat-long";
+    case Layout::Cube:
+        return "cube";
+    case Layout::VerticalCross:
+        return "vertical cross";
+    case Layout::HorizontalStrip:
+        return "horizontal strip";
+    case Layout::HorizontalCross:
+        return "horizontal cross";
+    case Layout::AngularMap:
+        return "angular map";
+    case Layout::MirrorBall:
+        return "mirror ball";
+    case Layout::Octahedral:
+        break;
+    }
+    return "octahedral map";
+}
+
+bool has_faces(Layout layout) {
+    return layout != Layout::LatLong && projection(layout) == nullptr;
+}
+
+std::vector<double> cell_borders(std::uint32_t num_cells, Sampling sampling) {
+    std::vector<double> borders(std::size_t{num_cells} + 1);
+    const double n = num_cells;
+    for (std::size_t i = 0; i <= num_cells; ++i) {
+        const auto position = static_cast<double>(i);
+        borders[i] = sampling == Sampling::TexelCentres ? position / n : (position - 0.5) / (n - 1.0);
+    }
+    borders.front() = 0.0;
+    borders.back() = 1.0;
+    return borders;
+}
+
+double sample_position(std::uint32_t index, std::uint32_t num_samples, Sampling sampling) {
+    if (sampling == Sampling::TexelCentres || num_samples == 1)
+        return (index + 0.5) / num_samples;
+    return static_cast<double>(index) / (num_samples - 1);
+}
+
+bool fits(Layout layout, std::uint32_t width, std::uint32_t height) {
+    if (width == 0 || height == 0)
+        return false;
+    const auto has_cells = [&](std::uint32_t columns, std::uint32_t rows) {
+        return width % columns == 0 && height % rows == 0 && width / columns == height / rows;
+    };
+    switch (layout) {
+    case Layout::LatLong:
+        return true;
+    case Layout::Cube:
+        return has_cells(1, 6);
+    case Layout::VerticalCross:
+        return has_cells(3, 4);
+    case Layout::HorizontalStrip:
+        return has_cells(6, 1);
+    case Layout::HorizontalCross:
+        return has_cells(4, 3);
+    default:
+        return width == height;
+    }
+}
+
+std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction) {
+    // The sample of n that lies at a position of [0, 1].
+    const auto sample = [&](double position, std::uint32_t n) -> std::optional<std::size_t> {
+        const double index =
+            shape.sampling == Sampling::Borders && n > 1 ? position * (n - 1) : position * n - 0.5;
+        const double nearest = std::round(index);
+        constexpr double Tolerance = 1e-6;
+        if (std::abs(index - nearest) > Tolerance || nearest < 0.0 || nearest > n - 1.0)
+            return std::nullopt;
+        return static_cast<std::size_t>(nearest);
+    };
+    if (has_faces(shape.layout)) {
+        const FaceCells cells(shape.layout, shape.width, shape.height);
+        const FacePoint point = face_point(direction);
+        const auto x = sample(point.s, cells.resolution()), y = sample(point.t, cells.resolution());
+        if (!x || !y)
+            return std::nullopt;
+        return cells.pixel(point.face, static_cast<std::uint32_t>(*x), static_cast<std::uint32_t>(*y));
+    }
+    glm::dvec2 point(0.0);
+    if (const Projection* picture = projection(shape.layout))
+        point = picture->point(direction);
+    else
+        point = {0.5 - std::atan2(direction.x, direction.z) / (2.0 * Pi),
+                 std::atan2(std::hypot(direction.x, direction.z), direction.y) / Pi};
+    const auto x = sample(point.x, shape.width), y = sample(point.y, shape.height);
+    if (!x || !y)
+        return std::nullopt;
+    return *y * shape.width + *x;
+}
+
+FaceCells::FaceCells(Layout layout, std::uint32_t width, std::uint32_t height)
+    : width_(width), resolution_(0), cells_{} {
+    if (!has_faces(layout) || !fits(layout, width, height))
+        throw std::invalid_argument(fmt::format("expected an image of six cube faces, got a {} of {}x{}",
+                                                name(layout), width, height));
+    if (layout == Layout::Cube) {
+        resolution_ = width;
+        for (std::size_t face = 0; face < NumFaces; ++face)
+            cells_[face] = {0, face, false};
+    } else if (layout == Layout::HorizontalStrip) {
+        resolution_ = height;
+        for (std::size_t face = 0; face < NumFaces; ++face)
+            cells_[face] = {face, 0, false};
+    } else if (layout == Layout::HorizontalCross) {
+        //          +Y
+        //      -X  -Z  +X  +Z
+        //          -Y
+        resolution_ = height / 3;
+        cells_ = {Cell{2, 1, false}, Cell{0, 1, false}, Cell{1, 0, false},
+                  Cell{1, 2, false}, Cell{3, 1, false}, Cell{1, 1, false}};
+    } else {
+        // The cross unfolds the cube around -Z, as HDR Shop and Debevec's probes do; +Z hangs at the bottom, upside down:
+        //
+        //          +Y
+        //      -X  -Z  +X
+        //          -Y
+        //          +Z (turned)
+        resolution_ = width / 3;
+        cells_ = {Cell{2, 1, false}, Cell{0, 1, false}, Cell{1, 0, false},
+                  Cell{1, 2, false}, Cell{1, 3, true},  Cell{1, 1, false}};
+    }
+}
+
+namespace detail {
+
+std::vector<LatLongRow> lat_long_rows(const ImageShape& shape) {
+    const std::vector<double> borders = cell_borders(shape.height, shape.sampling);
+    std::vector<LatLongRow> rows(shape.height);
+    for (std::uint32_t y = 0; y < shape.height; ++y) {
+        const double polar = Pi * sample_position(y, shape.height, shape.sampling);
+        const double top = Pi * borders[y], bottom = Pi * borders[y + 1];
+        // cos(top) - cos(bottom) without cancellation
+        const double height = 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
+        rows[y] = {std::cos(polar), std::sin(polar), height};
+    }
+    return rows;
+}
+
+std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape) {
+    const std::vector<double> borders = cell_borders(shape.width, shape.sampling);
+    std::vector<LatLongColumn> columns(shape.width);
+    for (std::uint32_t x = 0; x < shape.width; ++x) {
+        const double longitude = 2.0 * Pi * (0.5 - sample_position(x, shape.width, shape.sampling));
+        columns[x] = {std::sin(longitude), std::cos(longitude), 2.0 * Pi * (borders[x + 1] - borders[x])};
+    }
+    return columns;
+}
+
+std::vector<PixelPlace> projected_places(const ImageShape& shape) {
+    const Projection& picture = *projection(shape.layout);
+    std::vector<PixelPlace> places(static_cast<std::size_t>(shape.width) * shape.height);
+    const double area = 1.0 / (static_cast<double>(shape.width) * shape.height);
+    // Gauss-Legendre, three points each way, is exact to 1e-9 of a pixel this small.
+    constexpr std::uint32_t SmallPixels = 32;
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, shape.height), [&](const auto& rows) {
+        PatchPieces pieces(picture, shape.width, shape.height);
+        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+            for (std::uint32_t x = 0; x < shape.width; ++x) {
+                PixelPlace& place = places[static_cast<std::size_t>(y) * shape.width + x];
+                const auto point = [&](double dx, double dy) {
+                    return glm::dvec2((x + 0.5 + dx) / shape.width, (y + 0.5 + dy) / shape.height);
+                };
+                const bool is_whole = pieces.is_whole(x, y);
+                if (is_whole)
+                    place.direction = picture.direction(point(0.0, 0.0));
+                if (is_whole && shape.width >= SmallPixels) {
+                    constexpr std::array<double, 3> Nodes = {-0.387298334620741689, 0.0,
+                                                             0.387298334620741689};
+                    constexpr std::array<double, 3> Weights = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+                    for (std::size_t i = 0; i < 9; ++i)
+                        place.solid_angle += Weights[i % 3] * Weights[i / 3] * area *
+                                             picture.density(point(Nodes[i % 3], Nodes[i / 3]));
+                    continue;
+                }
+                glm::dvec3 mean(0.0);
+                pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+                    const double angle = solid_angle(corners);
+                    glm::dvec3 sum(0.0);
+                    for (const glm::dvec3& corner : corners)
+                        sum += corner;
+                    place.solid_angle += angle;
+                    mean += angle * sum / static_cast<double>(corners.size());
+                });
+                if (!is_whole && glm::length(mean) > 0.0)
+                    place.direction = glm::normalize(mean);
+            }
+        }
+    });
+    return places;
+}
+
+} // namespace detail
+
+} // namespace relumine::cubemap

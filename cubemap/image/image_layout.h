@@ -1,0 +1,133 @@
+// Where the pixels of an environment image lie on the sphere. The names of layouts and samplings are in environment.h.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/face.h"
+#include "cubemap/image/environment.h"
+
+namespace relumine::cubemap {
+
+/// Size, layout and sampling of an image, without its pixels.
+struct ImageShape {
+    Layout layout = Layout::LatLong;
+    Sampling sampling = Sampling::TexelCentres;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    bool operator==(const ImageShape&) const = default;
+};
+
+/// The borders of n cells side by side over [0, 1], [n + 1] ascending from 0 to 1. At texel centres all cells are equally wide;
+/// with samples on the borders the first and the last cell are half as wide as the others.
+[[nodiscard]] std::vector<double> cell_borders(std::uint32_t num_cells, Sampling sampling);
+
+/// Position in [0, 1] of sample i of n: the cell's centre, or i / (n - 1) with samples on the borders.
+[[nodiscard]] double sample_position(std::uint32_t index, std::uint32_t num_samples, Sampling sampling);
+
+/// True if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n for VerticalCross and so on; n x n for a
+/// Projection.
+[[nodiscard]] bool fits(Layout layout, std::uint32_t width, std::uint32_t height);
+
+/// The squares of an image that hold the six faces.
+class FaceCells {
+public:
+    /// Throws std::invalid_argument for proportions that do not fit, or for a layout without faces.
+    FaceCells(Layout layout, std::uint32_t width, std::uint32_t height);
+
+    [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
+
+    /// Index of the image's pixel that is texel (x, y) of a face.
+    [[nodiscard]] std::size_t pixel(Face face, std::uint32_t x, std::uint32_t y) const {
+        const Cell& cell = cells_[static_cast<std::size_t>(face)];
+        const std::size_t column = cell.turned ? resolution_ - 1 - x : x;
+        const std::size_t row = cell.turned ? resolution_ - 1 - y : y;
+        return (cell.row * resolution_ + row) * width_ + cell.column * resolution_ + column;
+    }
+
+private:
+    /// Column and row of the cell in the image; turned by 180 degrees against Face or not.
+    struct Cell {
+        std::size_t column, row;
+        bool turned;
+    };
+    std::size_t width_;
+    std::uint32_t resolution_;
+    std::array<Cell, NumFaces> cells_;
+};
+
+/// A pixel's place on the sphere.
+struct PixelPlace {
+    glm::dvec3 direction{0.0}; ///< unit, where the pixel's sample lies
+    double solid_angle = 0.0;  ///< of the patch it stands for
+};
+
+/// The pixel whose sample lies in a unit direction to 1e-6 of a pixel's width, if there is one.
+[[nodiscard]] std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction);
+
+/// Calls `visit(pixel_index, PixelPlace)` for every pixel that shows a part of the sphere (a cross has cells that do not), in an order
+/// that depends on the shape only.
+template<typename Visit>
+void for_each_pixel(const ImageShape& shape, const Visit& visit);
+
+namespace detail {
+
+/// One row of a lat-long image: sine and cosine of its samples' polar angle and the row's share of the sphere per turn.
+struct LatLongRow {
+    double cos_polar, sin_polar, height;
+};
+[[nodiscard]] std::vector<LatLongRow> lat_long_rows(const ImageShape& shape);
+
+/// One column: sine and cosine of its samples' longitude, width in radians.
+struct LatLongColumn {
+    double sin_longitude, cos_longitude, width;
+};
+[[nodiscard]] std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape);
+
+/// All pixels of a Projection, [height * width]. On the rim of a disc a pixel stands for its part inside, with the mean direction.
+[[nodiscard]] std::vector<PixelPlace> projected_places(const ImageShape& shape);
+
+} // namespace detail
+
+template<typename Visit>
+void for_each_pixel(const ImageShape& shape, const Visit& visit) {
+    if (shape.layout == Layout::LatLong) {
+        const auto rows = detail::lat_long_rows(shape);
+        const auto columns = detail::lat_long_columns(shape);
+        std::size_t index = 0;
+        for (const auto& row : rows) {
+            for (const auto& column : columns)
+                visit(index++, PixelPlace{{row.sin_polar * column.sin_longitude, row.cos_polar,
+                                           row.sin_polar * column.cos_longitude},
+                                          row.height * column.width});
+        }
+        return;
+    }
+    if (!has_faces(shape.layout)) {
+        const std::vector<PixelPlace> places = detail::projected_places(shape);
+        for (std::size_t index = 0; index < places.size(); ++index) {
+            if (places[index].solid_angle > 0.0)
+                visit(index, places[index]);
+        }
+        return;
+    }
+    const FaceCells cells(shape.layout, shape.width, shape.height);
+    const std::uint32_t resolution = cells.resolution();
+    const std::vector<double> borders = cell_borders(resolution, shape.sampling);
+    for (const Face face : AllFaces) {
+        for (std::uint32_t y = 0; y < resolution; ++y) {
+            for (std::uint32_t x = 0; x < resolution; ++x)
+                visit(cells.pixel(face, x, y),
+                      PixelPlace{direction(face, sample_position(x, resolution, shape.sampling),
+                                           sample_position(y, resolution, shape.sampling)),
+                                 solid_angle(borders[x], borders[y], borders[x + 1], borders[y + 1])});
+        }
+    }
+}
+
+} // namespace relumine::cubemap

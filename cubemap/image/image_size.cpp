@@ -1,0 +1,51 @@
+#include "cubemap/image/image_size.h"
+
+#include <algorithm>
+#include <fstream>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "cubemap/image/image_file.h"
+#include "files/output_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+ImageSize size_of_file(const std::filesystem::path& path) {
+    // A .hdr header is lines of text, a few hundred bytes of them.
+    constexpr std::size_t MaxHeaderBytes = 1 << 16;
+    const std::size_t num_bytes = files::size(path); // refuses what is missing or no file
+    std::vector<std::byte> head(std::min(num_bytes, MaxHeaderBytes));
+    std::ifstream file(path, std::ios::binary);
+    file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));
+    if (!file)
+        throw std::runtime_error(fmt::format("{}: cannot read", path.string()));
+    if (is_exr(head))
+        return exr_size(path);
+    if (is_hdr(head))
+        return hdr_size(head, num_bytes, path.string());
+    throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}",
+                                         path.string(), head.empty() ? "an empty file" : "something else"));
+}
+
+} // namespace
+
+ImageSize read_image_size(const std::filesystem::path& path) {
+    const std::vector<std::filesystem::path> files = environment_files(path);
+    ImageSize size = size_of_file(files.front());
+    if (files.size() == 1)
+        return size;
+    // Six faces become one cube.
+    for (const std::filesystem::path& file : files)
+        if (const ImageSize other = size_of_file(file); other != size)
+            throw std::runtime_error(fmt::format("{}: expected {}x{} as the first face, got {}x{}",
+                                                 file.string(), size.width, size.height, other.width,
+                                                 other.height));
+    size.height *= static_cast<std::uint32_t>(files.size());
+    return size;
+}
+
+} // namespace relumine::cubemap

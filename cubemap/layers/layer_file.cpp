@@ -1,0 +1,224 @@
+#include "cubemap/layers/layer_file.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cubemap/layers/layer_fields.h"
+#include "files/json_value.h"
+#include "files/output_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+constexpr double Version = 1.0;
+
+class LayerFileReader {
+public:
+    explicit LayerFileReader(const std::filesystem::path& path) : path_(path), json_(path.string()) {}
+
+    LightLayers read() const {
+        const files::JsonValue root = json_.parse(files::read(path_));
+        const auto& members = json_.object(root, "a layer file");
+        known(members, std::array<std::string_view, 4>{"version", "base", "layers", "frames"},
+              "a layer file");
+        const files::JsonValue& version = required(root, members, "version");
+        if (const double got = json_.number(version, "\"version\""); got != Version)
+            json_.refuse(version.line, fmt::format("version {}", Version), fmt::format("{}", got));
+        LightLayers result;
+        if (const files::JsonValue* base = files::JsonReader::find(members, "base"))
+            result.base = json_.string(*base, "\"base\"");
+        for (const files::JsonValue& value : json_.array(required(root, members, "layers"), "\"layers\""))
+            result.layers.push_back(layer(value, result.layers));
+        if (const files::JsonValue* frames = files::JsonReader::find(members, "frames")) {
+            for (const files::JsonValue& value : json_.array(*frames, "\"frames\""))
+                result.frames.push_back(frame(value, result));
+        }
+        return result;
+    }
+
+private:
+    const files::JsonValue& required(const files::JsonValue& owner, const files::JsonValue::Object& members,
+                                     std::string_view field) const {
+        const files::JsonValue* found = files::JsonReader::find(members, field);
+        if (found == nullptr)
+            json_.refuse(owner.line, fmt::format("\"{}\"", field), "none");
+        return *found;
+    }
+
+    void known(const files::JsonValue::Object& members, std::span<const std::string_view> names,
+               std::string_view what) const {
+        for (const auto& [name, value] : members) {
+            if (std::find(names.begin(), names.end(), name) == names.end())
+                json_.refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
+                             fmt::format("\"{}\"", name));
+        }
+    }
+
+    std::vector<double> vector3(const files::JsonValue& value, std::string_view what) const {
+        const auto& array = json_.array(value, what);
+        if (array.size() != 3)
+            json_.refuse(value.line, fmt::format("{} of 3 numbers", what), fmt::format("{}", array.size()));
+        return {json_.number(array[0], what), json_.number(array[1], what), json_.number(array[2], what)};
+    }
+
+    std::vector<double> numbers(const LayerField& field, const files::JsonValue& value) const {
+        const std::string what = fmt::format("\"{}\"", field.name);
+        if (field.flag != nullptr)
+            return {json_.boolean(value, what) ? 1.0 : 0.0};
+        if (field.number != nullptr || field.single != nullptr)
+            return {json_.number(value, what)};
+        if (field.points == nullptr)
+            return vector3(value, what);
+        std::vector<double> result;
+        for (const files::JsonValue& point : json_.array(value, what)) {
+            const std::vector<double> three = vector3(point, "a point");
+            result.insert(result.end(), three.begin(), three.end());
+        }
+        return result;
+    }
+
+    /// The kind that a name stands for: variants are listed in the order of their names.
+    template<typename Variant, std::size_t N>
+    Variant kind(const files::JsonValue& value, std::string_view what, const std::array<Variant, N>& kinds,
+                 std::string_view (*name)(const Variant&)) const {
+        const std::string& text = json_.string(value, what);
+        std::vector<std::string_view> names;
+        for (const Variant& candidate : kinds) {
+            if (name(candidate) == text)
+                return candidate;
+            names.push_back(name(candidate));
+        }
+        json_.refuse(value.line, fmt::format("{} to be one of {}", what, fmt::join(names, ", ")),
+                     fmt::format("\"{}\"", text));
+    }
+
+    ImagePatch image_patch(const files::JsonValue& owner, const files::JsonValue::Object& members) const {
+        ImagePatch patch;
+        const files::JsonValue& path = required(owner, members, "path");
+        patch.path = json_.string(path, "\"path\"");
+        if (const files::JsonValue* blend = files::JsonReader::find(members, "blend")) {
+            const std::string& text = json_.string(*blend, "\"blend\"");
+            if (text != "replace" && text != "add")
+                json_.refuse(blend->line, "\"blend\" to be replace or add", fmt::format("\"{}\"", text));
+            patch.blend = text == "add" ? ImagePatch::Blend::Add : ImagePatch::Blend::Replace;
+        }
+        try {
+            patch.picture = load_picture(path_.parent_path() / patch.path);
+        } catch (const std::runtime_error& error) {
+            json_.refuse(path.line, "a picture", error.what());
+        }
+        return patch;
+    }
+
+    LightLayer layer(const files::JsonValue& value, const std::vector<LightLayer>& others) const {
+        const auto& members = json_.object(value, "a layer");
+        LightLayer result;
+        const files::JsonValue& name = required(value, members, "name");
+        result.name = json_.string(name, "\"name\"");
+        if (std::any_of(others.begin(), others.end(),
+                        [&](const LightLayer& other) { return other.name == result.name; }))
+            json_.refuse(name.line, "layers of different names", fmt::format("a second \"{}\"", result.name));
+        result.region =
+            kind<Region>(required(value, members, "type"), "\"type\"",
+                         std::array<Region, 4>{Disc{}, Rectangle{}, Lasso{}, Stroke{}}, type_name);
+        result.effect = kind<Effect>(required(value, members, "effect"), "\"effect\"",
+                                     std::array<Effect, 3>{Emit{}, Gain{}, ImagePatch{}}, effect_name);
+        std::vector<std::string_view> names = {"name", "type", "effect"};
+        for (const LayerField& field : fields(result)) {
+            names.push_back(field.name);
+            const files::JsonValue* given = files::JsonReader::find(members, field.name);
+            if (given != nullptr)
+                set_values(field, numbers(field, *given));
+            else if (field.required)
+                (void)required(value, members, field.name);
+        }
+        if (auto* patch = std::get_if<ImagePatch>(&result.effect)) {
+            names.insert(names.end(), {"path", "blend"});
+            *patch = image_patch(value, members);
+        }
+        known(members, names,
+              fmt::format("a {} with the effect {}", type_name(result.region), effect_name(result.effect)));
+        try {
+            validate(result);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(fmt::format("{}:{}: {}", json_.name(), value.line, error.what()));
+        }
+        return result;
+    }
+
+    KeyFrame frame(const files::JsonValue& value, const LightLayers& before) const {
+        const auto& members = json_.object(value, "a key frame");
+        known(members, std::array<std::string_view, 2>{"frame", "layers"}, "a key frame");
+        KeyFrame result;
+        const files::JsonValue& number = required(value, members, "frame");
+        result.frame = json_.number(number, "\"frame\"");
+        if (!before.frames.empty() && !(result.frame > before.frames.back().frame))
+            json_.refuse(number.line, fmt::format("a frame after {}", before.frames.back().frame),
+                         fmt::format("{}", result.frame));
+        for (const auto& [name, changes] :
+             json_.object(required(value, members, "layers"), "\"layers\" of a key frame")) {
+            const auto found =
+                std::find_if(before.layers.begin(), before.layers.end(),
+                             [&, &layer_name = name](const LightLayer& l) { return l.name == layer_name; });
+            if (found == before.layers.end())
+                json_.refuse(changes.line, "the name of a layer", fmt::format("\"{}\"", name));
+            keyed_layer(*found, changes, before, result);
+        }
+        return result;
+    }
+
+    /// Adds one layer's values at a key frame, and refuses those that no layer may have.
+    void keyed_layer(LightLayer layer, const files::JsonValue& changes, const LightLayers& before,
+                     KeyFrame& result) const {
+        std::vector<std::string_view> names;
+        const auto& members = json_.object(changes, fmt::format("the change of layer \"{}\"", layer.name));
+        const std::vector<LayerField> all = fields(layer);
+        names.reserve(all.size());
+        for (const LayerField& field : all)
+            names.push_back(field.name);
+        known(members, names,
+              fmt::format("a key frame of a {} with the effect {}", type_name(layer.region),
+                          effect_name(layer.effect)));
+        for (const auto& [name, value] : members) {
+            const auto field = std::find_if(all.begin(), all.end(), [&, &member = name](const LayerField& f) {
+                return f.name == member;
+            });
+            KeyedValue change{.layer = layer.name, .field = name, .values = numbers(*field, value)};
+            for (const KeyFrame& earlier : before.frames) {
+                for (const KeyedValue& other : earlier.changes) {
+                    if (other.layer == change.layer && other.field == name &&
+                        other.values.size() != change.values.size())
+                        json_.refuse(value.line,
+                                     fmt::format("as many points as at frame {}, {}", earlier.frame,
+                                                 other.values.size() / 3),
+                                     fmt::format("{}", change.values.size() / 3));
+                }
+            }
+            set_values(*field, change.values);
+            result.changes.push_back(std::move(change));
+        }
+        try {
+            validate(layer);
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(fmt::format("{}:{}: {}", json_.name(), changes.line, error.what()));
+        }
+    }
+
+    std::filesystem::path path_;
+    files::JsonReader json_;
+};
+
+} // namespace
+
+LightLayers load_layers(const std::filesystem::path& path) {
+    return LayerFileReader(path).read();
+}
+
+} // namespace relumine::cubemap

@@ -1,0 +1,130 @@
+// Light layers written as JSON.
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cubemap/layers/layer_fields.h"
+#include "cubemap/layers/layer_file.h"
+#include "files/output_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The shortest decimal that reads back as the same float, rather than the float's many digits as a double.
+double shortest(float value) {
+    std::array<char, 32> text;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    double result = 0.0;
+    std::from_chars(text.data(), end, result);
+    return result;
+}
+
+Json json(const LayerField& field, std::span<const double> numbers) {
+    if (field.flag != nullptr)
+        return numbers[0] != 0.0;
+    if (field.number != nullptr || field.single != nullptr)
+        return numbers[0];
+    if (field.points == nullptr)
+        return {numbers[0], numbers[1], numbers[2]};
+    Json points = Json::array();
+    for (std::size_t i = 0; i < numbers.size(); i += 3)
+        points.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+    return points;
+}
+
+Json json(LightLayer layer) {
+    Json result = {{"name", layer.name}, {"type", type_name(layer.region)}};
+    for (const LayerField& field : fields(layer)) {
+        std::vector<double> numbers = values(field);
+        if (field.single != nullptr || field.colour != nullptr) {
+            for (double& number : numbers)
+                number = shortest(static_cast<float>(number));
+        }
+        result[std::string(field.name)] = json(field, numbers);
+    }
+    result["effect"] = effect_name(layer.effect);
+    if (const auto* patch = std::get_if<ImagePatch>(&layer.effect)) {
+        result["path"] = patch->path.string();
+        result["blend"] = patch->blend == ImagePatch::Blend::Add ? "add" : "replace";
+    }
+    return result;
+}
+
+Json json(const KeyFrame& key, std::vector<LightLayer> layers) {
+    Json changes = Json::object();
+    for (const KeyedValue& change : key.changes) {
+        const auto layer = std::find_if(layers.begin(), layers.end(),
+                                        [&](const LightLayer& l) { return l.name == change.layer; });
+        if (layer == layers.end())
+            throw std::invalid_argument(fmt::format("key frame {}: expected the name of a layer, got \"{}\"",
+                                                    key.frame, change.layer));
+        const std::vector<LayerField> all = fields(*layer);
+        const auto field =
+            std::find_if(all.begin(), all.end(), [&](const LayerField& f) { return f.name == change.field; });
+        const bool fits =
+            field != all.end() && (field->points != nullptr ? change.values.size() % 3 == 0
+                                                            : change.values.size() == values(*field).size());
+        if (!fits || !std::all_of(change.values.begin(), change.values.end(),
+                                  [](double value) { return std::isfinite(value); }))
+            throw std::invalid_argument(
+                fmt::format("key frame {}: expected finite values of a field of \"{}\", got \"{}\"",
+                            key.frame, change.layer, change.field));
+        changes[change.layer][change.field] = json(*field, change.values);
+    }
+    return {{"frame", key.frame}, {"layers", std::move(changes)}};
+}
+
+void check_for_save(const LightLayers& layers) {
+    for (std::size_t i = 0; i < layers.layers.size(); ++i) {
+        validate(layers.layers[i]);
+        for (std::size_t j = 0; j < i; ++j) {
+            if (layers.layers[i].name == layers.layers[j].name)
+                throw std::invalid_argument(fmt::format(
+                    "light layers: expected different names, got \"{}\" twice", layers.layers[i].name));
+        }
+    }
+    for (std::size_t i = 1; i < layers.frames.size(); ++i) {
+        if (!(layers.frames[i - 1].frame < layers.frames[i].frame))
+            throw std::invalid_argument(fmt::format("key frames: expected ascending frames, got {} after {}",
+                                                    layers.frames[i].frame, layers.frames[i - 1].frame));
+    }
+    for (const KeyFrame& key : layers.frames)
+        (void)layers_at(layers, key.frame);
+}
+
+} // namespace
+
+void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
+    check_for_save(layers);
+    Json root = {{"version", 1}};
+    if (layers.base)
+        root["base"] = layers.base->string();
+    root["layers"] = Json::array();
+    for (const LightLayer& layer : layers.layers)
+        root["layers"].push_back(json(layer));
+    if (!layers.frames.empty()) {
+        root["frames"] = Json::array();
+        for (const KeyFrame& key : layers.frames)
+            root["frames"].push_back(json(key, layers.layers));
+    }
+    std::string text;
+    try {
+        text = root.dump(2) + '\n';
+    } catch (const Json::exception&) {
+        throw std::invalid_argument(
+            fmt::format("{}: expected names and paths in UTF-8, got other bytes", path.string()));
+    }
+    files::save_text(path, text);
+}
+
+} // namespace relumine::cubemap

@@ -1,0 +1,98 @@
+#include "cubemap/layers/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "cubemap/image/image_file.h"
+#include "files/output_file.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+bool is_radiance(const glm::vec3& value) {
+    return value.x >= 0.0f && value.y >= 0.0f && value.z >= 0.0f && std::isfinite(value.x) &&
+           std::isfinite(value.y) && std::isfinite(value.z);
+}
+
+/// Half as many pixels each way (at least one), each the mean of those it covers, also where the number is odd.
+Picture::Level halved(const Picture::Level& from) {
+    Picture::Level to{
+        .width = std::max(1u, from.width / 2), .height = std::max(1u, from.height / 2), .pixels = {}};
+    to.pixels.reserve(std::size_t{to.width} * to.height);
+    // Calls visit(pixel, weight) for the pixels that pixel `index` of the halved row or column covers.
+    const auto for_covered = [](std::uint32_t index, std::uint32_t num_from, std::uint32_t num_to,
+                                const auto& visit) {
+        const double scale = static_cast<double>(num_from) / num_to;
+        const double begin = index * scale;
+        const double end = index + 1 == num_to ? num_from : (index + 1) * scale;
+        for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
+            visit(i, (std::min(end, i + 1.0) - std::max(begin, static_cast<double>(i))) / (end - begin));
+    };
+    for (std::uint32_t y = 0; y < to.height; ++y) {
+        for (std::uint32_t x = 0; x < to.width; ++x) {
+            glm::dvec3 sum(0.0);
+            for_covered(y, from.height, to.height, [&](std::uint32_t row, double row_weight) {
+                for_covered(x, from.width, to.width, [&](std::uint32_t column, double weight) {
+                    sum +=
+                        weight * row_weight * glm::dvec3(from.pixels[std::size_t{row} * from.width + column]);
+                });
+            });
+            to.pixels.emplace_back(sum);
+        }
+    }
+    return to;
+}
+
+} // namespace
+
+Picture::Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels) {
+    if (width == 0 || height == 0 || pixels.size() != std::size_t{width} * height)
+        throw std::invalid_argument(fmt::format("picture: expected {} x {} pixels, at least one, got {}",
+                                                width, height, pixels.size()));
+    const auto bad = std::find_if_not(pixels.begin(), pixels.end(), is_radiance);
+    if (bad != pixels.end()) {
+        const auto index = static_cast<std::size_t>(bad - pixels.begin());
+        throw std::invalid_argument(
+            fmt::format("picture: expected finite radiance of at least 0, got ({}, {}, {}) at pixel ({}, {})",
+                        bad->x, bad->y, bad->z, index % width, index / width));
+    }
+    levels_.push_back({.width = width, .height = height, .pixels = std::move(pixels)});
+    while (levels_.back().pixels.size() > 1)
+        levels_.push_back(halved(levels_.back()));
+}
+
+glm::dvec3 Picture::sample(std::size_t level, const glm::dvec2& position) const {
+    const Level& image = levels_[level];
+    const double x = std::clamp(position.x * image.width - 0.5, 0.0, image.width - 1.0);
+    const double y = std::clamp(position.y * image.height - 0.5, 0.0, image.height - 1.0);
+    const auto x0 = static_cast<std::size_t>(x), y0 = static_cast<std::size_t>(y);
+    const std::size_t x1 = std::min<std::size_t>(x0 + 1, image.width - 1);
+    const std::size_t y1 = std::min<std::size_t>(y0 + 1, image.height - 1);
+    const auto at = [&](std::size_t column, std::size_t row) {
+        return glm::dvec3(image.pixels[row * image.width + column]);
+    };
+    const double fx = x - static_cast<double>(x0), fy = y - static_cast<double>(y0);
+    return glm::mix(glm::mix(at(x0, y0), at(x1, y0), fx), glm::mix(at(x0, y1), at(x1, y1), fx), fy);
+}
+
+std::shared_ptr<const Picture> load_picture(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = files::read(path);
+    const std::string name = path.string();
+    if (!is_exr(bytes) && !is_hdr(bytes))
+        throw std::runtime_error(
+            fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got neither", name));
+    ImageFile file = is_exr(bytes) ? decode_exr(bytes, name) : decode_hdr(bytes, name);
+    try {
+        return std::make_shared<const Picture>(file.width, file.height, std::move(file.pixels));
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
+    }
+}
+
+} // namespace relumine::cubemap

@@ -1,0 +1,288 @@
+#include "cubemap/resample/convert.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+#include <glm/matrix.hpp>
+
+#include "cubemap/resample/pixel_links.h"
+#include "cubemap/resample/pixel_points.h"
+#include "cubemap/resample/resample.h"
+#include "cubemap/resample/resample_lat_long.h"
+
+namespace relumine::cubemap {
+
+namespace {
+
+EnvironmentImage empty_image(const ImageShape& shape) {
+    EnvironmentImage image;
+    image.width = shape.width;
+    image.height = shape.height;
+    image.layout = shape.layout;
+    image.sampling = shape.sampling;
+    image.pixels.resize(static_cast<std::size_t>(shape.width) * shape.height);
+    return image;
+}
+
+ImageShape shape_of(const EnvironmentImage& image) {
+    return {image.layout, image.sampling, image.width, image.height};
+}
+
+std::uint32_t natural_resolution(const ImageShape& shape) {
+    EnvironmentImage image;
+    image.layout = shape.layout;
+    image.width = shape.width;
+    image.height = shape.height;
+    return cubemap::natural_resolution(image);
+}
+
+/// Pixel by pixel, where every target pixel lies on a source pixel.
+std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const ImageShape& target,
+                                       const Reorientation& reorientation) {
+    if (has_faces(image.layout) != has_faces(target.layout) ||
+        (!has_faces(image.layout) && image.layout != target.layout) || image.sampling != target.sampling ||
+        natural_resolution(target) != natural_resolution(shape_of(image)))
+        return std::nullopt;
+    // A lat-long's poles with samples on the borders are one direction for a whole row.
+    if (image.layout == Layout::LatLong && image.sampling == Sampling::Borders &&
+        reorientation.target_from_source() != glm::dmat3(1.0))
+        return std::nullopt;
+    const glm::dmat3 source_from_target = glm::transpose(reorientation.target_from_source());
+    if (shape_of(image) == target && source_from_target == glm::dmat3(1.0))
+        return image;
+    EnvironmentImage result = empty_image(target);
+    const ImageShape source = shape_of(image);
+    bool complete = true;
+    for_each_pixel(target, [&](std::size_t index, const PixelPlace& place) {
+        if (!complete)
+            return;
+        const auto from = pixel_at(source, source_from_target * place.direction);
+        complete = from.has_value();
+        if (from)
+            result.pixels[index] = image.pixels[*from];
+    });
+    return complete ? std::optional(std::move(result)) : std::nullopt;
+}
+
+/// The cube map that holds a cube image exactly: cells with borders half a sample off are two texels wide.
+std::uint32_t exact_resolution(const ImageShape& shape) {
+    const std::uint32_t faces = natural_resolution(shape);
+    return shape.sampling == Sampling::Borders && faces > 1 ? 2 * (faces - 1) : faces;
+}
+
+bool is_quarter(const Reorientation& reorientation) {
+    const double quarters = reorientation.degrees_about_y / 90.0;
+    return quarters == std::round(quarters);
+}
+
+CubeMap reoriented(const CubeMap& map, const Reorientation& reorientation) {
+    if (is_quarter(reorientation))
+        return turned(map, reorientation.target_from_source());
+    const CubeMap world =
+        rotated(turned(map, reorientation.world_from_source), reorientation.degrees_about_y);
+    return turned(world, glm::transpose(reorientation.world_from_target));
+}
+
+/// The resolution of the cube map on the way: a cube's own, else fine enough to add no blur that matters.
+std::uint32_t resolution_between(const ImageShape& source, const ImageShape& target) {
+    if (has_faces(source.layout))
+        return exact_resolution(source);
+    if (has_faces(target.layout))
+        return exact_resolution(target);
+    constexpr std::uint32_t Finest = 4096;
+    return std::min(2 * std::max(natural_resolution(source), natural_resolution(target)),
+                    std::max({Finest, natural_resolution(source), natural_resolution(target)}));
+}
+
+/// Averaging from one shape to another and back.
+class Path {
+public:
+    Path(const ImageShape& source, const ImageShape& target, const Reorientation& reorientation)
+        : source_(source), target_(target), reorientation_(reorientation) {}
+    /// Each target pixel is the mean over its patch.
+    [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
+        return averaged(image, source_, target_, reorientation_);
+    }
+    [[nodiscard]] EnvironmentImage back(const EnvironmentImage& image) const {
+        return averaged(image, target_, source_, reorientation_.inverse());
+    }
+
+private:
+    [[nodiscard]] static EnvironmentImage averaged(const EnvironmentImage& image, const ImageShape& from,
+                                                   const ImageShape& to, const Reorientation& reorientation) {
+        if (from.layout == Layout::LatLong && has_faces(to.layout) && is_quarter(reorientation))
+            return faces_from_lat_long(image, to, reorientation);
+        const CubeMap map = reoriented(resample(image, resolution_between(from, to)), reorientation);
+        return to_image(map, to.layout, to.width, to.height, to.sampling);
+    }
+
+    /// Straight into the cube's cells, wherever their samples lie.
+    [[nodiscard]] static EnvironmentImage faces_from_lat_long(const EnvironmentImage& image,
+                                                              const ImageShape& target,
+                                                              const Reorientation& reorientation) {
+        const FaceCells cells(target.layout, target.width, target.height);
+        const CubeMap map = turned(detail::cube_from_lat_long(image, cells.resolution(), target.sampling),
+                                   reorientation.target_from_source());
+        EnvironmentImage result = empty_image(target);
+        for (const Face face : AllFaces) {
+            for (std::uint32_t y = 0; y < map.resolution; ++y) {
+                for (std::uint32_t x = 0; x < map.resolution; ++x)
+                    result.pixels[cells.pixel(face, x, y)] = map.at(face, x, y);
+            }
+        }
+        return result;
+    }
+
+    ImageShape source_, target_;
+    Reorientation reorientation_;
+};
+
+/// Bilinear over the sphere, at four points of each pixel: a smooth start that keeps energy only roughly.
+EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& target,
+                              const Reorientation& reorientation) {
+    // A lat-long's pixels are narrower than the texels of its natural resolution in the middle of a face.
+    const std::uint32_t natural = natural_resolution(shape_of(image));
+    const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
+    const CubeMap source = resample(image, coarse);
+    const glm::dmat3 source_from_target = glm::transpose(reorientation.target_from_source());
+    EnvironmentImage result = empty_image(target);
+    for_each_pixel_points(target, [&](std::size_t pixel, std::span<const glm::dvec3> directions) {
+        glm::vec3 sum(0.0f);
+        for (const glm::dvec3& direction : directions)
+            sum += sample(source, glm::vec3(source_from_target * direction));
+        result.pixels[pixel] = sum / static_cast<float>(directions.size());
+    });
+    return result;
+}
+
+using Pixels = std::vector<glm::vec3>;
+
+/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth` (Richardson 1972, Lucy 1974). Every round
+/// keeps the image's total power exactly, nothing becomes negative, and a constant stays as it is.
+/// Differs from them: rounds start further along the way of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which
+/// takes a fraction of the rounds. What is returned is the end of a round, so the power is exact all the same.
+template<typename Forth, typename Back>
+void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds, Pixels& grown) {
+    // The product never leaves zero, where the interpolation may have missed a part of a wide pixel.
+    const Pixels means = forth(image);
+    for (std::size_t i = 0; i < grown.size(); ++i) {
+        for (int channel = 0; channel < 3; ++channel) {
+            if (grown[i][channel] <= 0.0f)
+                grown[i][channel] = means[i][channel];
+        }
+    }
+    Pixels start = grown;
+    double last_difference = std::numeric_limits<double>::infinity(), earlier_difference = last_difference;
+    int run = 0; // rounds since the way was straight from the start
+    for (int round = 0; round < num_rounds; ++round) {
+        Pixels ratio = back(start);
+        double difference = 0.0, sum = 0.0;
+        for (std::size_t i = 0; i < ratio.size(); ++i) {
+            for (int channel = 0; channel < 3; ++channel) {
+                const float have = ratio[i][channel], want = image[i][channel];
+                difference += std::abs(static_cast<double>(have) - want);
+                sum += want;
+                ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
+            }
+        }
+        const Pixels factor = forth(ratio);
+        // Gone too far: the way starts anew.
+        run = difference > last_difference ? 0 : run + 1;
+        last_difference = difference;
+        // Wedges narrower than the target's pixels are never told apart: then the difference stops falling.
+        constexpr int Patience =
+            20; // rounds, to fall by a fiftieth: restarts make it wave for some ten rounds
+        // A tenth of what irradiance may lose; more rounds make specks of the pixels around poles and rims.
+        constexpr double Enough = 1e-4, Falling = 0.98;
+        bool is_last = difference <= Enough * sum;
+        if (round % Patience == 0) {
+            is_last = is_last || difference > Falling * earlier_difference;
+            earlier_difference = difference;
+        }
+        const float further = run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
+        constexpr float Least = 0.25f; // of a pixel: the next round multiplies, so it must not come near zero
+        for (std::size_t i = 0; i < grown.size(); ++i) {
+            const glm::vec3 end = start[i] * factor[i];
+            start[i] = glm::max(end + further * (end - grown[i]), Least * end);
+            grown[i] = end;
+        }
+        if (is_last)
+            return;
+    }
+}
+
+EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
+                       const Reorientation& reorientation) {
+    const ImageShape source = shape_of(image);
+    EnvironmentImage result = interpolated(image, target, reorientation);
+    // In pictures this large no sun is lost in a pixel any more, and the links would take gigabytes.
+    constexpr std::size_t Large = std::size_t{1} << 22;
+    if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
+        const Path path(source, target, reorientation);
+        const auto over = [](const ImageShape& shape, const Pixels& pixels) {
+            EnvironmentImage picture = empty_image(shape);
+            picture.pixels = pixels;
+            return picture;
+        };
+        correct(
+            image.pixels, [&](const Pixels& pixels) { return path.forth(over(source, pixels)).pixels; },
+            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; }, 2, result.pixels);
+        return result;
+    }
+    const PixelLinks links(source, target, reorientation.target_from_source(),
+                           resolution_between(source, target),
+                           has_faces(source.layout) ? PixelLinks::Axes::Source : PixelLinks::Axes::Target);
+    constexpr int MostRounds = 200; // a sun in a disc's rim takes most of them
+    correct(
+        image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
+        [&](const Pixels& pixels) { return links.to_source(pixels); }, MostRounds, result.pixels);
+    return result;
+}
+
+} // namespace
+
+glm::dmat3 Reorientation::target_from_source() const {
+    return glm::transpose(world_from_target) * turn_about_y(degrees_about_y) * world_from_source;
+}
+
+Reorientation Reorientation::inverse() const {
+    return {world_from_target, -degrees_about_y, world_from_source};
+}
+
+EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
+                         const Reorientation& reorientation) {
+    if (!fits(target.layout, target.width, target.height))
+        throw std::invalid_argument(
+            fmt::format("convert: a {} cannot be {}x{}", name(target.layout), target.width, target.height));
+    if (auto copy = copied(image, target, reorientation))
+        return std::move(*copy);
+    // At about the same size there is nothing to make smooth, and hardly room for corrections.
+    const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(shape_of(image));
+    EnvironmentImage result = grows ? grown(image, target, reorientation)
+                                    : Path(shape_of(image), target, reorientation).forth(image);
+    result.assumptions = "converted";
+    return result;
+}
+
+ImageSize conversion_size(const EnvironmentImage& image, Layout target) {
+    const std::uint32_t natural = natural_resolution(shape_of(image));
+    if (target == image.layout)
+        return {image.width, image.height};
+    if (has_faces(target) && has_faces(image.layout))
+        return natural_size(target, natural);
+    // The rim pixels of a disc are long wedges that meet in a point: it takes finer pixels to tell them apart.
+    const bool is_disc = image.layout == Layout::AngularMap || image.layout == Layout::MirrorBall;
+    // An octahedral map's are longish where the rim of an angular map points.
+    const std::uint32_t roomy = !is_disc ? 256 : target == Layout::Octahedral ? 640 : 512;
+    return natural_size(target, std::max(natural, roomy));
+}
+
+} // namespace relumine::cubemap

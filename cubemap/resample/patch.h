@@ -1,0 +1,88 @@
+// The patches of the sphere that the pixels of a Projection stand for, as spherical polygons.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "cubemap/resample/projection.h"
+
+namespace relumine::cubemap {
+
+/// Finds a pixel's patch. Keeps its buffers; one per thread.
+///
+/// A patch comes in pieces well within a half-sphere. Its edges, curves on the sphere, become chords that are no further off than
+/// 1e-4 of a pixel; neighbours share them, so patches tile the sphere. Pixels on the rim of a disc keep the part inside, and the rim
+/// itself shrinks to the one direction that it shows.
+class PatchPieces {
+public:
+    PatchPieces(const Projection& projection, std::uint32_t width, std::uint32_t height);
+
+    /// True if the whole pixel shows something.
+    [[nodiscard]] bool is_whole(std::uint32_t x, std::uint32_t y) const;
+
+    /// Calls `visit(std::span<const glm::dvec3>)` with the unit corners of each piece, clockwise seen from the middle of the sphere.
+    template<typename Visit>
+    void visit(std::uint32_t x, std::uint32_t y, const Visit& visit) {
+        const glm::dvec2 size(1.0 / width_, 1.0 / height_);
+        visit_part({glm::dvec2(x, y) * size, glm::dvec2(x + 1, y + 1) * size}, 0, visit);
+    }
+
+private:
+    static constexpr int DeepestPart = 8;
+
+    struct Rectangle {
+        glm::dvec2 low, high;
+    };
+    /// A corner; `along_rim` if the way to the next one is the disc's rim.
+    struct Corner {
+        glm::dvec2 point;
+        bool along_rim;
+        glm::dvec3 direction = glm::dvec3(0.0);
+    };
+
+    /// The corners of the rectangle's part that shows something, into corners_ without their directions. False where there is none.
+    bool clip(const Rectangle& rectangle);
+    /// True if the piece of corners_ is small enough for one polygon.
+    [[nodiscard]] bool is_small(const Rectangle& rectangle) const;
+    void make_outline();
+    void add_edge(const glm::dvec2& from, const glm::dvec3& from_direction, const glm::dvec2& to,
+                  const glm::dvec3& to_direction, int depth);
+
+    template<typename Visit>
+    void visit_part(const Rectangle& part, int depth, const Visit& visit) {
+        if (!clip(part))
+            return;
+        for (Corner& corner : corners_)
+            corner.direction = projection_.direction(corner.point);
+        if (depth < DeepestPart && !is_small(part)) {
+            const glm::dvec2 middle = 0.5 * (part.low + part.high);
+            visit_part({part.low, middle}, depth + 1, visit);
+            visit_part({{middle.x, part.low.y}, {part.high.x, middle.y}}, depth + 1, visit);
+            visit_part({{part.low.x, middle.y}, {middle.x, part.high.y}}, depth + 1, visit);
+            visit_part({middle, part.high}, depth + 1, visit);
+            return;
+        }
+        make_outline();
+        if (outline_.size() >= 3)
+            visit(std::span<const glm::dvec3>(outline_));
+    }
+
+    const Projection& projection_;
+    double width_, height_;
+    bool is_disc_, is_mirrored_;
+    double tolerance_; ///< distance of chords from edges
+    std::vector<Corner> corners_;
+    std::vector<glm::dvec3> outline_;
+};
+
+/// Solid angle of a spherical polygon within a half-sphere, positive if clockwise seen from the middle of the sphere.
+[[nodiscard]] double solid_angle(std::span<const glm::dvec3> corners);
+
+} // namespace relumine::cubemap

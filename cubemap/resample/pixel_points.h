@@ -1,0 +1,75 @@
+// Points inside the pixels of an image, to sample something smooth at.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <optional>
+#include <span>
+
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "cubemap/image/image_layout.h"
+#include "cubemap/resample/projection.h"
+
+namespace relumine::cubemap {
+
+/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel with the unit directions of up to four points of each pixel that shows something
+/// at them: a quarter of its sides from its corners.
+template<typename Visit>
+void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
+    const bool faces = has_faces(shape.layout);
+    const Projection* const picture = projection(shape.layout);
+    std::optional<FaceCells> cells;
+    if (faces)
+        cells.emplace(shape.layout, shape.width, shape.height);
+    const std::uint32_t width = faces ? cells->resolution() : shape.width,
+                        height = faces ? cells->resolution() : shape.height;
+    const std::vector<double> columns = cell_borders(width, shape.sampling),
+                              rows = cell_borders(height, shape.sampling);
+    const auto visit_pixel = [&](std::size_t pixel, std::uint32_t x, std::uint32_t y,
+                                 const auto& direction_of) {
+        std::array<glm::dvec3, 4> directions;
+        std::size_t count = 0;
+        for (const double dy : {0.25, 0.75}) {
+            for (const double dx : {0.25, 0.75}) {
+                const glm::dvec2 point(columns[x] + dx * (columns[x + 1] - columns[x]),
+                                       rows[y] + dy * (rows[y + 1] - rows[y]));
+                if (picture != nullptr && picture->is_disc() && glm::distance(point, glm::dvec2(0.5)) >= 0.5)
+                    continue;
+                directions[count++] = direction_of(point);
+            }
+        }
+        if (count > 0)
+            visit(pixel, std::span<const glm::dvec3>(directions).first(count));
+    };
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, height), [&](const auto& range) {
+        for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
+            if (faces) {
+                for (const Face face : AllFaces) {
+                    for (std::uint32_t x = 0; x < width; ++x)
+                        visit_pixel(cells->pixel(face, x, y), x, y, [&](const glm::dvec2& point) {
+                            return direction(face, point.x, point.y);
+                        });
+                }
+                continue;
+            }
+            for (std::uint32_t x = 0; x < width; ++x)
+                visit_pixel(static_cast<std::size_t>(y) * width + x, x, y, [&](const glm::dvec2& point) {
+                    if (picture != nullptr)
+                        return picture->direction(point);
+                    const double longitude = 2.0 * std::numbers::pi * (0.5 - point.x);
+                    const double polar = std::numbers::pi * point.y;
+                    return glm::dvec3(std::sin(polar) * std::sin(longitude), std::cos(polar),
+                                      std::sin(polar) * std::cos(longitude));
+                });
+        }
+    });
+}
+
+} // namespace relumine::cubemap

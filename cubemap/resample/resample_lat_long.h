@@ -1,0 +1,13 @@
+// Lat-long image to cube map, from exact overlaps. Called through resample().
+#pragma once
+
+#include "cubemap/cube_map.h"
+#include "cubemap/image/environment.h"
+
+namespace relumine::cubemap::detail {
+
+/// Borders: the outermost texels are half as wide as the others, as in a cube with samples on the borders.
+[[nodiscard]] CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution,
+                                         Sampling sampling = Sampling::TexelCentres);
+
+} // namespace relumine::cubemap::detail

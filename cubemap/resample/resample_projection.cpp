@@ -1,0 +1,77 @@
+#include "cubemap/resample/resample_projection.h"
+
+#include <span>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "cubemap/resample/patch.h"
+#include "cubemap/resample/pixel_shares.h"
+#include "cubemap/resample/projection.h"
+#include "cubemap/spherical_overlap.h"
+
+namespace relumine::cubemap::detail {
+
+namespace {
+
+/// Sums that become means, in the order in which shares are added.
+class Means {
+public:
+    explicit Means(std::size_t size) : sums_(size, glm::dvec3(0.0)), weights_(size, 0.0) {}
+    void add(std::size_t i, const glm::vec3& radiance, double weight) {
+        sums_[i] += glm::dvec3(radiance) * weight;
+        weights_[i] += weight;
+    }
+    void write(std::vector<glm::vec3>& out) const {
+        for (std::size_t i = 0; i < out.size(); ++i)
+            out[i] = weights_[i] > 0.0 ? glm::vec3(sums_[i] / weights_[i]) : glm::vec3(0.0f);
+    }
+
+private:
+    std::vector<glm::dvec3> sums_;
+    std::vector<double> weights_;
+};
+
+ImageShape shape_of(const EnvironmentImage& image) {
+    return {image.layout, image.sampling, image.width, image.height};
+}
+
+} // namespace
+
+CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution) {
+    CubeMap map(resolution);
+    Means means(map.texels.size());
+    for_each_row_of_shares(shape_of(image), glm::dmat3(1.0), resolution,
+                           [&](std::span<const PixelShare> shares) {
+                               for (const PixelShare& share : shares)
+                                   means.add(share.texel, image.pixels[share.pixel], share.solid_angle);
+                           });
+    means.write(map.texels);
+    return map;
+}
+
+void fill_projection(const CubeMap& map, EnvironmentImage& image) {
+    const Projection& picture = *projection(image.layout);
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& rows) {
+        PatchPieces pieces(picture, image.width, image.height);
+        TexelOverlaps overlaps(map.resolution);
+        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+            for (std::uint32_t x = 0; x < image.width; ++x) {
+                glm::dvec3 sum(0.0);
+                double weights = 0.0;
+                pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+                    overlaps.find(corners,
+                                  [&](Face face, std::uint32_t column, std::uint32_t row, double weight) {
+                                      sum += glm::dvec3(map.at(face, column, row)) * weight;
+                                      weights += weight;
+                                  });
+                });
+                image.pixels[static_cast<std::size_t>(y) * image.width + x] =
+                    weights > 0.0 ? glm::vec3(sum / weights) : glm::vec3(0.0f);
+            }
+        }
+    });
+}
+
+} // namespace relumine::cubemap::detail

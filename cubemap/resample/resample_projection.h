@@ -1,0 +1,16 @@
+// Pictures of a Projection to cube maps and back, from exact overlaps. Called through resample() and to_image().
+#pragma once
+
+#include <cstdint>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/image/environment.h"
+
+namespace relumine::cubemap::detail {
+
+[[nodiscard]] CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution);
+
+/// Fills the pixels of an image whose layout and size are set; pixels that show nothing are black.
+void fill_projection(const CubeMap& map, EnvironmentImage& image);
+
+} // namespace relumine::cubemap::detail

@@ -1,0 +1,74 @@
+#include "files/packed_parts.h"
+
+#include <tbb/parallel_for.h>
+#include <zstd.h>
+
+#include "files/compression.h"
+
+namespace relumine::files {
+
+namespace {
+
+// The fastest: planes of bits of neighbouring directions shrink well at any level, and a checkpoint is read at most once.
+constexpr int CompressionLevel = 1;
+
+} // namespace
+
+std::vector<std::byte> pack(std::size_t num_parts,
+                            const std::function<std::vector<std::byte>(std::size_t)>& part) {
+    std::vector<std::vector<std::byte>> parts(num_parts);
+    tbb::parallel_for(std::size_t{0}, num_parts,
+                      [&](std::size_t i) { parts[i] = compressed(part(i), CompressionLevel); });
+    std::size_t num_bytes = sizeof(std::uint64_t) * (1 + num_parts);
+    for (const std::vector<std::byte>& bytes : parts)
+        num_bytes += bytes.size();
+    std::vector<std::byte> result(num_bytes);
+    std::byte* at = result.data();
+    const auto put = [&at](const void* bytes, std::size_t size) {
+        if (size != 0)
+            std::memcpy(at, bytes, size);
+        at += size;
+    };
+    const std::uint64_t count = num_parts;
+    put(&count, sizeof count);
+    for (std::vector<std::byte>& bytes : parts) {
+        const std::uint64_t size = bytes.size();
+        put(&size, sizeof size);
+        put(bytes.data(), bytes.size());
+        bytes = {};
+    }
+    return result;
+}
+
+void unpack(std::span<const std::byte> packed,
+            const std::function<void(std::span<const std::byte>)>& on_part) {
+    const auto take = [&packed](std::size_t size) {
+        if (size > packed.size())
+            throw std::runtime_error("expected more bytes");
+        const std::span<const std::byte> taken = packed.first(size);
+        packed = packed.subspan(size);
+        return taken;
+    };
+    const auto number = [&take] {
+        std::uint64_t value = 0;
+        std::memcpy(&value, take(sizeof value).data(), sizeof value);
+        return value;
+    };
+    const std::uint64_t num_parts = number();
+    std::vector<std::byte> part;
+    for (std::uint64_t i = 0; i < num_parts; ++i) {
+        const std::span<const std::byte> stored = take(number());
+        const std::uint64_t size = ZSTD_getFrameContentSize(stored.data(), stored.size());
+        if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN ||
+            size / MaxCompressionRatio > stored.size())
+            throw std::runtime_error("expected zstd data");
+        part.resize(size);
+        if (ZSTD_decompress(part.data(), part.size(), stored.data(), stored.size()) != size)
+            throw std::runtime_error("expected zstd data");
+        on_part(part);
+    }
+    if (!packed.empty())
+        throw std::runtime_error("expected fewer bytes");
+}
+
+} // namespace relumine::files

@@ -1,0 +1,69 @@
+// Parts of bytes, each compressed on its own and in parallel, in one array. For checkpoints: fast before small.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <functional>
+#include <span>
+#include <stdexcept>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace relumine::files {
+
+/// `part(i)` makes part i; called in parallel, in any order.
+[[nodiscard]] std::vector<std::byte> pack(std::size_t num_parts,
+                                          const std::function<std::vector<std::byte>(std::size_t)>& part);
+
+/// Gives the parts back one after the other. Throws std::runtime_error for what pack() did not make.
+void unpack(std::span<const std::byte> packed,
+            const std::function<void(std::span<const std::byte>)>& on_part);
+
+/// Numbers one after the other, as they lie in memory.
+class ByteWriter {
+public:
+    template<typename Number>
+    void add(const Number& number) {
+        add_all(std::span<const Number>(&number, 1));
+    }
+    template<typename Number>
+    void add_all(std::span<const Number> numbers) {
+        static_assert(std::is_trivially_copyable_v<Number>);
+        const auto bytes = std::as_bytes(numbers);
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    }
+    [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
+
+private:
+    std::vector<std::byte> bytes_;
+};
+
+/// Reads them back. Throws std::runtime_error at the end of the bytes, before anything is allocated.
+class ByteReader {
+public:
+    explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+    template<typename Number>
+    [[nodiscard]] Number next() {
+        return next_all<Number>(1).front();
+    }
+    template<typename Number>
+    [[nodiscard]] std::vector<Number> next_all(std::size_t count) {
+        static_assert(std::is_trivially_copyable_v<Number>);
+        if (count > bytes_.size() / sizeof(Number))
+            throw std::runtime_error("expected more bytes");
+        std::vector<Number> numbers(count);
+        if (count != 0)
+            std::memcpy(numbers.data(), bytes_.data(), count * sizeof(Number));
+        bytes_ = bytes_.subspan(count * sizeof(Number));
+        return numbers;
+    }
+    [[nodiscard]] bool at_end() const { return bytes_.empty(); }
+
+private:
+    std::span<const std::byte> bytes_;
+};
+
+} // namespace relumine::files

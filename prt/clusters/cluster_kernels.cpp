@@ -1,0 +1,162 @@
+#include "prt/clusters/cluster_kernels.h"
+
+#include <bit>
+#include <cstring>
+
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "prt/clusters/cluster_kernels.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::prt::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// Sums in float run over at most this many words (1,024 receivers) before they go to double: relative error below 1e-4 of the
+// tolerance test's threshold, which is itself a choice.
+constexpr std::size_t WordsPerRun = 16;
+
+/// Bits [first, first + Lanes) of a word as a lane mask.
+template<class D>
+hn::Mask<D> mask_of(D d, std::uint64_t word, std::size_t first) {
+    const std::uint64_t bits = word >> first;
+    std::uint8_t bytes[8];
+    std::memcpy(bytes, &bits, sizeof bytes);
+    return hn::LoadMaskBits(d, bytes);
+}
+
+void squared_distances(const NormalArrays& normals, const CellSamples& samples, double* sums) {
+    const hn::CappedTag<float, 16> d;
+    using Vector = hn::Vec<decltype(d)>;
+    const std::size_t num_lanes = hn::Lanes(d);
+    for (std::size_t l = 0; l < SamplesPerCell; ++l)
+        sums[l] = 0.0;
+
+    for (std::size_t run = 0; run < normals.num_words(); run += WordsPerRun) {
+        Vector square_sums[SamplesPerCell];
+        for (Vector& sum : square_sums)
+            sum = hn::Zero(d);
+        const std::size_t run_end = std::min(run + WordsPerRun, normals.num_words());
+        for (std::size_t word = run; word < run_end; ++word) {
+            std::uint64_t any = 0;
+            for (const std::uint64_t* lit : samples.lit)
+                any |= lit[word];
+            if (any == 0)
+                continue; // 64 receivers that see none of the samples add nothing
+            for (std::size_t lane = 0; lane < WordSize; lane += num_lanes) {
+                const std::size_t at = word * WordSize + lane;
+                const auto nx = hn::LoadU(d, normals.x.data() + at);
+                const auto ny = hn::LoadU(d, normals.y.data() + at);
+                const auto nz = hn::LoadU(d, normals.z.data() + at);
+                Vector transfer[SamplesPerCell]; // T_l [JN, Eq. 2]
+                Vector mean = hn::Zero(d);       // T_C [JN, Eq. 10]
+                for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+                    const glm::vec3& w = samples.directions[l];
+                    const auto cosine = hn::MulAdd(
+                        nx, hn::Set(d, w.x), hn::MulAdd(ny, hn::Set(d, w.y), hn::Mul(nz, hn::Set(d, w.z))));
+                    transfer[l] = hn::IfThenElseZero(mask_of(d, samples.lit[l][word], lane), cosine);
+                    mean = hn::MulAdd(transfer[l],
+                                      hn::Set(d, static_cast<float>(SampleWeights[l]) / FullCount), mean);
+                }
+                for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+                    const auto difference = hn::Sub(transfer[l], mean);
+                    square_sums[l] = hn::MulAdd(difference, difference, square_sums[l]);
+                }
+            }
+        }
+        for (std::size_t l = 0; l < SamplesPerCell; ++l)
+            sums[l] += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, square_sums[l])));
+    }
+}
+
+} // namespace relumine::prt::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::prt {
+
+namespace {
+
+HWY_EXPORT(squared_distances);
+
+/// Byte i of entry b is bit i of b: spreads eight bits to eight counters.
+std::array<std::uint64_t, 256> bytes_from_bits() {
+    std::array<std::uint64_t, 256> table{};
+    for (std::uint64_t bits = 0; bits < table.size(); ++bits)
+        for (std::uint64_t i = 0; i < 8; ++i)
+            table[bits] |= (bits >> i & 1u) << (8 * i);
+    return table;
+}
+
+/// Weighted counts of 16 receivers; each sample gives 16 bits.
+void append_counts(const std::array<std::uint16_t, SamplesPerCell>& lit,
+                   const std::array<std::uint8_t, SamplesPerCell>& weights,
+                   std::vector<std::uint8_t>& counts) {
+    static const std::array<std::uint64_t, 256> Bytes = bytes_from_bits();
+    std::array<std::uint64_t, 2> sums{};
+    for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+        sums[0] += Bytes[lit[l] & 0xffu] * weights[l];
+        sums[1] += Bytes[lit[l] >> 8u] * weights[l];
+    }
+    static_assert(std::endian::native == std::endian::little, "byte i of a word is receiver i");
+    const std::size_t end = counts.size();
+    counts.resize(end + BlockSize);
+    std::memcpy(counts.data() + end, sums.data(), BlockSize);
+}
+
+} // namespace
+
+NormalArrays::NormalArrays(std::span<const glm::vec3> normals) {
+    const std::size_t num_padded = (normals.size() + WordSize - 1) / WordSize * WordSize;
+    x.resize(num_padded);
+    y.resize(num_padded);
+    z.resize(num_padded);
+    for (std::size_t i = 0; i < normals.size(); ++i) {
+        x[i] = normals[i].x;
+        y[i] = normals[i].y;
+        z[i] = normals[i].z;
+    }
+}
+
+std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
+                                                     const CellSamples& samples) {
+    std::array<double, SamplesPerCell> sums{};
+    HWY_DYNAMIC_DISPATCH(squared_distances)(normals, samples, sums.data());
+    return sums;
+}
+
+LeafColumn leaf_column(const CellSamples& samples, const std::array<std::uint8_t, SamplesPerCell>& weights,
+                       std::size_t num_receivers) {
+    const std::size_t num_blocks = (num_receivers + BlockSize - 1) / BlockSize;
+    LeafColumn column;
+    column.visible.resize((num_blocks + 63) / 64);
+    column.mixed.resize((num_blocks + 63) / 64);
+    for (std::size_t block = 0; block < num_blocks; ++block) {
+        std::array<std::uint16_t, SamplesPerCell> lit{};
+        std::uint32_t any = 0;
+        std::uint32_t all = 0xffff;
+        for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+            if (weights[l] == 0)
+                continue;
+            lit[l] = static_cast<std::uint16_t>(samples.lit[l][block / 4] >> (block % 4 * BlockSize));
+            any |= lit[l];
+            all &= lit[l];
+        }
+        // Lanes after the last receiver agree with everything.
+        const std::size_t num_lanes = std::min(num_receivers - block * BlockSize, BlockSize);
+        all |= 0xffffu << num_lanes & 0xffffu;
+        if (any == 0)
+            continue;
+        std::vector<std::uint64_t>& class_bits = all == 0xffff ? column.visible : column.mixed;
+        class_bits[block / 64] |= std::uint64_t{1} << (block % 64);
+        if (all != 0xffff)
+            append_counts(lit, weights, column.counts);
+    }
+    column.counts.shrink_to_fit();
+    return column;
+}
+
+} // namespace relumine::prt
+#endif // HWY_ONCE

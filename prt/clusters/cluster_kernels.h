@@ -1,0 +1,42 @@
+// The two inner loops of the clustering, over all receivers and one cell's nine samples. Vectorised with run-time dispatch.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/clusters/lattice.h"
+#include "prt/clusters/visible_counts.h"
+#include "prt/visibility/bit_matrix.h"
+
+namespace relumine::prt {
+
+/// Normals of the receivers, coordinates apart, [num_words * 64] each.
+struct NormalArrays {
+    std::vector<float> x, y, z;
+    NormalArrays() = default;
+    explicit NormalArrays(std::span<const glm::vec3> normals);
+    [[nodiscard]] std::size_t num_words() const { return x.size() / WordSize; }
+};
+
+/// One cell's samples: directions, and for each the plane of bits "the light from there reaches the receiver", [num_words].
+struct CellSamples {
+    std::array<glm::vec3, SamplesPerCell> directions{};
+    std::array<const std::uint64_t*, SamplesPerCell> lit{};
+};
+
+/// ||T_C - T_l||^2 of all nine samples l, with T = V max(n.w, 0) (that is, times pi) and T_C the weighted mean
+/// [JN, Eqs. 9-11]. Sums are in double over fixed runs of receivers.
+[[nodiscard]] std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
+                                                                   const CellSamples& samples);
+
+/// The visible counts of the cell for all receivers; `weights` sum to 16.
+[[nodiscard]] LeafColumn leaf_column(const CellSamples& samples,
+                                     const std::array<std::uint8_t, SamplesPerCell>& weights,
+                                     std::size_t num_receivers);
+
+} // namespace relumine::prt

@@ -1,0 +1,34 @@
+// What the clustering knows, as bytes for a checkpoint. Everything else follows from the receivers, blockers and options.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "prt/clusters/pending_cells.h"
+#include "prt/clusters/quadtree.h"
+#include "prt/clusters/visibility_planes.h"
+#include "prt/clusters/visible_counts.h"
+
+namespace relumine::prt {
+
+/// A finished cluster.
+struct Cluster {
+    Cell cell;
+    LeafColumn column;
+};
+
+/// Clusters as one record.
+[[nodiscard]] std::vector<std::byte> clusters_record(std::span<const Cluster> clusters);
+/// Appends a record's clusters, of `num_receivers` receivers. Throws std::runtime_error for other bytes.
+void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
+                   std::vector<Cluster>& clusters);
+
+/// The work to be done: cells being tested, cells waiting, and the planes known.
+[[nodiscard]] std::vector<std::byte> work_state(const std::vector<Cell>& batch, const PendingCells& pending,
+                                                const VisibilityPlanes& planes);
+/// Puts it into an empty batch, empty queues and new planes. Throws std::runtime_error for other bytes.
+void read_work(std::span<const std::byte> state, std::vector<Cell>& batch, PendingCells& pending,
+               VisibilityPlanes& planes);
+
+} // namespace relumine::prt

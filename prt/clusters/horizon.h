@@ -1,0 +1,18 @@
+// Which directions lie above a receiver's horizon. Vectorised with run-time dispatch.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "prt/clusters/cluster_kernels.h"
+#include "prt/visibility/blockers.h"
+
+namespace relumine::prt {
+
+/// Bit j of rays[i] says that n.w > 0 for receiver first + i and the patch's direction j. The cosine is (nx wx + ny wy) + nz wz in float,
+/// each operation rounded, on every processor: a cluster's bits never depend on where it was computed.
+void directions_above_horizon(const NormalArrays& normals, std::size_t first, const DirectionPatch& patch,
+                              std::span<std::uint64_t> rays);
+
+} // namespace relumine::prt

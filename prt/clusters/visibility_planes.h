@@ -1,0 +1,79 @@
+// Visibility of all receivers in the sample directions: one plane of bits per direction, each direction traced once.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/clusters/cluster_kernels.h"
+#include "prt/clusters/lattice.h"
+#include "prt/visibility/blockers.h"
+
+namespace relumine::prt {
+
+/// Long work in steps, between which everything that is known is whole.
+struct TraceSteps {
+    std::uint64_t samples_per_step = std::numeric_limits<
+        std::uint64_t>::max();          ///< (receiver, direction) pairs, at least one patch of them
+    std::function<void()> between = {}; ///< called by the calling thread; may throw to cancel
+};
+
+/// The planes that the level in work needs. A bit says "the light from this direction reaches this receiver": the direction is above
+/// the receiver's horizon and not blocked.
+class VisibilityPlanes {
+public:
+    /// origins: ray starts of the receivers in the order of `normals`, [num_receivers]. The arguments must outlive this.
+    VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
+                     const Blockers& blockers);
+
+    /// Traces those of the points that are not known yet. Points that lie close together should stand close together: neighbours in
+    /// the list whose places on the cube [-1, 1]^3 fit into a box of side `patch_width` share a patch of directions.
+    /// `on_progress` is called from the working threads, many times a second, with the part of the rays that is done (not
+    /// in order); it may throw to cancel. The points of finished steps stay known then, those of the step in work do not.
+    void trace(std::span<const LatticePoint> points, double patch_width,
+               const std::function<void(double)>& on_progress, const TraceSteps& steps = {});
+
+    /// Forgets all points but those given.
+    void keep_only(std::span<const LatticePoint> points);
+
+    [[nodiscard]] bool knows(LatticePoint point) const { return planes_.contains(point); }
+    [[nodiscard]] std::size_t num_words() const { return normals_.num_words(); } ///< of a plane
+    [[nodiscard]] std::size_t num_planes() const { return planes_.size(); }
+    /// All known points, ascending.
+    [[nodiscard]] std::vector<LatticePoint> points() const;
+    /// Takes over a plane that an earlier run traced, [num_words].
+    void restore(LatticePoint point, std::vector<std::uint64_t> plane) { planes_[point] = std::move(plane); }
+    /// Takes over an earlier run's counts.
+    void restore_counts(std::uint64_t num_directions, std::uint64_t num_rays) {
+        num_directions_ = num_directions;
+        num_rays_ = num_rays;
+    }
+
+    /// The plane of a known point, [num_words].
+    [[nodiscard]] const std::uint64_t* plane(LatticePoint point) const { return planes_.at(point).data(); }
+
+    [[nodiscard]] std::uint64_t num_directions() const { return num_directions_; }
+    [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }
+
+private:
+    struct Patch; ///< up to 64 new directions and their planes
+
+    std::vector<Patch> new_patches(std::span<const LatticePoint> points, double patch_width) const;
+    void trace_step(std::span<Patch> patches, const std::function<void()>& on_task);
+    std::uint64_t trace_block(std::size_t first_word, const Patch& patch) const;
+
+    std::span<const glm::vec3> origins_;
+    const NormalArrays& normals_;
+    const Blockers& blockers_;
+    std::unordered_map<LatticePoint, std::vector<std::uint64_t>> planes_;
+    std::uint64_t num_directions_ = 0;
+    std::uint64_t num_rays_ = 0;
+};
+
+} // namespace relumine::prt

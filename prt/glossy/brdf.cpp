@@ -1,0 +1,91 @@
+#include "prt/glossy/brdf.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v) times n.w: glTF 2.0, Appendix
+/// B.3.2. sin2: squared sine of the angle between normal and half vector; cos^2 alone loses it to cancellation where alpha is
+/// small. The quotient is ordered so that no cosine, however small, makes it infinite.
+float ggx(float alpha, float sin2, float n_w, float n_v) {
+    const float a2 = alpha * alpha;
+    const float d = sin2 + (1.0f - sin2) * a2; // cos^2 (a2 - 1) + 1
+    const float distribution = a2 / (std::numbers::pi_v<float> * d * d);
+    const float mask_v = std::sqrt(n_v * n_v * (1.0f - a2) + a2);
+    const float mask_w = std::sqrt(n_w * n_w * (1.0f - a2) + a2);
+    return distribution * 0.5f / (mask_v + n_v / n_w * mask_w);
+}
+
+/// cos^exponent of the angle with that sine: where it is small, log1p keeps what 1 - sin2 would round away.
+float cosine_power(float sin2, float exponent) {
+    if (exponent == 0.0f)
+        return 1.0f;
+    return std::exp(0.5f * exponent * (sin2 < 0.5f ? std::log1p(-sin2) : std::log(1.0f - sin2)));
+}
+
+} // namespace
+
+float ggx_alpha(float roughness) {
+    return std::max(roughness * roughness, 1e-3f);
+}
+
+float blinn_phong_exponent(float exponent) {
+    return std::clamp(exponent, 0.0f, 1e6f);
+}
+
+/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less of all other.
+float blinn_phong_norm(float exponent) {
+    const float e = blinn_phong_exponent(exponent);
+    return (e + 2.0f) * (e + 4.0f) / (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * e) + e));
+}
+
+Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye,
+                            const glm::vec3& w) {
+    Lobes<float> lobes;
+    const float n_w = glm::dot(normal, w);
+    if (n_w <= 0.0f)
+        return lobes;
+    const float n_v = glm::dot(normal, to_eye);
+    lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
+    if (surface.highlight == Highlight::None || n_v <= 0.0f)
+        return lobes;
+    // Not normalised: |v + w| is 2 v.h.
+    const glm::vec3 half = to_eye + w;
+    const float length2 = std::max(glm::dot(half, half), 1e-12f);
+    const glm::vec3 across = glm::cross(normal, half);
+    const float sin2 = std::min(glm::dot(across, across) / length2, 1.0f);
+    if (surface.highlight == Highlight::BlinnPhong) {
+        lobes.specular =
+            blinn_phong_norm(surface.shape) * cosine_power(sin2, blinn_phong_exponent(surface.shape)) * n_w;
+        return lobes;
+    }
+    const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);
+    const float squared = (1.0f - v_h) * (1.0f - v_h);
+    const float c = squared * squared * (1.0f - v_h);
+    lobes.specular = ggx(ggx_alpha(surface.shape), sin2, n_w, n_v);
+    lobes.diffuse_grazing = c * lobes.diffuse;
+    lobes.specular_grazing = c * lobes.specular;
+    return lobes;
+}
+
+glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes) {
+    const glm::vec3 one(1.0f);
+    switch (surface.highlight) {
+    case Highlight::None:
+        return surface.albedo * lobes.diffuse;
+    case Highlight::BlinnPhong:
+        return surface.albedo * lobes.diffuse + surface.specular * lobes.specular;
+    case Highlight::Ggx:
+        break;
+    }
+    return surface.albedo * (one - surface.specular) * (lobes.diffuse - lobes.diffuse_grazing) +
+           surface.specular * (lobes.specular - lobes.specular_grazing) + lobes.specular_grazing;
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,84 @@
+#include "prt/glossy/surface_sampling.h"
+
+#include <array>
+
+#include <glm/common.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+/// An attribute of the corners at a point.
+template<class Value>
+Value interpolate(const std::array<Value, 3>& corners, const glm::vec2& barycentric) {
+    return corners[0] * (1.0f - barycentric.x - barycentric.y) + corners[1] * barycentric.x +
+           corners[2] * barycentric.y;
+}
+
+glm::vec2 uv_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+    const mesh::Triangle& t = mesh.triangles[triangle];
+    if (!mesh.corner_uvs.empty())
+        return interpolate(mesh.corner_uvs[triangle], barycentric);
+    if (!mesh.uvs.empty())
+        return interpolate<glm::vec2>({mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]}, barycentric);
+    return glm::vec2(0.0f);
+}
+
+} // namespace
+
+Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+    if (mesh.triangle_materials.empty())
+        return {};
+    const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
+    const glm::vec2 uv = material.base_color_texture || material.metallic_roughness_texture
+                             ? uv_at(mesh, triangle, barycentric)
+                             : glm::vec2(0.0f);
+    glm::vec3 base = material.base_color;
+    if (const auto& slot = material.base_color_texture)
+        base *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
+    if (material.times_vertex_color && !mesh.colors.empty()) {
+        const mesh::Triangle& t = mesh.triangles[triangle];
+        base *=
+            interpolate<glm::vec3>({mesh.colors[t[0]], mesh.colors[t[1]], mesh.colors[t[2]]}, barycentric);
+        base = glm::clamp(base, 0.0f, 1.0f);
+    }
+    if (material.model == mesh::MaterialModel::Phong) {
+        if (material.specular == glm::vec3(0.0f))
+            return {.albedo = base};
+        return {.albedo = base,
+                .specular = material.specular,
+                .highlight = Highlight::BlinnPhong,
+                .shape = material.exponent};
+    }
+    float metallic = material.metallic, roughness = material.roughness;
+    if (const auto& slot = material.metallic_roughness_texture) {
+        const glm::vec3 texel = mesh::sample(mesh.textures[slot->texture], *slot, uv);
+        roughness *= texel.g;
+        metallic *= texel.b;
+    }
+    return {.albedo = base * (1.0f - metallic),
+            .specular = glm::mix(glm::vec3(0.04f), base, metallic),
+            .highlight = Highlight::Ggx,
+            .shape = roughness};
+}
+
+std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,
+                                     const SurfaceOverride& override_surface) {
+    constexpr std::array<glm::vec2, 3> Corners = {glm::vec2(0.0f, 0.0f), glm::vec2(1.0f, 0.0f),
+                                                  glm::vec2(0.0f, 1.0f)};
+    std::vector<Surface> surfaces(mesh.num_vertices());
+    std::vector<bool> has_surface(mesh.num_vertices(), false);
+    for (std::uint32_t triangle = 0; triangle < mesh.num_triangles(); ++triangle)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = mesh.triangles[triangle][corner];
+            if (has_surface[vertex])
+                continue;
+            has_surface[vertex] = true;
+            surfaces[vertex] = surface_at(mesh, triangle, Corners[corner]);
+            if (override_surface)
+                surfaces[vertex] = override_surface(mesh, triangle, surfaces[vertex]);
+        }
+    return surfaces;
+}
+
+} // namespace relumine::prt

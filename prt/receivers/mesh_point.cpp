@@ -1,0 +1,40 @@
+#include "prt/receivers/mesh_point.h"
+
+#include <glm/geometric.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+/// In double: products of a small triangle's edges would vanish in float.
+glm::vec3 unit_or_zero(const glm::dvec3& v) {
+    const double length = glm::length(v);
+    return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
+}
+
+} // namespace
+
+glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> values,
+                   const MeshPoint& point) {
+    const mesh::Triangle& triangle = mesh.triangles[point.triangle];
+    const float first = 1.0f - point.barycentric.x - point.barycentric.y;
+    return first * values[triangle[0]] + point.barycentric.x * values[triangle[1]] +
+           point.barycentric.y * values[triangle[2]];
+}
+
+glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const glm::dvec3 origin(mesh.positions[a]);
+    return unit_or_zero(
+        glm::cross(glm::dvec3(mesh.positions[b]) - origin, glm::dvec3(mesh.positions[c]) - origin));
+}
+
+glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    const glm::vec3 interpolated = value_at(mesh, mesh.normals, point);
+    // Shorter than this it is rounding of normals that cancel, not a direction.
+    constexpr float Shortest = 1e-4f;
+    return glm::length(interpolated) > Shortest ? glm::normalize(interpolated)
+                                                : face_normal(mesh, point.triangle);
+}
+
+} // namespace relumine::prt

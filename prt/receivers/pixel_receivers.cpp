@@ -1,0 +1,89 @@
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", Section 3.1: for image relighting the points
+// are those seen in the pixels.
+#include "prt/receivers/pixel_receivers.h"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+namespace relumine::prt {
+
+namespace {
+
+struct Seen {
+    std::uint32_t sample;
+    MeshPoint point;
+};
+
+/// Rays through shared edges may end a rounding error outside of their triangle.
+glm::vec2 inside(const glm::vec2& barycentric) {
+    const glm::vec2 positive(std::max(barycentric.x, 0.0f), std::max(barycentric.y, 0.0f));
+    return positive / std::max(positive.x + positive.y, 1.0f);
+}
+
+/// The normal on the side that the eye is on.
+glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point, const glm::vec3& to_eye) {
+    const glm::vec3 normal = shading_normal(mesh, point);
+    glm::vec3 face = face_normal(mesh, point.triangle);
+    if (glm::dot(face, normal) < 0.0f)
+        face = -face;
+    return glm::dot(face, to_eye) < 0.0f ? -normal : normal;
+}
+
+} // namespace
+
+PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays, const PixelView& view) {
+    const PictureRays picture(view.camera, view.width, view.height, view.samples_per_axis);
+    PixelReceivers result{.receivers = {},
+                          .layout = {.camera = view.camera,
+                                     .width = view.width,
+                                     .height = view.height,
+                                     .samples_per_axis = view.samples_per_axis}};
+    if (result.layout.num_samples() > MaxLayoutPlaces)
+        throw std::invalid_argument(fmt::format("expected at most {} samples in all, got {}", MaxLayoutPlaces,
+                                                result.layout.num_samples()));
+
+    std::vector<std::vector<Seen>> rows(view.height);
+    tbb::parallel_for(std::uint32_t{0}, view.height, [&](std::uint32_t y) {
+        auto sample = static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
+        for (std::uint32_t x = 0; x < view.width; ++x)
+            for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample)
+                if (const auto hit = rays.closest_hit(view.camera.eye, picture.direction(x, y, i)))
+                    rows[y].push_back({sample, {hit->triangle, inside(hit->barycentric)}});
+    });
+
+    std::vector<std::size_t> first(rows.size() + 1, 0);
+    for (std::size_t y = 0; y < rows.size(); ++y)
+        first[y + 1] = first[y] + rows[y].size();
+    if (first.back() == 0)
+        throw std::invalid_argument("expected a view that sees the mesh, got one that sees nothing of it");
+    Receivers& receivers = result.receivers;
+    receivers.positions.resize(first.back());
+    receivers.normals.resize(first.back());
+    receivers.to_eye.resize(first.back());
+    receivers.points.resize(first.back());
+    result.layout.samples.resize(first.back());
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
+        std::size_t receiver = first[y];
+        for (const Seen& seen : rows[y]) {
+            const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);
+            // A hit at the eye itself has no direction to it; its normal will do.
+            const glm::vec3 way = view.camera.eye - position;
+            const glm::vec3 to_eye =
+                glm::length(way) > 0.0f ? glm::normalize(way) : face_normal(mesh, seen.point.triangle);
+            receivers.positions[receiver] = position;
+            receivers.normals[receiver] = normal_towards(mesh, seen.point, to_eye);
+            receivers.to_eye[receiver] = to_eye;
+            receivers.points[receiver] = seen.point;
+            result.layout.samples[receiver] = seen.sample;
+            ++receiver;
+        }
+    });
+    return result;
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,128 @@
+#include "prt/receivers/receiver_order.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include <glm/common.hpp>
+#include <tbb/parallel_invoke.h>
+
+#include "prt/clusters/visible_counts.h"
+
+namespace relumine::prt {
+
+namespace {
+
+/// What a turn of the normal by one radian counts, as a part of the scene's extent. Best for bunny and dragon; half of it or twice as much
+/// costs 2 to 3 % more mixed blocks.
+constexpr double NormalWeight = 1.0 / 32.0;
+
+/// Receivers of a large group: what `beam_scene` traces at a time.
+constexpr std::size_t LargeGroup = 8 * BlockSize;
+
+/// Below this many receivers a task is not worth its start.
+constexpr std::size_t MinTask = 4096;
+
+constexpr std::size_t NumAxes = 6;
+
+struct Place {
+    std::array<float, NumAxes> at{};
+    std::uint32_t receiver = 0;
+};
+
+/// Sum over axes of the extent, times the number of places.
+float spread(std::span<const Place> places) {
+    std::array<float, NumAxes> low = places.front().at;
+    std::array<float, NumAxes> high = low;
+    for (const Place& place : places)
+        for (std::size_t axis = 0; axis < NumAxes; ++axis) {
+            low[axis] = std::min(low[axis], place.at[axis]);
+            high[axis] = std::max(high[axis], place.at[axis]);
+        }
+    float sum = 0.0f;
+    for (std::size_t axis = 0; axis < NumAxes; ++axis)
+        sum += high[axis] - low[axis];
+    return sum * static_cast<float>(places.size());
+}
+
+/// Puts the `middle` lowest along an axis first. Ties by index, so that the halves do not depend on the order before.
+void halve(std::span<Place> places, std::size_t middle, std::size_t axis) {
+    std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle), places.end(),
+                     [axis](const Place& a, const Place& b) {
+                         return a.at[axis] < b.at[axis] ||
+                                (a.at[axis] == b.at[axis] && a.receiver < b.receiver);
+                     });
+}
+
+void group(std::span<Place> places) {
+    if (places.size() <= BlockSize) {
+        std::sort(places.begin(), places.end(),
+                  [](const Place& a, const Place& b) { return a.receiver < b.receiver; });
+        return;
+    }
+    const std::size_t unit = places.size() > LargeGroup ? LargeGroup : BlockSize;
+    const std::size_t middle = (places.size() + unit - 1) / unit / 2 * unit;
+    std::size_t best_axis = 0;
+    float best_spread = std::numeric_limits<float>::max();
+    for (std::size_t axis = 0; axis < NumAxes; ++axis) {
+        halve(places, middle, axis);
+        const float sum = spread(places.first(middle)) + spread(places.subspan(middle));
+        if (sum < best_spread) {
+            best_spread = sum;
+            best_axis = axis;
+        }
+    }
+    halve(places, middle, best_axis);
+    const auto low = [&] {
+        group(places.first(middle));
+    };
+    const auto high = [&] {
+        group(places.subspan(middle));
+    };
+    if (places.size() > MinTask) {
+        tbb::parallel_invoke(low, high);
+    } else {
+        low();
+        high();
+    }
+}
+
+} // namespace
+
+std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {
+    glm::dvec3 low(std::numeric_limits<double>::max());
+    glm::dvec3 high(std::numeric_limits<double>::lowest());
+    for (const glm::vec3& position : receivers.positions) {
+        low = glm::min(low, glm::dvec3(position));
+        high = glm::max(high, glm::dvec3(position));
+    }
+    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z, 1e-300});
+
+    std::vector<Place> places(receivers.size());
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+        const glm::dvec3 position = (glm::dvec3(receivers.positions[i]) - low) / extent;
+        const glm::dvec3 normal = glm::dvec3(receivers.normals[i]) * NormalWeight;
+        places[i].receiver = i;
+        for (int axis = 0; axis < 3; ++axis) {
+            places[i].at[static_cast<std::size_t>(axis)] = static_cast<float>(position[axis]);
+            places[i].at[static_cast<std::size_t>(axis) + 3] = static_cast<float>(normal[axis]);
+        }
+    }
+    const auto receives = [&](const Place& place) {
+        return receivers.normals[place.receiver] != glm::vec3(0.0f);
+    };
+    const auto num_receiving = static_cast<std::size_t>(
+        std::stable_partition(places.begin(), places.end(), receives) - places.begin());
+    group(std::span(places).first(num_receiving));
+    group(std::span(places).subspan(num_receiving));
+
+    std::vector<std::uint32_t> order(places.size());
+    std::transform(places.begin(), places.end(), order.begin(),
+                   [](const Place& place) { return place.receiver; });
+    return order;
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,64 @@
+#include "prt/scene/fingerprint.h"
+
+#include <cstdint>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "prt/glossy/surface.h"
+
+namespace relumine::prt {
+
+namespace {
+
+/// Of the algorithm and of what a checkpoint holds; to be raised when a change of either makes old checkpoints worthless.
+constexpr int Version = 1;
+
+class Hash {
+public:
+    template<typename Number>
+    Hash& add(const std::vector<Number>& numbers) {
+        hash_ = XXH64(numbers.data(), numbers.size() * sizeof(Number), hash_ + numbers.size());
+        return *this;
+    }
+    [[nodiscard]] std::string text() const { return fmt::format("{:016x}", hash_); }
+
+private:
+    std::uint64_t hash_ = 0;
+};
+
+/// Surfaces have padding, whose bytes are anything.
+std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
+    std::vector<float> numbers;
+    numbers.reserve(surfaces.size() * 2);
+    for (const Surface& surface : surfaces) {
+        numbers.push_back(static_cast<float>(surface.highlight));
+        numbers.push_back(surface.shape);
+    }
+    return numbers;
+}
+
+} // namespace
+
+Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& receivers,
+                        const PrecomputeOptions& options, std::optional<float> glossy_tolerance) {
+    Fingerprint result = {
+        {"version", fmt::format("{}", Version)},
+        {"mesh", Hash().add(blockers.positions).add(blockers.triangles).text()},
+        {"receivers", Hash().add(receivers.positions).add(receivers.normals).text()},
+        {"number of receivers", fmt::format("{}", receivers.size())},
+        options.epsilon
+            ? std::pair<std::string, std::string>("epsilon", fmt::format("{}", *options.epsilon))
+            : std::pair<std::string, std::string>("tolerance", fmt::format("{}", options.tolerance)),
+        {"min depth", fmt::format("{}", options.min_level)},
+        {"face resolution", fmt::format("{}", options.face_resolution)},
+        {"bias", fmt::format("{}", options.bias)}};
+    if (glossy_tolerance) {
+        result.emplace_back("glossy tolerance", fmt::format("{}", *glossy_tolerance));
+        result.emplace_back("surfaces or eye",
+                            Hash().add(numbers_of(receivers.surfaces)).add(receivers.to_eye).text());
+    }
+    return result;
+}
+
+} // namespace relumine::prt

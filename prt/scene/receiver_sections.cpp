@@ -1,0 +1,255 @@
+#include "prt/scene/receiver_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+nlohmann::json json_of(const glm::vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+glm::vec3 vector(const nlohmann::json& json) {
+    if (!json.is_array() || json.size() != 3)
+        throw std::out_of_range("expected three numbers");
+    return {real(json[0]), real(json[1]), real(json[2])};
+}
+
+nlohmann::json json_of(const PixelLayout& layout) {
+    return {{"kind", "pixels"},
+            {"width", layout.width},
+            {"height", layout.height},
+            {"samples_per_axis", layout.samples_per_axis},
+            {"eye", json_of(layout.camera.eye)},
+            {"target", json_of(layout.camera.target)},
+            {"fov_degrees", layout.camera.fov_degrees}};
+}
+
+nlohmann::json json_of(const TexelLayout& layout) {
+    return {{"kind", "texels"}, {"width", layout.width}, {"height", layout.height}};
+}
+
+/// Which places of a layout have a receiver.
+std::vector<std::byte> mask(const std::vector<std::uint32_t>& places, std::size_t num_places) {
+    std::vector<bool> bits(num_places);
+    for (const std::uint32_t place : places)
+        bits[place] = true;
+    return packed(bits);
+}
+
+std::size_t num_places(const PixelLayout& layout) {
+    return layout.num_samples();
+}
+std::size_t num_places(const TexelLayout& layout) {
+    return layout.num_texels();
+}
+const std::vector<std::uint32_t>& places(const PixelLayout& layout) {
+    return layout.samples;
+}
+const std::vector<std::uint32_t>& places(const TexelLayout& layout) {
+    return layout.texels;
+}
+
+template<typename Layout>
+void check(const Layout& layout, const Receivers& receivers) {
+    const std::vector<std::uint32_t>& own = places(layout);
+    const bool ascending = std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end() &&
+                           (own.empty() || own.back() < num_places(layout));
+    if (num_places(layout) > MaxLayoutPlaces || own.size() != receivers.size() || !ascending)
+        throw std::invalid_argument(
+            fmt::format("expected one place in the layout for each of {} receivers, got {} in {}",
+                        receivers.size(), own.size(), num_places(layout)));
+}
+
+template<typename Layout>
+void add_layout(Sections& sections, const Layout& layout, const Receivers& receivers) {
+    check(layout, receivers);
+    if (receivers.normals.size() != receivers.size() || receivers.points.size() != receivers.size())
+        throw std::invalid_argument(
+            fmt::format("expected a normal and a point for each of {} receivers, got {} and {}",
+                        receivers.size(), receivers.normals.size(), receivers.points.size()));
+    const std::string text = json_of(layout).dump(2);
+    sections["layout"] = bytes_of(std::vector<char>(text.begin(), text.end()));
+    sections["layout_mask"] = mask(places(layout), num_places(layout));
+    sections["r_positions"] = bytes_of(receivers.positions);
+    sections["r_normals"] = bytes_of(receivers.normals);
+    std::vector<std::uint32_t> triangles;
+    std::vector<glm::vec2> barycentric;
+    for (const MeshPoint& point : receivers.points) {
+        triangles.push_back(point.triangle);
+        barycentric.push_back(point.barycentric);
+    }
+    sections["r_triangles"] = bytes_of(triangles);
+    sections["r_barycentric"] = bytes_of(barycentric);
+}
+
+/// Field by field: a Surface in memory has padding.
+void add_surfaces(Sections& sections, const std::vector<Surface>& surfaces) {
+    std::vector<glm::vec3> albedo, specular;
+    std::vector<std::uint8_t> highlight;
+    std::vector<float> shape;
+    for (const Surface& surface : surfaces) {
+        albedo.push_back(surface.albedo);
+        specular.push_back(surface.specular);
+        highlight.push_back(static_cast<std::uint8_t>(surface.highlight));
+        shape.push_back(surface.shape);
+    }
+    sections["r_albedo"] = bytes_of(albedo);
+    sections["r_specular"] = bytes_of(specular);
+    sections["r_highlight"] = bytes_of(highlight);
+    sections["r_shape"] = bytes_of(shape);
+}
+
+bool is_finite(const glm::vec3& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+std::vector<glm::vec3> finite_vectors(const SectionReader& reader, const std::string& name, std::size_t count,
+                                      bool optional = false) {
+    std::vector<glm::vec3> vectors = reader.elements<glm::vec3>(name, count, optional);
+    if (!std::all_of(vectors.begin(), vectors.end(), is_finite))
+        reader.fail(name, "finite numbers");
+    return vectors;
+}
+
+std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t count) {
+    if (!reader.has("r_albedo"))
+        return {};
+    const std::vector<glm::vec3> albedo = finite_vectors(reader, "r_albedo", count);
+    const std::vector<glm::vec3> specular = finite_vectors(reader, "r_specular", count);
+    const auto highlight = reader.elements<std::uint8_t>("r_highlight", count);
+    const auto shape = reader.elements<float>("r_shape", count);
+    if (std::any_of(highlight.begin(), highlight.end(),
+                    [](auto h) { return h > static_cast<std::uint8_t>(Highlight::BlinnPhong); }))
+        reader.fail("r_highlight", "highlights of known shapes");
+    if (!std::all_of(shape.begin(), shape.end(), [](float s) { return std::isfinite(s) && s >= 0.0f; }))
+        reader.fail("r_shape", "numbers >= 0");
+    std::vector<Surface> surfaces(count);
+    for (std::size_t i = 0; i < count; ++i)
+        surfaces[i] = {.albedo = albedo[i],
+                       .specular = specular[i],
+                       .highlight = static_cast<Highlight>(highlight[i]),
+                       .shape = shape[i]};
+    return surfaces;
+}
+
+std::vector<MeshPoint> read_points(const SectionReader& reader, std::size_t count,
+                                   const mesh::TriangleMesh& mesh) {
+    const auto triangles = reader.elements<std::uint32_t>("r_triangles", count);
+    const auto barycentric = reader.elements<glm::vec2>("r_barycentric", count);
+    if (std::any_of(triangles.begin(), triangles.end(), [&](auto t) { return t >= mesh.num_triangles(); }))
+        reader.fail("r_triangles", "indices of triangles");
+    // Rounding of weights that end at an edge.
+    constexpr float Slack = 1e-4f;
+    if (!std::all_of(barycentric.begin(), barycentric.end(), [](const glm::vec2& b) {
+            return b.x >= 0.0f && b.y >= 0.0f && b.x + b.y <= 1.0f + Slack;
+        }))
+        reader.fail("r_barycentric", "weights within a triangle");
+    std::vector<MeshPoint> points(count);
+    for (std::size_t i = 0; i < count; ++i)
+        points[i] = {.triangle = triangles[i], .barycentric = barycentric[i]};
+    return points;
+}
+
+/// Sizes as they may be, before anything is done with them.
+std::uint32_t size_of(const nlohmann::json& json) {
+    const std::uint32_t size = natural(json);
+    if (size < 1 || size > MaxPictureSize)
+        throw std::out_of_range("expected a size of a picture");
+    return size;
+}
+
+ReceiverLayout layout_of(const nlohmann::json& json) {
+    if (json.at("kind") == "texels") {
+        TexelLayout layout{.width = size_of(json.at("width")), .height = size_of(json.at("height"))};
+        if (layout.num_texels() > MaxLayoutPlaces)
+            throw std::out_of_range("expected fewer texels");
+        return layout;
+    }
+    if (json.at("kind") != "pixels")
+        throw std::out_of_range("expected pixels or texels");
+    PixelLayout layout{.camera = {.eye = vector(json.at("eye")),
+                                  .target = vector(json.at("target")),
+                                  .fov_degrees = real(json.at("fov_degrees"))},
+                       .width = size_of(json.at("width")),
+                       .height = size_of(json.at("height")),
+                       .samples_per_axis = natural(json.at("samples_per_axis"))};
+    // Refuses a camera without a direction and sizes out of bounds.
+    static_cast<void>(PictureRays(layout.camera, layout.width, layout.height, layout.samples_per_axis));
+    if (layout.num_samples() > MaxLayoutPlaces)
+        throw std::out_of_range("expected fewer samples");
+    return layout;
+}
+
+template<typename Layout>
+std::vector<std::uint32_t> read_places(const SectionReader& reader, const Layout& layout) {
+    const std::vector<bool> bits = reader.bits("layout_mask", num_places(layout));
+    std::vector<std::uint32_t> result;
+    for (std::size_t i = 0; i < bits.size(); ++i)
+        if (bits[i])
+            result.push_back(static_cast<std::uint32_t>(i));
+    return result;
+}
+
+} // namespace
+
+void add_receiver_sections(Sections& sections, const Receivers& receivers, const ReceiverLayout& layout) {
+    const auto fits = [&](std::size_t size) {
+        return size == 0 || size == receivers.size();
+    };
+    if (!fits(receivers.to_eye.size()) || !fits(receivers.surfaces.size()))
+        throw std::invalid_argument(
+            fmt::format("expected none or {} directions to the eye and surfaces, got {} and {}",
+                        receivers.size(), receivers.to_eye.size(), receivers.surfaces.size()));
+    if (const auto* pixels = std::get_if<PixelLayout>(&layout))
+        add_layout(sections, *pixels, receivers);
+    else if (const auto* texels = std::get_if<TexelLayout>(&layout))
+        add_layout(sections, *texels, receivers);
+    if (!receivers.to_eye.empty())
+        sections["r_to_eye"] = bytes_of(receivers.to_eye);
+    if (!receivers.surfaces.empty())
+        add_surfaces(sections, receivers.surfaces);
+}
+
+ReceiverLayout read_layout(const SectionReader& reader) {
+    if (!reader.has("layout"))
+        return VertexLayout{};
+    const std::vector<char> text = reader.elements<char>("layout");
+    ReceiverLayout layout;
+    try {
+        layout = layout_of(nlohmann::json::parse(text.begin(), text.end()));
+    } catch (const std::exception&) {
+        reader.fail("layout", "JSON with the layout of the receivers");
+    }
+    if (auto* pixels = std::get_if<PixelLayout>(&layout))
+        pixels->samples = read_places(reader, *pixels);
+    else if (auto* texels = std::get_if<TexelLayout>(&layout))
+        texels->texels = read_places(reader, *texels);
+    return layout;
+}
+
+Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layout,
+                         const mesh::TriangleMesh& mesh) {
+    Receivers receivers;
+    if (std::holds_alternative<VertexLayout>(layout)) {
+        receivers = vertex_receivers(mesh);
+    } else {
+        const auto* pixels = std::get_if<PixelLayout>(&layout);
+        const std::size_t count =
+            pixels != nullptr ? pixels->samples.size() : std::get<TexelLayout>(layout).texels.size();
+        receivers.positions = finite_vectors(reader, "r_positions", count);
+        receivers.normals = finite_vectors(reader, "r_normals", count);
+        receivers.points = read_points(reader, count, mesh);
+    }
+    receivers.to_eye = finite_vectors(reader, "r_to_eye", receivers.size(), true);
+    receivers.surfaces = read_surfaces(reader, receivers.size());
+    return receivers;
+}
+
+} // namespace relumine::prt

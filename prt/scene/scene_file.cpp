@@ -1,0 +1,222 @@
+#include "prt/scene/scene_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <xxhash.h>
+
+#include "files/output_file.h"
+#include "prt/scene/glossy_sections.h"
+#include "prt/scene/receiver_sections.h"
+#include "prt/scene/section_reader.h"
+
+namespace relumine::prt {
+
+namespace {
+
+/// Split flags with their number in front.
+std::vector<std::byte> counted(const std::vector<bool>& flags) {
+    std::vector<std::byte> bytes = bytes_of(std::vector{static_cast<std::uint32_t>(flags.size())});
+    const std::vector<std::byte> bits = packed(flags);
+    bytes.insert(bytes.end(), bits.begin(), bits.end());
+    return bytes;
+}
+
+std::vector<std::byte> settings_json(const SceneSettings& settings) {
+    nlohmann::json json = {{"tolerance", settings.tolerance},
+                           {"min_level", settings.min_level},
+                           {"face_resolution", settings.face_resolution},
+                           {"bias", settings.bias},
+                           {"floor_vertices", settings.floor_vertices},
+                           {"source", settings.source},
+                           {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
+    if (settings.epsilon)
+        json["epsilon"] = *settings.epsilon;
+    if (settings.glossy_tolerance)
+        json["glossy_tolerance"] = *settings.glossy_tolerance;
+    if (settings.view) {
+        const Camera& view = *settings.view;
+        json["view"] = {view.eye.x,    view.eye.y,    view.eye.z,      view.target.x,
+                        view.target.y, view.target.z, view.fov_degrees};
+    }
+    // A file name need not be UTF-8; JSON must be.
+    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    return bytes_of(std::vector<char>(text.begin(), text.end()));
+}
+
+class SceneReader {
+public:
+    SceneReader(const std::filesystem::path& path, Sections&& sections)
+        : reader_(path, std::move(sections)) {}
+
+    Scene scene() const {
+        Scene scene;
+        scene.mesh = mesh();
+        scene.settings = settings();
+        scene.layout = read_layout(reader_);
+        scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
+        scene.transfer = transfer(scene.receivers);
+        return scene;
+    }
+
+private:
+    mesh::TriangleMesh mesh() const {
+        mesh::TriangleMesh mesh;
+        mesh.positions = reader_.elements<glm::vec3>("positions");
+        mesh.triangles = reader_.elements<mesh::Triangle>("triangles");
+        mesh.normals = reader_.elements<glm::vec3>("normals", mesh.num_vertices());
+        mesh.colors = reader_.elements<glm::vec3>("colors", mesh.num_vertices(), true);
+        mesh.uvs = reader_.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            if (std::any_of(triangle.begin(), triangle.end(),
+                            [&](auto i) { return i >= mesh.num_vertices(); }))
+                reader_.fail("triangles", "indices of vertices");
+        const auto finite = [](const glm::vec3& p) {
+            return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+        };
+        if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), finite))
+            reader_.fail("positions", "finite positions");
+        if (!std::all_of(mesh.normals.begin(), mesh.normals.end(), finite))
+            reader_.fail("normals", "finite normals");
+        if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), finite))
+            reader_.fail("colors", "finite colours");
+        return mesh;
+    }
+
+    SceneSettings settings() const {
+        const std::vector<char> text = reader_.elements<char>("settings");
+        SceneSettings settings;
+        try {
+            const nlohmann::json json = nlohmann::json::parse(text.begin(), text.end());
+            settings.tolerance = real(json.at("tolerance"));
+            settings.min_level = natural(json.at("min_level"));
+            settings.face_resolution = natural(json.at("face_resolution"));
+            settings.bias = real(json.at("bias"));
+            settings.floor_vertices = natural(json.at("floor_vertices"));
+            settings.source = json.at("source");
+            settings.source_hash = std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
+            if (json.contains("epsilon"))
+                settings.epsilon = real(json.at("epsilon"));
+            if (json.contains("glossy_tolerance"))
+                settings.glossy_tolerance = real(json.at("glossy_tolerance"));
+            if (json.contains("view")) {
+                const nlohmann::json& view = json.at("view");
+                const auto at = [&](std::size_t i) {
+                    return real(view.at(i));
+                };
+                settings.view = Camera{
+                    .eye = {at(0), at(1), at(2)}, .target = {at(3), at(4), at(5)}, .fov_degrees = at(6)};
+            }
+        } catch (const std::exception&) {
+            reader_.fail("settings", "JSON with the settings");
+        }
+        return settings;
+    }
+
+    Quadtree quadtree() const {
+        const std::vector<std::uint8_t> bytes = reader_.elements<std::uint8_t>("quadtree");
+        std::uint32_t num_flags = 0;
+        if (bytes.size() < sizeof num_flags)
+            reader_.fail("quadtree", "split flags");
+        std::memcpy(&num_flags, bytes.data(), sizeof num_flags);
+        if (bytes.size() != sizeof num_flags + (std::size_t{num_flags} + 7) / 8)
+            reader_.fail("quadtree", "split flags");
+        std::vector<bool> flags(num_flags);
+        for (std::size_t i = 0; i < flags.size(); ++i)
+            flags[i] = (bytes[sizeof num_flags + i / 8] >> (i % 8) & 1) != 0;
+        try {
+            return Quadtree(flags);
+        } catch (const std::invalid_argument&) {
+            reader_.fail("quadtree", "split flags of six trees");
+        }
+    }
+
+    Transfer transfer(const Receivers& receivers) const {
+        Transfer transfer;
+        const std::size_t num_receivers = receivers.size();
+        transfer.quadtree = quadtree();
+        transfer.order = reader_.elements<std::uint32_t>("order", num_receivers);
+        std::vector<bool> seen(num_receivers);
+        for (const std::uint32_t receiver : transfer.order) {
+            if (receiver >= num_receivers || seen[receiver])
+                reader_.fail("order", "every receiver once");
+            seen[receiver] = true;
+            transfer.normals.push_back(receivers.normals[receiver]);
+        }
+        transfer.counts.num_receivers = num_receivers;
+        transfer.counts.num_leaves = transfer.quadtree.num_leaves();
+        transfer.counts.visible = reader_.elements<std::uint64_t>("visible");
+        transfer.counts.mixed = reader_.elements<std::uint64_t>("mixed");
+        transfer.counts.counts = reader_.elements<std::uint8_t>("counts");
+        try {
+            transfer.counts.index();
+        } catch (const std::invalid_argument&) {
+            reader_.fail("counts", "counts that fit the receivers and the tree");
+        }
+        if (has_glossy(reader_)) {
+            if (receivers.to_eye.empty() || receivers.surfaces.empty())
+                reader_.fail("g_specular_b", "directions to the eye and surfaces with highlights");
+            transfer.glossy = read_glossy(reader_, transfer.counts.num_blocks());
+        }
+        set_surfaces(transfer, receivers);
+        return transfer;
+    }
+
+    SectionReader reader_;
+};
+
+} // namespace
+
+std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
+    const bool on_vertices = std::holds_alternative<VertexLayout>(scene.layout);
+    if (on_vertices && scene.receivers.size() != 0 && scene.receivers.size() != scene.mesh.num_vertices())
+        throw std::invalid_argument(fmt::format("{}: expected one receiver per vertex, got {} for {}",
+                                                path.string(), scene.receivers.size(),
+                                                scene.mesh.num_vertices()));
+    const std::size_t num_receivers = on_vertices ? scene.mesh.num_vertices() : scene.receivers.size();
+    if (scene.transfer.num_receivers() != num_receivers ||
+        scene.mesh.normals.size() != scene.mesh.num_vertices())
+        throw std::invalid_argument(fmt::format(
+            "{}: expected the transfer of {} receivers and a normal for each of {} vertices, got {} and {}",
+            path.string(), num_receivers, scene.mesh.num_vertices(), scene.transfer.num_receivers(),
+            scene.mesh.normals.size()));
+    const VisibleCounts& counts = scene.transfer.counts;
+    Sections sections;
+    sections["settings"] = settings_json(scene.settings);
+    sections["positions"] = bytes_of(scene.mesh.positions);
+    sections["triangles"] = bytes_of(scene.mesh.triangles);
+    sections["normals"] = bytes_of(scene.mesh.normals);
+    if (!scene.mesh.colors.empty())
+        sections["colors"] = bytes_of(scene.mesh.colors);
+    if (!scene.mesh.uvs.empty())
+        sections["uvs"] = bytes_of(scene.mesh.uvs);
+    add_receiver_sections(sections, scene.receivers, scene.layout);
+    sections["order"] = bytes_of(scene.transfer.order);
+    sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
+    sections["visible"] = bytes_of(counts.visible);
+    sections["mixed"] = bytes_of(counts.mixed);
+    sections["counts"] = bytes_of(counts.counts);
+    if (scene.transfer.glossy)
+        add_glossy_sections(sections, *scene.transfer.glossy);
+    return write_sections(path, sections);
+}
+
+Scene load_scene(const std::filesystem::path& path) {
+    return scene_of(path, read_sections(path));
+}
+
+Scene scene_of(const std::filesystem::path& path, Sections&& sections) {
+    return SceneReader(path, std::move(sections)).scene();
+}
+
+std::uint64_t file_hash(const std::filesystem::path& path) {
+    const std::vector<std::byte> bytes = files::read(path);
+    return XXH64(bytes.data(), bytes.size(), 0);
+}
+
+} // namespace relumine::prt

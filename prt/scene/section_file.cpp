@@ -1,0 +1,231 @@
+#include "prt/scene/section_file.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include "files/compression.h"
+#include "files/output_file.h"
+
+namespace relumine::prt {
+
+namespace {
+
+// The file's structures are memory images; a big-endian reader would have to swap them.
+static_assert(std::endian::native == std::endian::little, ".prt files are little-endian");
+
+constexpr std::array<char, 8> Magic = {'R', 'E', 'L', 'U', 'M', 'I', 'N', 'E'};
+constexpr std::uint32_t Version = 2;
+constexpr std::uint32_t ByteOrderMark = 0x01020304;
+constexpr std::uint32_t MaxSections = 64;
+
+// Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second; level 12 gains 6 % more in five.
+constexpr int CompressionLevel = 6;
+
+struct Header {
+    std::array<char, 8> magic;
+    std::uint32_t byte_order_mark;
+    std::uint32_t version;
+    std::uint64_t file_size;
+    std::uint32_t num_sections;
+    std::uint32_t reserved;
+    std::uint64_t checksum; ///< of the header up to here and the section table
+};
+static_assert(sizeof(Header) == 40);
+
+struct SectionEntry {
+    std::array<char, 16> name; ///< padded with zeros
+    std::uint64_t offset;      ///< from the start of the file
+    std::uint64_t stored_size; ///< compressed
+    std::uint64_t size;        ///< uncompressed
+    std::uint64_t checksum;    ///< of the stored bytes
+};
+static_assert(sizeof(SectionEntry) == 48);
+
+std::uint64_t table_checksum(const Header& header, std::span<const SectionEntry> table) {
+    std::vector<std::byte> bytes(offsetof(Header, checksum) + table.size_bytes());
+    std::memcpy(bytes.data(), &header, offsetof(Header, checksum));
+    if (!table.empty())
+        std::memcpy(bytes.data() + offsetof(Header, checksum), table.data(), table.size_bytes());
+    return XXH64(bytes.data(), bytes.size(), 0);
+}
+
+class Reader {
+public:
+    explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(files::read(path)) {}
+
+    Sections sections() {
+        const Header header = checked_header();
+        const std::vector<SectionEntry> table = checked_table(header);
+        std::vector<std::vector<std::byte>> contents(table.size());
+        tbb::parallel_for(std::size_t{0}, table.size(),
+                          [&](std::size_t i) { contents[i] = content(table[i]); });
+        Sections result;
+        for (std::size_t i = 0; i < table.size(); ++i)
+            if (!result.emplace(name(table[i]), std::move(contents[i])).second)
+                fail("sections of different names", fmt::format("'{}' twice", name(table[i])));
+        return result;
+    }
+
+private:
+    [[noreturn]] void fail(std::string_view expected, std::string_view got) const {
+        throw std::runtime_error(fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
+    }
+
+    Header checked_header() const {
+        Header header;
+        if (bytes_.size() < sizeof header || std::memcmp(bytes_.data(), Magic.data(), Magic.size()) != 0)
+            fail("a .prt scene", "another kind of file");
+        std::memcpy(&header, bytes_.data(), sizeof header);
+        if (header.byte_order_mark == std::uint32_t{0x04030201})
+            fail("a little-endian .prt scene", "a big-endian one");
+        if (header.byte_order_mark != ByteOrderMark)
+            fail("a .prt scene", "a damaged header");
+        if (header.version > Version)
+            fail(fmt::format(".prt version {}", Version),
+                 fmt::format("version {}, made by a newer relumine", header.version));
+        if (header.version != Version)
+            fail(fmt::format(".prt version {}", Version), fmt::format("version {}", header.version));
+        if (header.file_size != bytes_.size())
+            fail(fmt::format("{} bytes", header.file_size),
+                 fmt::format("{} (truncated or damaged)", bytes_.size()));
+        if (header.num_sections > MaxSections ||
+            sizeof header + header.num_sections * sizeof(SectionEntry) > bytes_.size())
+            fail("a .prt scene", "a damaged header");
+        return header;
+    }
+
+    std::vector<SectionEntry> checked_table(const Header& header) const {
+        std::vector<SectionEntry> table(header.num_sections);
+        if (!table.empty())
+            std::memcpy(table.data(), bytes_.data() + sizeof header, table.size() * sizeof(SectionEntry));
+        if (table_checksum(header, table) != header.checksum)
+            fail("a matching checksum", "a damaged section table");
+        std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
+        for (const SectionEntry& entry : table) {
+            // One after the other, so that they are inside the file and every byte belongs to one.
+            const bool inside = entry.offset == end && entry.stored_size <= bytes_.size() - end;
+            end += inside ? entry.stored_size : 0;
+            // The size is believed only after the section's checksum; this bounds it all the same.
+            if (!inside || entry.size / files::MaxCompressionRatio > entry.stored_size)
+                fail("sections inside the file", "a damaged section table");
+            const std::string own_name = name(entry); // goes into messages
+            if (!std::all_of(own_name.begin(), own_name.end(), [](char c) { return c > ' ' && c <= '~'; }))
+                fail("names of sections", "a damaged section table");
+        }
+        if (end != bytes_.size())
+            fail("sections that fill the file", "a damaged section table");
+        return table;
+    }
+
+    static std::string name(const SectionEntry& entry) {
+        return {entry.name.begin(), std::find(entry.name.begin(), entry.name.end(), '\0')};
+    }
+
+    std::vector<std::byte> content(const SectionEntry& entry) const {
+        const std::byte* stored = bytes_.data() + entry.offset;
+        if (XXH64(stored, entry.stored_size, 0) != entry.checksum)
+            fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
+        if (ZSTD_getFrameContentSize(stored, entry.stored_size) != entry.size)
+            fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+        // What is hardly believable is allocated as it comes, so that a lie costs nothing.
+        constexpr std::uint64_t Cheap = std::uint64_t{1} << 26, BelievableRatio = 256;
+        if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
+            return content_piecewise(entry, Cheap);
+        std::vector<std::byte> result(entry.size);
+        const std::size_t size = ZSTD_decompress(result.data(), result.size(), stored, entry.stored_size);
+        if (ZSTD_isError(size) != 0 || size != entry.size)
+            fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+        return result;
+    }
+
+    std::vector<std::byte> content_piecewise(const SectionEntry& entry, std::uint64_t first_size) const {
+        const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
+                                                                              ZSTD_freeDCtx);
+        if (!context)
+            throw std::bad_alloc();
+        ZSTD_inBuffer in{.src = bytes_.data() + entry.offset, .size = entry.stored_size, .pos = 0};
+        std::vector<std::byte> result(std::min(first_size, entry.size));
+        for (std::size_t done = 0;;) {
+            ZSTD_outBuffer out{.dst = result.data(), .size = result.size(), .pos = done};
+            const std::size_t consumed = in.pos;
+            const std::size_t state = ZSTD_decompressStream(context.get(), &out, &in);
+            if (state == 0 && out.pos == entry.size && in.pos == in.size)
+                return result;
+            const bool has_progress = out.pos > done || in.pos > consumed;
+            if (ZSTD_isError(state) != 0 || state == 0 || !has_progress)
+                fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+            done = out.pos;
+            if (done == result.size() && done < entry.size)
+                result.resize(std::min(2 * result.size(), entry.size));
+        }
+    }
+
+    const std::filesystem::path& path_;
+    std::vector<std::byte> bytes_;
+};
+
+} // namespace
+
+std::uint64_t write_sections(const std::filesystem::path& path, const Sections& sections) {
+    if (sections.size() > MaxSections)
+        throw std::invalid_argument(
+            fmt::format("expected at most {} sections, got {}", MaxSections, sections.size()));
+    files::OutputFile file(path);
+    std::vector<const Sections::value_type*> in_order;
+    for (const auto& section : sections)
+        in_order.push_back(&section);
+    std::vector<std::vector<std::byte>> stored(in_order.size());
+    tbb::parallel_for(std::size_t{0}, stored.size(), [&](std::size_t i) {
+        stored[i] = files::compressed(in_order[i]->second, CompressionLevel);
+    });
+
+    Header header{.magic = Magic,
+                  .byte_order_mark = ByteOrderMark,
+                  .version = Version,
+                  .file_size = sizeof(Header) + stored.size() * sizeof(SectionEntry),
+                  .num_sections = static_cast<std::uint32_t>(stored.size()),
+                  .reserved = 0,
+                  .checksum = 0};
+    std::vector<SectionEntry> table(stored.size());
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const auto& [name, content] = *in_order[i];
+        if (name.empty() || name.size() > table[i].name.size())
+            throw std::invalid_argument(
+                fmt::format("expected a section name of 1 to 16 letters, got '{}'", name));
+        std::copy(name.begin(), name.end(), table[i].name.begin());
+        table[i].offset = header.file_size;
+        table[i].stored_size = stored[i].size();
+        table[i].size = content.size();
+        table[i].checksum = XXH64(stored[i].data(), stored[i].size(), 0);
+        header.file_size += stored[i].size();
+    }
+    header.checksum = table_checksum(header, table);
+
+    std::vector<std::byte> bytes(header.file_size);
+    std::memcpy(bytes.data(), &header, sizeof header);
+    if (!table.empty())
+        std::memcpy(bytes.data() + sizeof header, table.data(), table.size() * sizeof(SectionEntry));
+    for (std::size_t i = 0; i < table.size(); ++i)
+        std::copy(stored[i].begin(), stored[i].end(),
+                  bytes.begin() + static_cast<std::ptrdiff_t>(table[i].offset));
+    file.write(bytes);
+    file.commit();
+    return header.file_size;
+}
+
+Sections read_sections(const std::filesystem::path& path) {
+    return Reader(path).sections();
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,82 @@
+// Takes the sections of a .prt file apart into typed arrays.
+#pragma once
+
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "prt/scene/section_file.h"
+
+namespace relumine::prt {
+
+/// An array as a section stores it.
+template<typename Element>
+[[nodiscard]] std::vector<std::byte> bytes_of(const std::vector<Element>& elements) {
+    static_assert(std::is_trivially_copyable_v<Element>);
+    std::vector<std::byte> bytes(elements.size() * sizeof(Element));
+    if (!elements.empty())
+        std::memcpy(bytes.data(), elements.data(), bytes.size());
+    return bytes;
+}
+
+/// Split flags or masks, eight to a byte, lowest bit first.
+[[nodiscard]] std::vector<std::byte> packed(const std::vector<bool>& flags);
+
+/// Sections by name; every message names the file and the section.
+class SectionReader {
+public:
+    /// `path` is for messages.
+    SectionReader(std::filesystem::path path, Sections&& sections)
+        : path_(std::move(path)), sections_(std::move(sections)) {}
+
+    [[noreturn]] void fail(std::string_view section, std::string_view expected) const;
+
+    [[nodiscard]] bool has(const std::string& name) const { return sections_.contains(name); }
+    /// The section's bytes. Fails where there is none.
+    [[nodiscard]] const std::vector<std::byte>& bytes(const std::string& name) const;
+
+    /// As many elements as there are.
+    template<typename Element>
+    [[nodiscard]] std::vector<Element> elements(const std::string& name) const {
+        const std::vector<std::byte>& stored = bytes(name);
+        if (stored.size() % sizeof(Element) != 0)
+            fail(name, fmt::format("a multiple of {} bytes", sizeof(Element)));
+        std::vector<Element> result(stored.size() / sizeof(Element));
+        if (!result.empty())
+            std::memcpy(result.data(), stored.data(), stored.size());
+        return result;
+    }
+
+    /// Exactly `count` elements; none where an optional section is absent.
+    template<typename Element>
+    [[nodiscard]] std::vector<Element> elements(const std::string& name, std::size_t count,
+                                                bool optional = false) const {
+        if (optional && !has(name))
+            return {};
+        std::vector<Element> result = elements<Element>(name);
+        if (result.size() != count)
+            fail(name, fmt::format("{} elements", count));
+        return result;
+    }
+
+    /// Exactly `count` bits and zeros up to the byte's end.
+    [[nodiscard]] std::vector<bool> bits(const std::string& name, std::size_t count) const;
+
+private:
+    std::filesystem::path path_;
+    Sections sections_;
+};
+
+/// Numbers of a JSON object, which the JSON library would cast without a look at the range. They throw std::out_of_range.
+[[nodiscard]] std::uint32_t natural(const nlohmann::json& json);
+[[nodiscard]] float real(const nlohmann::json& json);
+
+} // namespace relumine::prt

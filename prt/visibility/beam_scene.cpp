@@ -1,0 +1,156 @@
+#include "prt/visibility/beam_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "mesh/flat_regions.h"
+#include "prt/visibility/beam_kernels.h"
+#include "prt/visibility/bit_matrix.h"
+#include "prt/visibility/parallel_rays.h"
+#include "prt/visibility/shaft.h"
+#include "prt/visibility/shaft_leaves.h"
+#include "prt/visibility/triangle_tree.h"
+
+namespace relumine::prt {
+namespace {
+
+/// Coordinates beyond which triple products overflow, in this file's tests or in the exact tracer's, whose answers are then its own.
+constexpr float LargestReach = 1e12f;
+
+/// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right through an edge may depend on the packet's other rays.
+void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch, std::uint64_t doubts,
+         std::uint64_t asked, std::uint64_t& rays) {
+    for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
+        constexpr std::uint64_t PacketBits = 0xffff;
+        if ((doubts >> (p * PacketSize) & PacketBits) == 0)
+            continue;
+        const auto active = static_cast<std::uint32_t>(asked >> (p * PacketSize) & PacketBits);
+        const std::uint64_t blocked = exact.occluded(origin, patch.packets[p], active);
+        rays &= ~(blocked << (p * PacketSize));
+    }
+}
+
+/// A word for each receiver, bits are directions; or, for each 64 receivers, a word for each direction.
+using RayWords = std::array<std::uint64_t, ReceiverBlock::MaxSize>;
+
+/// Turns one into the other.
+void transpose_squares(RayWords& words) {
+    for (std::size_t first = 0; first < words.size(); first += DirectionPatch::Size)
+        transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first, DirectionPatch::Size));
+}
+
+/// Around the rays that are asked for.
+Shaft shaft_of_rays(const ReceiverBlock& block, const PatchPlane& plane, const TriangleTree& tree,
+                    float reach, std::span<const std::uint64_t> rays) {
+    Shaft shaft = shaft_of(plane, block.mean_normal, reach);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (rays[i] == 0)
+            continue;
+        shaft.origins_low = glm::min(shaft.origins_low, block.origins[i]);
+        shaft.origins_high = glm::max(shaft.origins_high, block.origins[i]);
+        const glm::vec3 origin = block.origins[i] - tree.centre;
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
+            shaft.offsets[k] =
+                std::min(shaft.offsets[k], glm::dot(shaft.normals[k], origin) - shaft.margins[k]);
+    }
+    return shaft;
+}
+
+/// Where directions meet more leaves on average, as those of receivers far apart do, the exact tracer is faster. Measured.
+constexpr std::size_t LeavesPerRay = 4;
+
+/// One direction after the other, all receivers at once; those that are left when it does not pay are the exact tracer's.
+void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverBlock& block,
+                        const BlockOrigins& origins, const DirectionPatch& patch, const PatchPlane& plane,
+                        std::span<std::uint64_t> rays) {
+    static_assert(std::tuple_size_v<ReceiverBits> * DirectionPatch::Size == ReceiverBlock::MaxSize);
+    RayWords lit{}, doubts{};
+    std::copy(rays.begin(), rays.end(), lit.begin());
+    transpose_squares(lit);
+    std::size_t num_leaves = 0, num_rays = ReceiverBlock::MaxSize;
+    for (std::size_t j = 0; j < patch.num_directions; ++j) {
+        ReceiverBits active;
+        for (std::size_t word = 0; word < active.size(); ++word)
+            active[word] = lit[word * DirectionPatch::Size + j];
+        if (active == ReceiverBits{})
+            continue;
+        if (num_leaves > LeavesPerRay * num_rays) {
+            for (std::size_t word = 0; word < active.size(); ++word)
+                doubts[word * DirectionPatch::Size + j] = active[word];
+            continue;
+        }
+        const ParallelResult result =
+            test_parallel_rays(tree, patch, plane, j, block.mean_normal, origins, active);
+        num_leaves += result.num_leaves;
+        for (std::size_t word = 0; word < active.size(); ++word) {
+            num_rays += static_cast<std::size_t>(std::popcount(active[word]));
+            lit[word * DirectionPatch::Size + j] &= ~result.blocked[word];
+            doubts[word * DirectionPatch::Size + j] = result.doubtful[word];
+        }
+    }
+    transpose_squares(lit);
+    transpose_squares(doubts);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        const std::uint64_t asked = std::exchange(rays[i], lit[i]);
+        ask(exact, block.origins[i], patch, doubts[i], asked, rays[i]);
+    }
+}
+
+} // namespace
+
+struct BeamScene::Impl {
+    TriangleTree tree;
+    const Blockers& exact;
+    std::size_t crowded_shaft;
+};
+
+static_assert(BeamScene::CrowdedShaft <= ShaftLeaves::MaxSize);
+
+BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact, std::size_t crowded_shaft)
+    : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact,
+                     std::min(crowded_shaft, CrowdedShaft)}) {}
+
+BeamScene::~BeamScene() = default;
+BeamScene::BeamScene(BeamScene&&) noexcept = default;
+BeamScene& BeamScene::operator=(BeamScene&&) noexcept = default;
+
+std::uint32_t BeamScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                  std::uint32_t active) const {
+    return impl_->exact.occluded(origin, directions, active);
+}
+
+void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+                              std::span<std::uint64_t> rays) const {
+    const auto& [tree, exact, crowded_shaft] = *impl_;
+    if (rays.empty())
+        return;
+    const PatchPlane plane = patch_plane(patch);
+    const BlockOrigins origins(block, tree);
+    if (!plane.narrow || !(origins.reach < LargestReach)) {
+        exact.clear_blocked(block, patch, rays);
+        return;
+    }
+    thread_local ShaftLeaves leaves;
+    const Shaft shaft = shaft_of_rays(block, plane, tree, origins.reach, rays);
+    if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
+        clear_by_direction(tree, exact, block, origins, patch, plane, rays);
+        return;
+    }
+    if (leaves.size == 0)
+        return;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+        if (rays[i] == 0)
+            continue;
+        const std::uint64_t asked = rays[i];
+        const std::uint64_t doubts = clear_certain(tree, plane, shaft, leaves, block.origins[i], rays[i]);
+        ask(exact, block.origins[i], patch, doubts, asked, rays[i]);
+    }
+}
+
+} // namespace relumine::prt

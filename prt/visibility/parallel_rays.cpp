@@ -1,0 +1,358 @@
+#include "prt/visibility/parallel_rays.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include <glm/common.hpp>
+
+#include "prt/visibility/bit_matrix.h"
+#include "prt/visibility/shaft_leaves.h"
+#include "prt/visibility/triangle_verdict.h"
+
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "prt/visibility/parallel_rays.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "prt/visibility/mask_bits-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::prt::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+constexpr std::size_t Width = TriangleTree::Width;
+constexpr std::size_t MaxReceivers = ReceiverBlock::MaxSize;
+
+/// Beyond so many leaves in one direction the exact tracer is faster. Measured.
+constexpr std::size_t MostLeaves = 1024;
+
+/// Bounds as those of beam_kernels.cpp, with u = 2^-24, L = longest edge and D = the largest distance of a corner from the middle plus that of the
+/// farthest origin, by components. |s|, |t| <= 2 and off by 2 u. A moved coordinate is at most 3 D and off by 8 u D, a moved
+/// edge at most 3 L and off by 8 u L. The constant's two products are off by 48 u L D each and a rounding of 9 L D, their difference by one of
+/// 18 L D; the two products with the origin by as much, their sums by one of 27 and one of 36 L D, and as many again where
+/// products are not fused: less than 400 u L D. What the exact tracer adds is less than 120 u L D: see beam_kernels.cpp.
+constexpr float EdgeTolerance = 520.0f * Rounding;
+/// The normal is at most 2 L^2 and off by 8 u L^2; its product with a corner or an origin off by less than 60 u L^2 D, the difference by
+/// 12 more; the exact tracer's by less than 40.
+constexpr float SideTolerance = 180.0f * Rounding;
+constexpr float Smallest = 1e-35f; // products below are lost
+
+/// A leaf's triangles as seen along the rays, about the middle of the block.
+///
+/// The rays' direction is w = sign * axis + s * axis_s + t * axis_t. Every point is moved along w to the plane where its coordinate `axis`
+/// is 0; its other two coordinates stay, and triple products with w become products of two edges in that plane.
+struct SeenLeaf {
+    using Row = std::array<float, Width>;
+    alignas(64) Row s_low, s_high, t_low, t_high; ///< around each triangle
+    /// Edge function k of an origin o is constant - edge_t * o_s + edge_s * o_t; beyond `certain` it has a sign.
+    std::array<Row, 3> edge_s, edge_t, constant;
+    Row certain;
+    /// normal . (corner 0 - o) = height - normal . o, along axis, axis_s, axis_t; beyond `side_certain` it has a sign.
+    std::array<Row, 3> normal;
+    Row height, side_certain;
+};
+
+/// That of the rays.
+struct Direction {
+    std::size_t axes[3]; ///< axis, axis_s, axis_t
+    float sign, s, t;
+    glm::vec3 unit; ///< as the exact tracer has it
+};
+
+template<class D>
+void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction, const BlockOrigins& origins,
+         SeenLeaf& seen) {
+    using Vector = hn::Vec<D>;
+    const Vector along_s = hn::Set(d, direction.sign * direction.s);
+    const Vector along_t = hn::Set(d, direction.sign * direction.t);
+    const Vector sign = hn::Set(d, direction.sign);
+    for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
+        Vector corner[3][3], from_middle[3][3], edge[3][3];
+        Vector reach = hn::Zero(d);
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t a = 0; a < 3; ++a) {
+                corner[k][a] = hn::Load(d, leaf.corners[3 * k + direction.axes[a]].data() + lane);
+                const float middle = origins.middle[static_cast<int>(direction.axes[a])];
+                from_middle[k][a] = hn::Sub(corner[k][a], hn::Set(d, middle));
+                reach = hn::Max(reach, hn::Abs(from_middle[k][a]));
+            }
+        for (std::size_t k = 0; k < 3; ++k)
+            for (std::size_t a = 0; a < 3; ++a)
+                edge[k][a] = hn::Sub(corner[(k + 1) % 3][a], corner[k][a]);
+        reach = hn::Add(reach, hn::Set(d, origins.radius));
+        const Vector longest = hn::Load(d, leaf.longest.data() + lane);
+        const Vector product = hn::Mul(longest, reach);
+        const auto store = [&](Vector v, SeenLeaf::Row& row) {
+            hn::Store(v, d, row.data() + lane);
+        };
+
+        Vector moved_s[3], moved_t[3];
+        for (std::size_t k = 0; k < 3; ++k) {
+            moved_s[k] = hn::NegMulAdd(along_s, from_middle[k][0], from_middle[k][1]);
+            moved_t[k] = hn::NegMulAdd(along_t, from_middle[k][0], from_middle[k][2]);
+            const Vector edge_s = hn::Mul(sign, hn::NegMulAdd(along_s, edge[k][0], edge[k][1]));
+            const Vector edge_t = hn::Mul(sign, hn::NegMulAdd(along_t, edge[k][0], edge[k][2]));
+            store(edge_s, seen.edge_s[k]);
+            store(edge_t, seen.edge_t[k]);
+            store(hn::MulSub(moved_s[k], edge_t, hn::Mul(moved_t[k], edge_s)), seen.constant[k]);
+        }
+        store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)), seen.certain);
+        // Both sides are off by 8 u D, and the exact tracer may hit what is 16 roundings of its distance off, 3 sqrt(3) times that when moved.
+        const Vector lost = hn::MulAdd(reach, hn::Set(d, 128.0f * Rounding), hn::Set(d, Smallest));
+        store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_low);
+        store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_high);
+        store(hn::Sub(hn::Min(hn::Min(moved_t[0], moved_t[1]), moved_t[2]), lost), seen.t_low);
+        store(hn::Add(hn::Max(hn::Max(moved_t[0], moved_t[1]), moved_t[2]), lost), seen.t_high);
+
+        Vector height = hn::Zero(d);
+        for (std::size_t a = 0; a < 3; ++a) {
+            const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+            const Vector normal = hn::MulSub(edge[0][b], edge[1][c], hn::Mul(edge[0][c], edge[1][b]));
+            store(normal, seen.normal[a]);
+            height = hn::MulAdd(normal, from_middle[0][a], height);
+        }
+        store(height, seen.height);
+        store(hn::MulAdd(hn::Mul(product, longest), hn::Set(d, SideTolerance), hn::Set(d, Smallest)),
+              seen.side_certain);
+    }
+}
+
+/// The receivers of a block as the rays see them, in groups of as many as a vector has lanes.
+struct SeenReceivers {
+    using Row = BlockOrigins::Row;
+    std::array<const float*, 3> origin; ///< from the middle, along axis, axis_s, axis_t
+    alignas(64) Row s, t;               ///< moved along the rays
+    /// Of each group that has rays: what holds its s and t, and the planes of its own shaft.
+    Row s_low, s_high, t_low, t_high;
+    std::array<Row, Shaft::NumPlanes> offsets; ///< infinite where a group has no rays left
+};
+
+template<class D>
+hn::Mask<D> mask_of(D d, const ReceiverBits& bits, std::size_t first) {
+    const std::uint64_t of_group = bits[first / WordSize] >> (first % WordSize);
+    std::uint8_t bytes[8];
+    std::memcpy(bytes, &of_group, sizeof bytes);
+    return hn::LoadMaskBits(d, bytes);
+}
+
+/// Also sets the shaft's offsets to those of all groups.
+template<class D>
+void see(D d, const Direction& direction, const BlockOrigins& origins, const ReceiverBits& active,
+         Shaft& shaft, SeenReceivers& seen) {
+    using Vector = hn::Vec<D>;
+    const Vector infinity = hn::Set(d, std::numeric_limits<float>::infinity());
+    const Vector along_s = hn::Set(d, direction.sign * direction.s);
+    const Vector along_t = hn::Set(d, direction.sign * direction.t);
+    for (std::size_t a = 0; a < 3; ++a)
+        seen.origin[a] = origins.from_middle[direction.axes[a]].data();
+    for (auto& row : seen.offsets)
+        row.fill(std::numeric_limits<float>::infinity());
+    for (std::size_t first = 0; first < MaxReceivers; first += hn::Lanes(d)) {
+        const auto mask = mask_of(d, active, first);
+        if (hn::AllFalse(d, mask))
+            continue;
+        const std::size_t group = first / hn::Lanes(d);
+        const auto least = [&](Vector v) {
+            return hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(mask, v, infinity)));
+        };
+        const Vector o = hn::Load(d, seen.origin[0] + first);
+        const Vector s = hn::NegMulAdd(along_s, o, hn::Load(d, seen.origin[1] + first));
+        const Vector t = hn::NegMulAdd(along_t, o, hn::Load(d, seen.origin[2] + first));
+        hn::Store(s, d, seen.s.data() + first);
+        hn::Store(t, d, seen.t.data() + first);
+        seen.s_low[group] = least(s);
+        seen.s_high[group] = -least(hn::Neg(s));
+        seen.t_low[group] = least(t);
+        seen.t_high[group] = -least(hn::Neg(t));
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
+            Vector along = hn::Zero(d);
+            for (std::size_t a = 0; a < 3; ++a)
+                along = hn::MulAdd(hn::Set(d, shaft.normals[k][static_cast<int>(a)]),
+                                   hn::Load(d, origins.from_centre[a].data() + first), along);
+            seen.offsets[k][group] = least(along) - shaft.margins[k];
+            shaft.offsets[k] = std::min(shaft.offsets[k], seen.offsets[k][group]);
+        }
+    }
+}
+
+/// Tests the rays of a group against a leaf's triangles. Bit i of `rays` is the group's receiver i; clears those that are blocked for certain, and
+/// returns those that are in doubt.
+template<class D>
+std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& seen, const Direction& direction,
+                        const BlockOrigins& origins, const SeenReceivers& receivers, std::size_t group,
+                        std::uint32_t& rays) {
+    using Vector = hn::Vec<D>;
+    std::uint32_t near = 0;
+    for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
+        const auto row = [&](const SeenLeaf::Row& values) {
+            return hn::Load(d, values.data() + lane);
+        };
+        const auto s = hn::And(hn::Ge(hn::Set(d, receivers.s_high[group]), row(seen.s_low)),
+                               hn::Ge(row(seen.s_high), hn::Set(d, receivers.s_low[group])));
+        const auto t = hn::And(hn::Ge(hn::Set(d, receivers.t_high[group]), row(seen.t_low)),
+                               hn::Ge(row(seen.t_high), hn::Set(d, receivers.t_low[group])));
+        near |= bits_of(d, hn::And(s, t)) << lane;
+    }
+    const std::size_t first = group * hn::Lanes(d);
+    const Vector origin[3] = {hn::Load(d, receivers.origin[0] + first),
+                              hn::Load(d, receivers.origin[1] + first),
+                              hn::Load(d, receivers.origin[2] + first)};
+    const Vector origin_s = hn::Load(d, receivers.s.data() + first);
+    const Vector origin_t = hn::Load(d, receivers.t.data() + first);
+    std::uint32_t doubts = 0;
+    for (near &= (1u << leaf.size) - 1; near != 0; near &= near - 1) {
+        const auto triangle = static_cast<std::size_t>(std::countr_zero(near));
+        const auto all = [&](const SeenLeaf::Row& values) {
+            return hn::Set(d, values[triangle]);
+        };
+        Vector side = all(seen.height);
+        for (std::size_t a = 0; a < 3; ++a)
+            side = hn::NegMulAdd(all(seen.normal[a]), origin[a], side);
+        const auto edge_function = [&](std::size_t k) {
+            const Vector e = hn::MulAdd(all(seen.edge_s[k]), origin_t,
+                                        hn::NegMulAdd(all(seen.edge_t[k]), origin_s, all(seen.constant[k])));
+            return hn::Xor(e, hn::And(side, hn::SignBit(d))); // turned so that a hit's are all positive
+        };
+        const Vector e0 = edge_function(0);
+        const Vector e1 = edge_function(1);
+        const Vector e2 = edge_function(2);
+        const Vector least = hn::Min(hn::Min(e0, e1), e2);
+        const Vector certain = all(seen.certain);
+        const auto maybe = hn::Ge(least, hn::Neg(certain));
+        const auto edge_on = hn::Not(hn::Gt(hn::Abs(side), all(seen.side_certain)));
+        if (hn::AllFalse(d, hn::Or(maybe, edge_on)))
+            continue;
+        const std::uint32_t hits = bits_of(d, hn::AndNot(edge_on, hn::Gt(least, certain)));
+        // Seen from near its plane, a triangle is missed for certain only where its line is from both sides.
+        const Vector most = hn::Max(hn::Max(e0, e1), e2);
+        const auto unsure = hn::Or(maybe, hn::And(edge_on, hn::Le(most, certain)));
+        rays &= ~hits;
+        for (std::uint32_t rest = bits_of(d, unsure) & rays; rest != 0; rest &= rest - 1) {
+            const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+            const Verdict verdict = judge(leaf, triangle, origins.all[first + i], direction.unit);
+            if (verdict == Verdict::Hit)
+                rays &= ~(1u << i);
+            else if (verdict == Verdict::Doubt)
+                doubts |= 1u << i;
+        }
+        if (rays == 0)
+            return 0;
+    }
+    return doubts & rays;
+}
+
+/// Tests a leaf with all groups of receivers whose own shafts it reaches into.
+template<class D>
+void test_groups(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& found,
+                 const Direction& direction, const BlockOrigins& origins, SeenReceivers& receivers,
+                 ReceiverBits& lit, ReceiverBits& doubtful) {
+    const std::size_t num_lanes = hn::Lanes(d);
+    const std::size_t num_groups = MaxReceivers / num_lanes;
+    const std::uint64_t lanes = (std::uint64_t{1} << num_lanes) - 1;
+    bool is_seen = false;
+    SeenLeaf seen;
+    for (std::size_t first_group = 0; first_group < num_groups; first_group += num_lanes) {
+        auto inside = hn::FirstN(d, num_groups - first_group);
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
+            inside = hn::And(inside, hn::Le(hn::LoadU(d, receivers.offsets[k].data() + first_group),
+                                            hn::Set(d, found.supports[k])));
+        for (std::uint32_t bits = bits_of(d, inside); bits != 0; bits &= bits - 1) {
+            if (!is_seen)
+                see(d, leaf, direction, origins, seen);
+            is_seen = true;
+            const std::size_t group = first_group + static_cast<std::size_t>(std::countr_zero(bits));
+            const std::size_t word = group * num_lanes / WordSize;
+            const std::size_t shift = group * num_lanes % WordSize;
+            const auto asked = static_cast<std::uint32_t>(lit[word] >> shift & lanes);
+            std::uint32_t rays = asked;
+            const std::uint64_t doubts = test_leaf(d, leaf, seen, direction, origins, receivers, group, rays);
+            lit[word] &= ~(std::uint64_t{asked & ~rays} << shift);
+            doubtful[word] |= doubts << shift;
+            if (rays == 0) // it needs no more leaves
+                receivers.offsets[0][group] = std::numeric_limits<float>::infinity();
+        }
+    }
+}
+
+ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
+                                  const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
+                                  const BlockOrigins& origins, const ReceiverBits& active) {
+    const hn::CappedTag<float, Width> d;
+    const auto axis = static_cast<std::size_t>(patch.axis);
+    const Direction direction{.axes = {axis, (axis + 1) % 3, (axis + 2) % 3},
+                              .sign = patch.sign,
+                              .s = patch.s[j],
+                              .t = patch.t[j],
+                              .unit = directions.direction(j)};
+    constexpr float Slack = 8.0f * Rounding; // of s and t
+    Shaft shaft = shaft_of({.axis = patch.axis,
+                            .sign = patch.sign,
+                            .s0 = patch.s[j] - Slack,
+                            .s1 = patch.s[j] + Slack,
+                            .t0 = patch.t[j] - Slack,
+                            .t1 = patch.t[j] + Slack},
+                           mean_normal, origins.reach);
+    SeenReceivers receivers;
+    see(d, direction, origins, active, shaft, receivers);
+    thread_local ShaftBoxes boxes;
+    if (!find_boxes(tree, shaft, MostLeaves, boxes))
+        return {.blocked = {}, .doubtful = active, .num_leaves = boxes.found.size()};
+    ReceiverBits lit = active;
+    ReceiverBits doubtful{};
+    for (const std::uint64_t key : boxes.order) {
+        const ShaftBoxes::Found& found = boxes.found[key & 0xffffffff];
+        test_groups(d, tree.leaves[static_cast<std::size_t>(found.leaf)], found, direction, origins,
+                    receivers, lit, doubtful);
+    }
+    ParallelResult result{.num_leaves = boxes.found.size()};
+    for (std::size_t i = 0; i < lit.size(); ++i) {
+        result.blocked[i] = active[i] & ~lit[i];
+        result.doubtful[i] = doubtful[i] & lit[i];
+    }
+    return result;
+}
+
+} // namespace relumine::prt::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::prt {
+
+namespace {
+HWY_EXPORT(test_parallel_rays);
+} // namespace
+
+BlockOrigins::BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree)
+    : all(block.origins), reach(tree.extent) {
+    glm::vec3 low = block.origins.front();
+    glm::vec3 high = low;
+    for (const glm::vec3& origin : block.origins) {
+        low = glm::min(low, origin);
+        high = glm::max(high, origin);
+    }
+    middle = 0.5f * (low + high);
+    for (std::size_t i = 0; i < ReceiverBlock::MaxSize; ++i) {
+        const glm::vec3& origin = block.origins[i < block.origins.size() ? i : 0];
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto a = static_cast<std::size_t>(axis);
+            from_centre[a][i] = origin[axis] - tree.centre[axis];
+            from_middle[a][i] = origin[axis] - middle[axis];
+            reach = std::max(reach, std::abs(from_centre[a][i]));
+            radius = std::max(radius, std::abs(from_middle[a][i]));
+        }
+    }
+}
+
+ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
+                                  const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
+                                  const BlockOrigins& origins, const ReceiverBits& active) {
+    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, directions, patch, j, mean_normal, origins, active);
+}
+
+} // namespace relumine::prt
+#endif // HWY_ONCE

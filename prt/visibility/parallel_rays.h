@@ -1,0 +1,53 @@
+// Testing the rays of a block of receivers in one direction against the triangles before them. Vectorised with run-time dispatch.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+#include "prt/visibility/blockers.h"
+#include "prt/visibility/shaft.h"
+#include "prt/visibility/triangle_tree.h"
+
+namespace relumine::prt {
+
+/// Where a block's rays start, in the layout that the kernel reads. Receivers beyond the block's size repeat its first.
+struct BlockOrigins {
+    using Row = std::array<float, ReceiverBlock::MaxSize>;
+
+    BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree);
+
+    alignas(64) std::array<Row, 3> from_centre; ///< x, y, z from the tree's centre
+    alignas(64) std::array<Row, 3> from_middle; ///< from the middle of the block
+    std::span<const glm::vec3> all;             ///< as they are
+    glm::vec3 middle{0.0f};
+    float radius = 0.0f; ///< largest coordinate from the middle
+    float reach =
+        0.0f; ///< largest coordinate of the tree's triangles and the origins, from the tree's centre
+};
+
+/// One bit for each receiver of a block.
+using ReceiverBits = std::array<std::uint64_t, ReceiverBlock::MaxSize / 64>;
+
+struct ParallelResult {
+    ReceiverBits blocked{};     ///< for certain
+    ReceiverBits doubtful{};    ///< of the rest, those that are not certain to miss everything
+    std::size_t num_leaves = 0; ///< that the rays may meet
+};
+
+/// Tests the rays of `active` receivers in the patch's direction j. Seen along it, receivers are points and triangles stay triangles:
+///
+///          . . .             16 receivers at a time are compared with one edge at a time, two products each. Receivers that are
+///      /\ . . . .            neighbours on a fine mesh look at the same few triangles, however fine it is, while a patch
+///     /__\ . . .             of directions meets more and more.
+///
+/// Rays among too many triangles are all in doubt.
+[[nodiscard]] ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
+                                                const PatchPlane& patch, std::size_t j,
+                                                const glm::vec3& mean_normal, const BlockOrigins& origins,
+                                                const ReceiverBits& active);
+
+} // namespace relumine::prt

@@ -1,0 +1,115 @@
+#include "prt/visibility/shaft.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+namespace relumine::prt {
+namespace {
+
+/// Widest side of a patch's rectangle, in units of its distance. Beyond it a shaft holds most of a scene.
+constexpr float WidestPatch = 1.1f;
+
+/// Sum of the absolute components.
+float norm_1(const glm::vec3& v) {
+    return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+}
+
+float bins_per_unit(float begin, float end) {
+    return static_cast<float>(PatchPlane::NumBins) / std::max(end - begin, 1e-6f);
+}
+
+/// The same sum as for the ends of what a box covers, so that rounding keeps their order.
+std::size_t bin(float x, float begin, float bins_per_unit) {
+    const float place = std::floor((x - begin) * bins_per_unit);
+    return static_cast<std::size_t>(std::clamp(place, 0.0f, static_cast<float>(PatchPlane::NumBins - 1)));
+}
+
+} // namespace
+
+PatchPlane patch_plane(const DirectionPatch& patch) {
+    PatchPlane plane;
+    const glm::vec3 first = patch.direction(0);
+    const glm::vec3 size = glm::abs(first);
+    plane.axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    plane.sign = first[plane.axis] > 0.0f ? 1.0f : -1.0f;
+    plane.s0 = plane.t0 = std::numeric_limits<float>::infinity();
+    plane.s1 = plane.t1 = -plane.s0;
+    for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
+        const glm::vec3 w = patch.direction(j);
+        const float along = plane.sign * w[plane.axis];
+        if (!(along > 0.1f))
+            return plane;
+        plane.s[j] = w[(plane.axis + 1) % 3] / along;
+        plane.t[j] = w[(plane.axis + 2) % 3] / along;
+        plane.s0 = std::min(plane.s0, plane.s[j]);
+        plane.s1 = std::max(plane.s1, plane.s[j]);
+        plane.t0 = std::min(plane.t0, plane.t[j]);
+        plane.t1 = std::max(plane.t1, plane.t[j]);
+    }
+    plane.narrow = std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) < WidestPatch &&
+                   std::max({plane.s1, -plane.s0, plane.t1, -plane.t0}) < 2.0f;
+    // The quotients are off by a rounding of themselves.
+    constexpr float Slack = 8.0f * Rounding;
+    plane.s0 -= Slack;
+    plane.s1 += Slack;
+    plane.t0 -= Slack;
+    plane.t1 += Slack;
+    plane.bins_per_s = bins_per_unit(plane.s0, plane.s1);
+    plane.bins_per_t = bins_per_unit(plane.t0, plane.t1);
+    for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
+        const std::uint64_t bit = std::uint64_t{1} << j;
+        plane.from_s[bin(plane.s[j], plane.s0, plane.bins_per_s)] |= bit;
+        plane.from_t[bin(plane.t[j], plane.t0, plane.bins_per_t)] |= bit;
+    }
+    std::partial_sum(plane.from_s.begin(), plane.from_s.end(), plane.until_s.begin(), std::bit_or());
+    std::partial_sum(plane.from_t.begin(), plane.from_t.end(), plane.until_t.begin(), std::bit_or());
+    std::partial_sum(plane.from_s.rbegin(), plane.from_s.rend(), plane.from_s.rbegin(), std::bit_or());
+    std::partial_sum(plane.from_t.rbegin(), plane.from_t.rend(), plane.from_t.rbegin(), std::bit_or());
+    return plane;
+}
+
+/// The first four pass through the sides of the rectangle, the fifth is behind the
+/// receivers, the sixth is the receivers' own ground, turned towards the patch until all directions leave it.
+Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal, float reach) {
+    const auto vector = [&](float along, float s, float t) {
+        glm::vec3 v;
+        v[patch.axis] = patch.sign * along;
+        v[(patch.axis + 1) % 3] = s;
+        v[(patch.axis + 2) % 3] = t;
+        return v;
+    };
+    Shaft shaft;
+    shaft.axis = patch.axis;
+    shaft.sign = patch.sign;
+    shaft.reach = reach;
+    shaft.normals = {vector(-patch.s0, 1, 0), vector(patch.s1, -1, 0), vector(-patch.t0, 0, 1),
+                     vector(patch.t1, 0, -1), vector(1, 0, 0),         vector(1, 0, 0)};
+    shaft.corners = {vector(1, patch.s0, patch.t0), vector(1, patch.s1, patch.t0),
+                     vector(1, patch.s0, patch.t1), vector(1, patch.s1, patch.t1)};
+    const float length = glm::length(mean_normal);
+    if (length > 0.0f) {
+        const glm::vec3 normal = mean_normal / length;
+        float least = std::numeric_limits<float>::infinity();
+        for (const glm::vec3& corner : shaft.corners)
+            least = std::min(least, glm::dot(normal, corner));
+        constexpr float Slack = 32.0f * Rounding; // of that product
+        const float turn = std::max(0.0f, Slack - least);
+        shaft.normals.back() = normal + turn * vector(1, 0, 0);
+    }
+    for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
+        // Moving to the tree's centre rounds once, the products and sums three times, on both sides: 8. The exact tracer may hit what is 16 roundings
+        // of its distance off, which is 2 sqrt(3) of the reach at most: 56. The bound is still far below the usual bias.
+        shaft.margins[k] =
+            96.0f * Rounding * norm_1(shaft.normals[k]) * reach + std::numeric_limits<float>::min();
+    shaft.offsets.fill(std::numeric_limits<float>::infinity());
+    shaft.origins_low = glm::vec3(std::numeric_limits<float>::infinity());
+    shaft.origins_high = -shaft.origins_low;
+    return shaft;
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,186 @@
+#include "relight/pictures/environment_picture.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "cubemap/doctor/bright_spot.h"
+#include "cubemap/doctor/sky_angles.h"
+#include "cubemap/resample/resample.h"
+#include "relight/pictures/picture.h"
+
+namespace relumine::relight {
+
+namespace {
+
+constexpr int Width = 1024, Height = 512;
+/// Size of a letter's dots.
+constexpr int Dot = 2;
+
+struct Glyph {
+    char letter;
+    std::array<std::string_view, 7> rows;
+};
+
+constexpr std::array<Glyph, 9> Glyphs = {{
+    {'+', {".....", "..#..", "..#..", "#####", "..#..", "..#..", "....."}},
+    {'-', {".....", ".....", ".....", "#####", ".....", ".....", "....."}},
+    {'X', {"#...#", "#...#", ".#.#.", "..#..", ".#.#.", "#...#", "#...#"}},
+    {'Y', {"#...#", "#...#", ".#.#.", "..#..", "..#..", "..#..", "..#.."}},
+    {'Z', {"#####", "....#", "...#.", "..#..", ".#...", "#....", "#####"}},
+    {'s', {".....", ".....", ".####", "#....", ".###.", "....#", "####."}},
+    {'u', {".....", ".....", "#...#", "#...#", "#...#", "#..##", ".##.#"}},
+    {'n', {".....", ".....", "#.##.", "##..#", "#...#", "#...#", "#...#"}},
+    {'?', {".###.", "#...#", "....#", "...#.", "..#..", ".....", "..#.."}},
+}};
+
+class Canvas {
+public:
+    explicit Canvas(relight::Picture& picture) : picture_(picture) {}
+
+    void put(int x, int y, const glm::vec3& colour, float opacity = 1.0f) {
+        if (x < 0 || y < 0 || x >= Width || y >= Height)
+            return;
+        glm::vec3& pixel = picture_.pixels[static_cast<std::size_t>(y) * Width + static_cast<std::size_t>(x)];
+        pixel = glm::mix(pixel, colour, opacity);
+    }
+
+    /// A rectangle's pixels.
+    void box(int x0, int y0, int x1, int y1, const glm::vec3& colour, float opacity) {
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x)
+                put(x, y, colour, opacity);
+    }
+
+    /// Centred at (x, y) and moved into the picture.
+    void text(int x, int y, std::string_view letters, const glm::vec3& colour) {
+        const int width = static_cast<int>(letters.size()) * 6 * Dot + Dot, height = 9 * Dot;
+        const int left = std::clamp(x - width / 2, 0, Width - width);
+        const int top = std::clamp(y - height / 2, 0, Height - height);
+        box(left, top, left + width, top + height, glm::vec3(0.0f), 0.7f);
+        int start = left + Dot;
+        for (const char letter : letters) {
+            const auto glyph = std::find_if(Glyphs.begin(), Glyphs.end(),
+                                            [&](const Glyph& g) { return g.letter == letter; });
+            if (glyph == Glyphs.end())
+                throw std::invalid_argument(fmt::format("no picture of the letter '{}'", letter));
+            for (int row = 0; row < 7; ++row) {
+                for (int column = 0; column < 5; ++column) {
+                    const int dot_x = start + column * Dot, dot_y = top + (row + 1) * Dot;
+                    if (glyph->rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] == '#')
+                        box(dot_x, dot_y, dot_x + Dot, dot_y + Dot, colour, 1.0f);
+                }
+            }
+            start += 6 * Dot;
+        }
+    }
+
+    void cross(int x, int y, const glm::vec3& colour) {
+        constexpr int Arm = 9;
+        box(x - Arm - 1, y - 2, x + Arm + 2, y + 3, glm::vec3(0.0f), 0.7f);
+        box(x - 2, y - Arm - 1, x + 3, y + Arm + 2, glm::vec3(0.0f), 0.7f);
+        box(x - Arm, y - 1, x + Arm + 1, y + 2, colour, 1.0f);
+        box(x - 1, y - Arm, x + 2, y + Arm + 1, colour, 1.0f);
+    }
+
+    void ring(double x, double y, const glm::vec3& colour) {
+        constexpr double Radius = 14.0;
+        const auto reach = static_cast<int>(Radius) + 4;
+        for (int dy = -reach; dy <= reach; ++dy) {
+            for (int dx = -reach; dx <= reach; ++dx) {
+                const int column = static_cast<int>(x) + dx, row = static_cast<int>(y) + dy;
+                const double off = std::abs(std::hypot(column + 0.5 - x, row + 0.5 - y) - Radius);
+                // The ring goes on at the other end, as the sky does.
+                if (off < 3.0)
+                    put((column + Width) % Width, row, off < 1.5 ? colour : glm::vec3(0.0f),
+                        off < 1.5 ? 1.0f : 0.6f);
+            }
+        }
+    }
+
+private:
+    relight::Picture& picture_;
+};
+
+struct Place {
+    double x, y;
+};
+
+Place place(const glm::dvec3& w) {
+    const cubemap::SkyAngles angles = cubemap::sky_angles(w);
+    return {(0.5 - angles.azimuth_degrees / 360.0) * Width,
+            (0.5 - angles.elevation_degrees / 180.0) * Height};
+}
+
+/// Reinhard's global operator: the geometric mean of luminance becomes middle grey, the brightest stays below white.
+void tone_map(std::vector<glm::vec3>& pixels) {
+    double sum = 0.0, largest = 0.0;
+    for (const glm::vec3& pixel : pixels)
+        largest = std::max(largest, cubemap::luminance(glm::dvec3(pixel)));
+    if (largest == 0.0)
+        return;
+    for (const glm::vec3& pixel : pixels)
+        sum += std::log(std::max(cubemap::luminance(glm::dvec3(pixel)), 1e-6 * largest));
+    const double scale = 0.18 / std::exp(sum / static_cast<double>(pixels.size()));
+    for (glm::vec3& pixel : pixels) {
+        const double value = scale * cubemap::luminance(glm::dvec3(pixel));
+        pixel = glm::vec3(glm::min(glm::dvec3(pixel) * (scale / (1.0 + value)), glm::dvec3(1.0)));
+    }
+}
+
+} // namespace
+
+void check_environment_picture(const std::string& path) {
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (extension != ".png")
+        throw std::runtime_error(
+            fmt::format("{}: expected a picture's name that ends in .png, got '{}'", path, extension));
+}
+
+void save_environment_picture(const std::string& path, const cubemap::EnvironmentImage& image,
+                              const SunMark& sun) {
+    const cubemap::CubeMap map =
+        cubemap::resample(image, std::min<std::uint32_t>(Width / 4, cubemap::natural_resolution(image)));
+    relight::Picture picture{.width = Width,
+                             .height = Height,
+                             .pixels =
+                                 cubemap::to_image(map, cubemap::Layout::LatLong, Width, Height).pixels};
+    tone_map(picture.pixels);
+
+    Canvas canvas(picture);
+    for (int x = 0; x < Width; x += 8)
+        canvas.box(x, Height / 2, x + 2, Height / 2 + 1, glm::vec3(1.0f), 0.6f);
+    const glm::vec3 red(1.0f, 0.12f, 0.1f), green(0.15f, 0.9f, 0.15f), blue(0.25f, 0.5f, 1.0f),
+        yellow(1.0f, 0.85f, 0.05f);
+    struct Axis {
+        std::string_view name;
+        int x, y;
+        glm::vec3 colour;
+    };
+    constexpr int Beside = 22; // from a cross to its name
+    const int middle = Height / 2;
+    // A pole is a whole row of the picture, and -Z lies on both its ends.
+    for (const Axis& axis : {Axis{"+X", Width / 4, middle, red}, Axis{"-X", 3 * Width / 4, middle, red},
+                             Axis{"+Z", Width / 2, middle, blue}, Axis{"-Z", 0, middle, blue},
+                             Axis{"-Z", Width - 1, middle, blue}, Axis{"+Y", Width / 2, 0, green},
+                             Axis{"-Y", Width / 2, Height - 1, green}}) {
+        canvas.cross(axis.x, axis.y, axis.colour);
+        canvas.text(axis.x, axis.y + (axis.y > middle ? -Beside : Beside), axis.name, axis.colour);
+    }
+    if (!sun.label.empty()) {
+        const Place at = place(sun.direction);
+        canvas.ring(at.x, at.y, yellow);
+        canvas.text(static_cast<int>(at.x), static_cast<int>(at.y + (at.y > 40.0 ? -28.0 : 28.0)), sun.label,
+                    yellow);
+    }
+    relight::save_picture(path, picture);
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,139 @@
+#include "relight/pictures/receiver_picture.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+namespace relumine::relight {
+
+namespace {
+
+void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::vec3> radiance) {
+    if (radiance.size() != num_receivers)
+        throw std::invalid_argument(
+            fmt::format("expected the radiance of {} receivers, got {}", num_receivers, radiance.size()));
+}
+
+/// Means over the samples of each pixel. `behind(x, y, i)`: radiance of a sample without a receiver. Coverage goes to the picture's
+/// alpha where that is asked for.
+template<typename Behind>
+Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance, const Behind& behind,
+                 bool with_alpha) {
+    require_one_per_receiver(layout.samples.size(), radiance);
+    const std::size_t num_pixels = std::size_t{layout.width} * layout.height;
+    Picture picture{.width = layout.width, .height = layout.height};
+    picture.pixels.resize(num_pixels);
+    if (with_alpha)
+        picture.alpha.resize(num_pixels);
+    const auto per_pixel = static_cast<std::uint32_t>(layout.samples_per_pixel());
+    tbb::parallel_for(std::uint32_t{0}, layout.height, [&](std::uint32_t y) {
+        std::size_t pixel = std::size_t{y} * layout.width;
+        const auto first = std::lower_bound(layout.samples.begin(), layout.samples.end(), pixel * per_pixel);
+        auto receiver = static_cast<std::size_t>(first - layout.samples.begin());
+        for (std::uint32_t x = 0; x < layout.width; ++x, ++pixel) {
+            glm::vec3 sum(0.0f);
+            std::uint32_t num_hits = 0;
+            for (std::uint32_t i = 0; i < per_pixel; ++i) {
+                if (receiver < layout.samples.size() && layout.samples[receiver] == pixel * per_pixel + i) {
+                    sum += radiance[receiver++];
+                    ++num_hits;
+                } else {
+                    sum += behind(x, y, i);
+                }
+            }
+            picture.pixels[pixel] = sum / static_cast<float>(per_pixel);
+            if (with_alpha)
+                picture.alpha[pixel] = static_cast<float>(num_hits) / static_cast<float>(per_pixel);
+        }
+    });
+    return picture;
+}
+
+/// Fills texels around the charts, ring by ring.
+class Gutter {
+public:
+    Gutter(Picture& picture, const std::vector<std::uint32_t>& texels)
+        : picture_(picture), ring_of_(picture.pixels.size(), Empty), ring_(texels) {
+        for (const std::uint32_t texel : texels)
+            ring_of_[texel] = 0;
+    }
+
+    void grow(std::uint32_t num_rings) {
+        for (std::uint32_t ring = 1; ring <= num_rings && !ring_.empty(); ++ring) {
+            std::vector<std::uint32_t> next;
+            for (const std::uint32_t texel : ring_)
+                for_neighbours(texel, [&](std::uint32_t neighbour) {
+                    if (ring_of_[neighbour] == Empty) {
+                        ring_of_[neighbour] = ring;
+                        next.push_back(neighbour);
+                    }
+                });
+            for (const std::uint32_t texel : next)
+                picture_.pixels[texel] = mean_of_neighbours(texel, ring);
+            ring_ = std::move(next);
+        }
+    }
+
+private:
+    static constexpr std::uint32_t Empty = ~std::uint32_t{0};
+
+    template<typename Visit>
+    void for_neighbours(std::uint32_t texel, const Visit& visit) const {
+        const std::uint32_t x = texel % picture_.width;
+        const std::uint32_t y = texel / picture_.width;
+        for (std::uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, picture_.height - 1); ++v)
+            for (std::uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, picture_.width - 1); ++u)
+                visit(v * picture_.width + u);
+    }
+
+    [[nodiscard]] glm::vec3 mean_of_neighbours(std::uint32_t texel, std::uint32_t ring) const {
+        glm::vec3 sum(0.0f);
+        std::uint32_t count = 0;
+        for_neighbours(texel, [&](std::uint32_t neighbour) {
+            if (ring_of_[neighbour] < ring) {
+                sum += picture_.pixels[neighbour];
+                ++count;
+            }
+        });
+        return sum / static_cast<float>(count);
+    }
+
+    Picture& picture_;
+    std::vector<std::uint32_t> ring_of_; ///< [height * width] 0: receivers
+    std::vector<std::uint32_t> ring_;    ///< the outermost one
+};
+
+} // namespace
+
+Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
+                const cubemap::CubeMap& background) {
+    if (background.resolution == 0)
+        throw std::invalid_argument("expected a background with texels");
+    const prt::PictureRays rays(layout.camera, layout.width, layout.height, layout.samples_per_axis);
+    return averaged(
+        layout, radiance,
+        [&](auto x, auto y, auto i) { return cubemap::sample(background, rays.direction(x, y, i)); }, false);
+}
+
+Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance) {
+    return averaged(
+        layout, radiance, [](auto, auto, auto) { return glm::vec3(0.0f); }, true);
+}
+
+Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance, std::uint32_t gutter) {
+    require_one_per_receiver(layout.texels.size(), radiance);
+    Picture picture{.width = layout.width, .height = layout.height};
+    picture.pixels.resize(layout.num_texels());
+    picture.alpha.resize(layout.num_texels());
+    for (std::size_t i = 0; i < layout.texels.size(); ++i) {
+        picture.pixels[layout.texels[i]] = radiance[i];
+        picture.alpha[layout.texels[i]] = 1.0f;
+    }
+    Gutter(picture, layout.texels).grow(gutter);
+    return picture;
+}
+
+} // namespace relumine::relight

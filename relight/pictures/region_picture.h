@@ -1,0 +1,16 @@
+// The environment with the lights that stand for it, as in [D05] Fig. 1.
+#pragma once
+
+#include "cubemap/image/environment.h"
+#include "lights/place_lights.h"
+#include "relight/pictures/picture.h"
+
+namespace relumine::relight {
+
+/// The lat-long tone-mapped (Reinhard's global operator), between 1024 and 2048 pixels wide where whole multiples of its own size allow, the
+/// regions' borders as thin lines and every light as a small disc in its own colour with a dark ring. Linear colours in [0, 1].
+/// Throws std::invalid_argument for images that LatLongGrid refuses.
+[[nodiscard]] Picture region_picture(const cubemap::EnvironmentImage& lat_long,
+                                     const lights::Placement& placement);
+
+} // namespace relumine::relight

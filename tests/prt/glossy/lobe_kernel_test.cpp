@@ -1,0 +1,85 @@
+#include "prt/glossy/lobe_kernel.h"
+
+#include <cmath>
+#include <random>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "prt/glossy/brdf.h"
+#include "tests/prt/every_target.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+/// Receivers of all kinds, some with the eye below the horizon.
+struct RandomBlock {
+    std::array<Surface, BlockSize> surfaces;
+    std::array<glm::vec3, BlockSize> normals, to_eye;
+    BlockSurfaces block;
+
+    explicit RandomBlock(std::uint32_t seed) {
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<float> unit(0.0f, 1.0f);
+        for (std::size_t i = 0; i < BlockSize; ++i) {
+            normals[i] = scenes::random_direction(random);
+            to_eye[i] = scenes::random_direction(random);
+            const auto highlight = static_cast<Highlight>(random() % 3);
+            surfaces[i] = {.highlight = highlight,
+                           .shape = highlight == Highlight::Ggx ? unit(random) : 200.0f * unit(random)};
+            block.set(i, surfaces[i], normals[i], to_eye[i]);
+        }
+    }
+    [[nodiscard]] Lobes<float> plain(std::size_t i, const glm::vec3& w) const {
+        return evaluate_lobes(surfaces[i], normals[i], to_eye[i], w);
+    }
+};
+
+TEST(LobeKernel, EqualsThePlainLobesOnEveryTarget) {
+    scenes::on_every_target([] {
+        for (std::uint32_t seed = 0; seed < 20; ++seed) {
+            const RandomBlock random(seed);
+            std::mt19937 generator(seed + 100);
+            std::vector<glm::vec3> directions(25);
+            for (glm::vec3& w : directions)
+                w = scenes::random_direction(generator);
+            // And where highlights are: the mirror directions.
+            for (std::size_t i = 0; i < 8; ++i)
+                directions[i] =
+                    glm::normalize(2.0f * glm::dot(random.normals[i], random.to_eye[i]) * random.normals[i] -
+                                   random.to_eye[i] + 1e-3f * directions[i]);
+            std::vector<BlockSurfaces::Floats> values(directions.size());
+            for (const GlossyLobe lobe :
+                 {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
+                evaluate_lobe(random.block, lobe, directions, values);
+                for (std::size_t d = 0; d < directions.size(); ++d)
+                    for (std::size_t i = 0; i < BlockSize; ++i) {
+                        const Lobes<float> plain = random.plain(i, directions[d]);
+                        const float expected = lobe == GlossyLobe::Specular          ? plain.specular
+                                               : lobe == GlossyLobe::SpecularGrazing ? plain.specular_grazing
+                                                                                     : plain.diffuse_grazing;
+                        EXPECT_NEAR(values[d][i], expected, 1e-4f * expected + 1e-6f)
+                            << "receiver " << i << " direction " << d;
+                    }
+            }
+        }
+    });
+}
+
+TEST(LobeKernel, ABlockKnowsWhichLobesItHas) {
+    const glm::vec3 up(0.0f, 1.0f, 0.0f);
+    BlockSurfaces block;
+    block.set(0, {.highlight = Highlight::None}, up, up);
+    block.set(1, {.highlight = Highlight::Ggx, .shape = 0.5f}, up, -up); // seen from below
+    EXPECT_FALSE(block.has(GlossyLobe::Specular));
+    block.set(2, {.highlight = Highlight::BlinnPhong, .shape = 5.0f}, up, up);
+    EXPECT_TRUE(block.has(GlossyLobe::Specular));
+    EXPECT_FALSE(block.has(GlossyLobe::SpecularGrazing));
+    block.set(3, {.highlight = Highlight::Ggx, .shape = 0.5f}, up, up);
+    EXPECT_TRUE(block.has(GlossyLobe::SpecularGrazing));
+    EXPECT_TRUE(block.has(GlossyLobe::DiffuseGrazing));
+}
+
+} // namespace
+} // namespace relumine::prt

@@ -1,0 +1,124 @@
+// Surfaces from materials: each model's numbers, textures, vertex colours, and which triangle a vertex listens to.
+#include "prt/glossy/surface_sampling.h"
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+namespace relumine::prt {
+namespace {
+
+using mesh::Material;
+using mesh::MaterialModel;
+
+/// Two triangles of a square of side 1 in the plane y = 0, each with a material of its own.
+mesh::TriangleMesh square(const Material& first, const Material& second = {}) {
+    mesh::TriangleMesh mesh;
+    mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 1}, {1, 0, 0}, {5, 5, 5}};
+    mesh.normals.assign(5, {0, 1, 0});
+    mesh.triangles = {{0, 1, 2}, {2, 3, 0}};
+    mesh.materials = {first, second};
+    mesh.triangle_materials = {0, 1};
+    return mesh;
+}
+
+/// 2 x 1 texels.
+mesh::Texture two_texels(std::array<std::uint8_t, 3> left, std::array<std::uint8_t, 3> right) {
+    return {.name = "two", .width = 2, .height = 1, .texels = {left, right}};
+}
+
+constexpr mesh::TextureSlot Clamped = {.wrap = {mesh::Wrap::Clamp, mesh::Wrap::Clamp}};
+
+TEST(SurfaceSampling, LambertOfOneWithoutMaterials) {
+    mesh::TriangleMesh mesh = square({});
+    mesh.materials.clear();
+    mesh.triangle_materials.clear();
+    mesh.colors.assign(5, glm::vec3(0.5f));
+    EXPECT_EQ(surface_at(mesh, 1, {0.2f, 0.3f}), Surface{});
+    EXPECT_EQ(vertex_surfaces(mesh), std::vector<Surface>(5));
+}
+
+TEST(SurfaceSampling, MetallicRoughness) {
+    const Material material = {.model = MaterialModel::MetallicRoughness,
+                               .base_color = {1.0f, 0.5f, 0.25f},
+                               .metallic = 0.25f,
+                               .roughness = 0.375f};
+    const Surface surface = surface_at(square(material), 0, {0.0f, 0.0f});
+    EXPECT_EQ(surface.highlight, Highlight::Ggx);
+    EXPECT_EQ(surface.shape, 0.375f);
+    EXPECT_EQ(surface.albedo, glm::vec3(0.75f, 0.375f, 0.1875f));
+    EXPECT_NEAR(glm::distance(surface.specular, glm::vec3(0.28f, 0.155f, 0.0925f)), 0.0f, 1e-6f);
+    Material metal = material;
+    metal.metallic = 1.0f;
+    EXPECT_EQ(surface_at(square(metal), 0, {}).albedo, glm::vec3(0.0f));
+    EXPECT_EQ(surface_at(square(metal), 0, {}).specular, metal.base_color);
+    metal.metallic = 0.0f;
+    EXPECT_EQ(surface_at(square(metal), 0, {}).specular, glm::vec3(0.04f));
+}
+
+TEST(SurfaceSampling, PhongIsLambertWithoutKs) {
+    const Material matt = {.base_color = glm::vec3(0.5f), .exponent = 30.0f};
+    Material shiny = matt;
+    shiny.specular = {0.0f, 0.25f, 0.0f};
+    const mesh::TriangleMesh mesh = square(matt, shiny);
+    EXPECT_EQ(surface_at(mesh, 0, {}), (Surface{.albedo = glm::vec3(0.5f)}));
+    EXPECT_EQ(surface_at(mesh, 1, {}), (Surface{.albedo = glm::vec3(0.5f),
+                                                .specular = {0.0f, 0.25f, 0.0f},
+                                                .highlight = Highlight::BlinnPhong,
+                                                .shape = 30.0f}));
+}
+
+TEST(SurfaceSampling, TexturesAtBarycentricPlaces) {
+    Material material = {.model = MaterialModel::MetallicRoughness,
+                         .base_color = glm::vec3(0.5f),
+                         .metallic = 0.5f,
+                         .roughness = 0.5f};
+    material.base_color_texture = Clamped;
+    material.metallic_roughness_texture = Clamped;
+    material.metallic_roughness_texture->texture = 1;
+    mesh::TriangleMesh mesh = square(material, material);
+    mesh.textures = {two_texels({255, 0, 0}, {0, 0, 255}), two_texels({0, 0, 255}, {0, 255, 0})};
+    mesh.uvs = {{0.25f, 0.5f}, {0.75f, 0.5f}, {0.25f, 0.5f}, {0.25f, 0.5f}, {0, 0}};
+    // At the second corner of triangle 0: the right texels; half way there from the first: both, evenly.
+    const Surface corner = surface_at(mesh, 0, {1.0f, 0.0f});
+    EXPECT_EQ(corner.shape, 0.5f) << "green is roughness";
+    EXPECT_EQ(corner.albedo, glm::vec3(0.0f, 0.0f, 0.5f)) << "blue, metallic, is 0";
+    const Surface middle = surface_at(mesh, 0, {0.5f, 0.25f});
+    EXPECT_EQ(middle.shape, 0.25f);
+    EXPECT_EQ(middle.albedo, glm::vec3(0.1875f, 0.0f, 0.1875f)) << "metallic 1/4";
+    // uvs of corners come before those of vertices.
+    mesh.corner_uvs = {{{{0.75f, 0.5f}, {0.25f, 0.5f}, {0.25f, 0.5f}}}, {{{0, 0}, {0, 0}, {0, 0}}}};
+    EXPECT_EQ(surface_at(mesh, 0, {0.0f, 0.0f}).shape, 0.5f);
+    EXPECT_EQ(surface_at(mesh, 0, {1.0f, 0.0f}).shape, 0.0f);
+}
+
+TEST(SurfaceSampling, VertexColorsAreAFactorOfGltf) {
+    Material material = {.base_color = glm::vec3(0.5f), .times_vertex_color = true};
+    mesh::TriangleMesh mesh = square(material, {});
+    EXPECT_EQ(surface_at(mesh, 0, {}).albedo, glm::vec3(0.5f)) << "no colours";
+    mesh.colors = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {1, 1, 1}};
+    EXPECT_EQ(surface_at(mesh, 0, {0.25f, 0.25f}).albedo, glm::vec3(0.25f, 0.125f, 0.125f));
+    EXPECT_EQ(surface_at(mesh, 1, {0.25f, 0.25f}).albedo, glm::vec3(1.0f));
+}
+
+TEST(SurfaceSampling, VerticesListenToTheirLowestTriangle) {
+    const mesh::TriangleMesh mesh =
+        square({.base_color = glm::vec3(0.25f)}, {.base_color = glm::vec3(0.75f)});
+    const std::vector<Surface> surfaces = vertex_surfaces(mesh);
+    for (const std::size_t vertex : {0u, 1u, 2u})
+        EXPECT_EQ(surfaces[vertex].albedo, glm::vec3(0.25f)) << vertex;
+    EXPECT_EQ(surfaces[3].albedo, glm::vec3(0.75f));
+    EXPECT_EQ(surfaces[4], Surface{}) << "no triangle";
+
+    const std::vector<Surface> overridden =
+        vertex_surfaces(mesh, [](const mesh::TriangleMesh&, std::uint32_t triangle, const Surface& surface) {
+            Surface other = surface;
+            if (triangle == 0)
+                other.albedo *= 2.0f;
+            return other;
+        });
+    EXPECT_EQ(overridden[2].albedo, glm::vec3(0.5f));
+    EXPECT_EQ(overridden[3].albedo, glm::vec3(0.75f));
+}
+
+} // namespace
+} // namespace relumine::prt

@@ -1,0 +1,120 @@
+#include "prt/receivers/pixel_receivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+PixelReceivers seen(const mesh::TriangleMesh& mesh, const PixelView& view) {
+    return pixel_receivers(mesh, RayScene(mesh), view);
+}
+
+TEST(PixelReceivers, CoverASpheresSilhouette) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(5, 1.0f, {0.3f, -0.2f, 0.1f});
+    const Camera camera{.eye = {0.3f, -0.2f, 4.1f}, .target = {0.3f, -0.2f, 0.1f}, .fov_degrees = 40.0f};
+    const PixelReceivers pixels =
+        seen(sphere, {.camera = camera, .width = 150, .height = 100, .samples_per_axis = 3});
+    // A cone of half-angle asin(1/4) cuts a circle out of the picture's plane.
+    const double radius = std::tan(std::asin(0.25)) / std::tan(20.0 * std::numbers::pi / 180.0) * 50.0;
+    const double expected = std::numbers::pi * radius * radius;
+    EXPECT_NEAR(static_cast<double>(pixels.receivers.size()) / 9.0, expected, 0.01 * expected);
+    EXPECT_EQ(pixels.layout.num_samples(), 150u * 100u * 9u);
+
+    const Receivers& receivers = pixels.receivers;
+    ASSERT_EQ(receivers.normals.size(), receivers.size());
+    ASSERT_EQ(receivers.to_eye.size(), receivers.size());
+    ASSERT_EQ(receivers.points.size(), receivers.size());
+    ASSERT_EQ(pixels.layout.samples.size(), receivers.size());
+    EXPECT_TRUE(std::is_sorted(pixels.layout.samples.begin(), pixels.layout.samples.end(),
+                               std::less_equal<>())); // strictly
+    const PictureRays rays(camera, 150, 100, 3);
+    for (std::size_t i = 0; i < receivers.size(); ++i) {
+        const glm::vec3 outward = receivers.positions[i] - camera.target;
+        EXPECT_NEAR(glm::length(outward), 1.0f, 2e-3f);
+        EXPECT_GT(glm::dot(receivers.normals[i], glm::normalize(outward)), 0.999f);
+        EXPECT_NEAR(glm::length(receivers.normals[i]), 1.0f, 1e-5f);
+        // The sample's ray goes where the receiver is.
+        const std::uint32_t sample = pixels.layout.samples[i];
+        const glm::vec3 ray = rays.direction(sample / 9 % 150, sample / 9 / 150, sample % 9);
+        EXPECT_LT(glm::length(ray + receivers.to_eye[i]), 1e-4f);
+        EXPECT_EQ(receivers.positions[i], value_at(sphere, sphere.positions, receivers.points[i]));
+    }
+}
+
+TEST(PixelReceivers, BackFacesTurnTheirNormals) {
+    const mesh::TriangleMesh floor = scenes::floor_grid(4, 2.0f);
+    for (const float side : {1.0f, -1.0f}) {
+        const PixelReceivers pixels =
+            seen(floor, {.camera = {.eye = {0.1f, 3.0f * side, 0.2f}}, .width = 8, .height = 8});
+        for (const glm::vec3& normal : pixels.receivers.normals)
+            EXPECT_EQ(normal, glm::vec3(0.0f, side, 0.0f));
+    }
+    // Triangles the other way round do not make vertex normals wrong.
+    mesh::TriangleMesh turned = floor;
+    for (mesh::Triangle& triangle : turned.triangles)
+        std::swap(triangle[1], triangle[2]);
+    const PixelReceivers pixels =
+        seen(turned, {.camera = {.eye = {0.1f, 3.0f, 0.2f}}, .width = 8, .height = 8});
+    for (const glm::vec3& normal : pixels.receivers.normals)
+        EXPECT_EQ(normal, glm::vec3(0.0f, 1.0f, 0.0f));
+}
+
+TEST(PixelReceivers, AnEyeInsideSeesAllAround) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(3, 2.0f, glm::vec3(0.0f));
+    const PixelReceivers pixels =
+        seen(sphere, {.camera = {.eye = {0.1f, 0.2f, 0.0f}, .target = {1, 1, 1}}, .width = 20, .height = 10});
+    EXPECT_EQ(pixels.receivers.size(), 200u);
+    for (std::size_t i = 0; i < 200; ++i)
+        EXPECT_GT(glm::dot(pixels.receivers.normals[i], pixels.receivers.to_eye[i]), 0.0f);
+}
+
+TEST(PixelReceivers, NormalsThatCancelAreTheFaces) {
+    mesh::TriangleMesh mesh;
+    mesh.positions = {{-1, 0, -1}, {-1, 0, 1}, {1, 0, 0}};
+    mesh.normals.assign(3, glm::vec3(0.0f));
+    mesh.triangles = {{0, 1, 2}};
+    const PixelReceivers pixels =
+        seen(mesh, {.camera = {.eye = {0.0f, 3.0f, 0.0f}}, .width = 16, .height = 16});
+    for (const glm::vec3& normal : pixels.receivers.normals)
+        EXPECT_EQ(normal, glm::vec3(0.0f, 1.0f, 0.0f));
+}
+
+TEST(PixelReceivers, TheSameForAnyNumberOfThreads) {
+    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
+    const PixelView view{.camera = {.eye = {4, 3, 5}}, .width = 60, .height = 40, .samples_per_axis = 2};
+    const PixelReceivers all = seen(mesh, view);
+    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const PixelReceivers alone = seen(mesh, view);
+    EXPECT_EQ(all.receivers.positions, alone.receivers.positions);
+    EXPECT_EQ(all.receivers.normals, alone.receivers.normals);
+    EXPECT_EQ(all.receivers.to_eye, alone.receivers.to_eye);
+    EXPECT_EQ(all.receivers.points, alone.receivers.points);
+    EXPECT_EQ(all.layout, alone.layout);
+}
+
+TEST(PixelReceivers, RefusesViewsOfNothing) {
+    const mesh::TriangleMesh floor = scenes::floor_grid(4, 2.0f);
+    EXPECT_THROW(static_cast<void>(seen(
+                     floor, {.camera = {.eye = {0, 3, 0}, .target = {0, 4, 0}}, .width = 8, .height = 8})),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(seen(floor, {.camera = {}, .width = 8, .height = 8})),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(seen(floor, {.camera = {.eye = {0, 3, 0}},
+                                                .width = MaxPictureSize,
+                                                .height = MaxPictureSize,
+                                                .samples_per_axis = 2})),
+                 std::invalid_argument);
+}
+
+} // namespace
+} // namespace relumine::prt

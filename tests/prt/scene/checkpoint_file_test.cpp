@@ -1,0 +1,214 @@
+#include "prt/scene/checkpoint_file.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "files/folder_lock.h"
+#include "files/output_file.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::byte> bytes_of(const std::string& text) {
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+std::vector<std::vector<std::byte>> all(const std::vector<std::string>& texts) {
+    std::vector<std::vector<std::byte>> records;
+    for (const std::string& text : texts)
+        records.push_back(bytes_of(text));
+    return records;
+}
+
+class CheckpointFileTest : public testing::Test {
+protected:
+    void SetUp() override {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    [[nodiscard]] CheckpointFile open(bool resume,
+                                      const Fingerprint& fingerprint = {{"mesh", "1"}, {"bias", "2"}}) {
+        return {output_,
+                fingerprint,
+                {.resume = resume,
+                 .interval = std::chrono::duration<double>(0.0),
+                 .on_problem = [this](const auto& text) {
+                     problems_.push_back(text);
+                 }}};
+    }
+    void save_two() {
+        CheckpointFile checkpoint = open(false);
+        EXPECT_TRUE(checkpoint.save("a", bytes_of("one"), bytes_of("first state")));
+        EXPECT_TRUE(checkpoint.save("a", bytes_of("two"), bytes_of("state")));
+        EXPECT_TRUE(checkpoint.save("b", bytes_of("x"), {}));
+    }
+    std::string refusal(const Fingerprint& fingerprint) {
+        try {
+            static_cast<void>(open(true, fingerprint));
+        } catch (const std::runtime_error& error) {
+            return error.what();
+        }
+        return "accepted";
+    }
+    [[nodiscard]] std::size_t num_files() const {
+        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
+    }
+
+    fs::path folder_ =
+        fs::path(testing::TempDir()) /
+        (std::string("checkpoint_file_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::path output_ = folder_ / "out.prt";
+    fs::path checkpoint_ = folder_ / "out.prt.checkpoint";
+    std::vector<std::string> problems_;
+};
+
+TEST_F(CheckpointFileTest, NothingThereBeforeTheFirstSave) {
+    CheckpointFile checkpoint = open(true);
+    EXPECT_FALSE(checkpoint.exists());
+    EXPECT_TRUE(checkpoint.load("a", true).state.empty());
+    EXPECT_EQ(num_files(), 0u);
+    EXPECT_TRUE(checkpoint.is_due());
+    checkpoint.remove();
+    EXPECT_EQ(num_files(), 0u);
+}
+
+TEST_F(CheckpointFileTest, GivesBackWhatWasSaved) {
+    save_two();
+    CheckpointFile checkpoint = open(true);
+    EXPECT_TRUE(checkpoint.exists());
+    const Checkpoint::Saved a = checkpoint.load("a", true);
+    EXPECT_EQ(a.records, all({"one", "two"}));
+    EXPECT_EQ(a.state, bytes_of("state"));
+    EXPECT_EQ(checkpoint.load("b", false).records, all({"x"}));
+    EXPECT_TRUE(checkpoint.load("c", true).records.empty());
+    checkpoint.remove();
+    EXPECT_EQ(num_files(), 0u);
+    EXPECT_TRUE(problems_.empty());
+}
+
+TEST_F(CheckpointFileTest, ARecordWithoutItsStateDoesNotCount) {
+    save_two();
+    const std::vector<std::byte> state = files::read(checkpoint_ / "a.state");
+    {
+        CheckpointFile checkpoint = open(true);
+        static_cast<void>(checkpoint.load("a", true));
+        EXPECT_TRUE(checkpoint.save("a", bytes_of("three"), bytes_of("third")));
+    }
+    // As if killed between the two.
+    files::OutputFile file(checkpoint_ / "a.state");
+    file.write(state);
+    file.commit();
+    CheckpointFile checkpoint = open(true);
+    EXPECT_EQ(checkpoint.load("a", true).records.size(), 2u);
+    EXPECT_TRUE(checkpoint.save("a", bytes_of("other"), bytes_of("third")));
+    EXPECT_EQ(checkpoint.load("a", true).records, all({"one", "two", "other"}));
+}
+
+TEST_F(CheckpointFileTest, OtherWorkIsRefusedByTheNameOfWhatDiffers) {
+    save_two();
+    EXPECT_EQ(refusal({{"mesh", "1"}, {"bias", "2"}}), "accepted");
+    EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "3"}}).find("(bias 3), got another's (bias 2)"),
+              std::string::npos);
+    EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "2"}, {"eye", "4"}}).find("(eye 4)"), std::string::npos);
+    EXPECT_NE(refusal({{"mesh", "1"}}).find("got one with highlights"), std::string::npos);
+    files::save_text(checkpoint_ / "run.json", "{\"mesh\": ");
+    EXPECT_NE(refusal({{"mesh", "1"}}).find("run.json: expected a checkpoint, got damaged data"),
+              std::string::npos);
+}
+
+TEST_F(CheckpointFileTest, AnyFlippedBitIsRefused) {
+    save_two();
+    for (const char* name : {"a.state", "a.log"}) {
+        const std::vector<std::byte> whole = files::read(checkpoint_ / name);
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            std::vector<std::byte> bytes = whole;
+            bytes[i] ^= std::byte{16};
+            files::OutputFile file(checkpoint_ / name);
+            file.write(bytes);
+            file.commit();
+            CheckpointFile checkpoint = open(true);
+            EXPECT_THROW(static_cast<void>(checkpoint.load("a", true)), std::runtime_error) << name << i;
+        }
+        files::OutputFile file(checkpoint_ / name);
+        file.write(whole);
+        file.commit();
+    }
+}
+
+TEST_F(CheckpointFileTest, WithoutResumeTheFirstSaveBeginsAnew) {
+    save_two();
+    CheckpointFile checkpoint = open(false, {{"mesh", "other"}});
+    EXPECT_FALSE(checkpoint.exists());
+    EXPECT_TRUE(checkpoint.load("a", true).state.empty());
+    EXPECT_TRUE(fs::exists(checkpoint_ / "b.log")) << "untouched so far";
+    EXPECT_TRUE(checkpoint.save("a", bytes_of("new"), bytes_of("s")));
+    EXPECT_FALSE(fs::exists(checkpoint_ / "b.log"));
+    EXPECT_EQ(checkpoint.load("a", true).records, all({"new"}));
+}
+
+TEST_F(CheckpointFileTest, OneRunAtATime) {
+    save_two();
+    const auto lock = files::FolderLock::acquire(checkpoint_);
+    ASSERT_NE(lock, nullptr);
+    EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "2"}}).find("got one in use"), std::string::npos);
+    CheckpointFile second = open(false);
+    EXPECT_FALSE(second.save("a", bytes_of("x"), bytes_of("y")));
+    EXPECT_EQ(problems_.size(), 1u);
+    EXPECT_FALSE(second.is_due());
+    second.remove();
+    EXPECT_TRUE(fs::exists(checkpoint_ / "a.state"));
+}
+
+TEST_F(CheckpointFileTest, AFailedSaveLeavesTheOneBefore) {
+    save_two();
+    CheckpointFile checkpoint = open(true);
+    static_cast<void>(checkpoint.load("a", true));
+    fs::create_directories(checkpoint_ / "c.state" / "in the way");
+    EXPECT_FALSE(checkpoint.save("c", bytes_of("record"), bytes_of("state")));
+    EXPECT_EQ(problems_.size(), 1u);
+    fs::remove_all(checkpoint_ / "c.state");
+    EXPECT_TRUE(checkpoint.save("c", bytes_of("record"), bytes_of("state")));
+    EXPECT_EQ(checkpoint.load("c", true).records, all({"record"}));
+}
+
+TEST_F(CheckpointFileTest, LeavesFilesOfOthersAlone) {
+    save_two();
+    files::save_text(checkpoint_ / "notes.txt", "mine");
+    CheckpointFile checkpoint = open(true);
+    checkpoint.remove();
+    EXPECT_TRUE(fs::exists(checkpoint_ / "notes.txt"));
+    EXPECT_FALSE(fs::exists(checkpoint_ / "run.json"));
+}
+
+TEST(Fingerprint, ChangesWithAllThatTheResultDependsOn) {
+    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
+    const Receivers receivers = vertex_receivers(mesh);
+    const PrecomputeOptions options;
+    const Fingerprint plain = fingerprint(mesh, receivers, options, {});
+    EXPECT_EQ(fingerprint(mesh, receivers, {.plane_bytes = 1}, {}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, options, 0.1f), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, {.tolerance = 0.1f}, {}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, {.epsilon = 0.1f}, {}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, {.min_level = 1}, {}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, {.face_resolution = 1}, {}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, {.bias = 1.0f}, {}), plain);
+    mesh::TriangleMesh other = mesh;
+    other.positions[3].x += 1e-6f;
+    EXPECT_NE(fingerprint(other, receivers, options, {}), plain);
+    other = mesh;
+    std::swap(other.triangles[0][0], other.triangles[0][1]);
+    EXPECT_NE(fingerprint(other, receivers, options, {}), plain);
+    Receivers others = receivers;
+    others.normals[5].y += 1e-6f;
+    EXPECT_NE(fingerprint(mesh, others, options, {}), plain);
+}
+
+} // namespace
+} // namespace relumine::prt

@@ -1,0 +1,263 @@
+#include "prt/scene/receiver_sections.h"
+
+#include <cstring>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "prt/precompute.h"
+#include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/texel_receivers.h"
+#include "prt/scene/scene_file.h"
+#include "prt/visibility/ray_scene.h"
+#include "tests/prt/damaged_file.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+namespace fs = std::filesystem;
+
+void precompute(Scene& scene) {
+    scene.transfer =
+        prt::precompute(scene.receivers, RayScene(scene.mesh),
+                        {.tolerance = 0.1f, .min_level = 1, .face_resolution = 8, .bias = 1e-3f});
+}
+
+Scene pixel_scene() {
+    Scene scene;
+    scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
+    PixelReceivers pixels = pixel_receivers(scene.mesh, RayScene(scene.mesh),
+                                            {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f},
+                                             .width = 11,
+                                             .height = 7,
+                                             .samples_per_axis = 3});
+    scene.receivers = std::move(pixels.receivers);
+    scene.layout = std::move(pixels.layout);
+    precompute(scene);
+    return scene;
+}
+
+Scene texel_scene() {
+    Scene scene;
+    scene.mesh = scenes::floor_grid(3, 2.0f);
+    for (const glm::vec3& p : scene.mesh.positions)
+        scene.mesh.uvs.emplace_back(0.3f * p.x + 0.5f, 0.4f * p.z + 0.5f);
+    TexelReceivers texels = texel_receivers(scene.mesh, {.width = 9, .height = 5});
+    scene.receivers = std::move(texels.receivers);
+    scene.layout = std::move(texels.layout);
+    precompute(scene);
+    return scene;
+}
+
+void add_surfaces(Scene& scene) {
+    for (std::size_t i = 0; i < scene.receivers.size(); ++i)
+        scene.receivers.surfaces.push_back({.albedo = glm::vec3(0.001f * static_cast<float>(i)),
+                                            .specular = {0.1f, 0.2f, 0.3f},
+                                            .highlight = static_cast<Highlight>(i % 3),
+                                            .shape = 0.5f});
+}
+
+void expect_same(const Receivers& a, const Receivers& b) {
+    EXPECT_EQ(a.positions, b.positions);
+    EXPECT_EQ(a.normals, b.normals);
+    EXPECT_EQ(a.to_eye, b.to_eye);
+    EXPECT_EQ(a.surfaces, b.surfaces);
+    EXPECT_EQ(a.points, b.points);
+}
+
+class ReceiverSectionsTest : public testing::Test {
+protected:
+    void SetUp() override { fs::create_directories(folder_); }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void expect_round_trip(const Scene& scene) const {
+        save_scene(file_, scene);
+        const Scene loaded = load_scene(file_);
+        EXPECT_EQ(loaded.layout, scene.layout);
+        expect_same(loaded.receivers, scene.receivers);
+        EXPECT_EQ(loaded.transfer.order, scene.transfer.order);
+        EXPECT_EQ(loaded.transfer.normals, scene.transfer.normals);
+        EXPECT_EQ(loaded.transfer.counts.visible, scene.transfer.counts.visible);
+        EXPECT_EQ(loaded.mesh.positions, scene.mesh.positions);
+    }
+
+    void refused(const Sections& good, const std::string& reason,
+                 const std::function<void(Sections&)>& forge) const {
+        Sections sections = good;
+        forge(sections);
+        write_sections(file_, sections);
+        scenes::expect_refused(file_, reason, [&] { static_cast<void>(load_scene(file_)); });
+    }
+    /// One element of a section replaced.
+    template<typename Element>
+    void refused(const Sections& good, const std::string& name, std::size_t index,
+                 const Element& element) const {
+        refused(good, "'" + name + "'", [&](Sections& sections) {
+            std::memcpy(sections.at(name).data() + index * sizeof(Element), &element, sizeof(Element));
+        });
+    }
+
+    fs::path folder_ =
+        fs::path(testing::TempDir()) /
+        ("receiver_sections_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path file_ = folder_ / "scene.prt";
+};
+
+TEST_F(ReceiverSectionsTest, PixelsComeBack) {
+    Scene scene = pixel_scene();
+    ASSERT_NE(std::get<PixelLayout>(scene.layout).num_samples() % 8, 0u); // not all is whole bytes
+    expect_round_trip(scene);
+    add_surfaces(scene);
+    expect_round_trip(scene);
+}
+
+TEST_F(ReceiverSectionsTest, TexelsComeBack) {
+    Scene scene = texel_scene();
+    expect_round_trip(scene);
+    add_surfaces(scene);
+    expect_round_trip(scene);
+}
+
+TEST_F(ReceiverSectionsTest, PlainVerticesAddNothing) {
+    Scene scene;
+    scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
+    scene.receivers = vertex_receivers(scene.mesh);
+    precompute(scene);
+    save_scene(file_, scene);
+    std::vector<std::string> names;
+    for (const auto& [name, bytes] : read_sections(file_))
+        names.push_back(name);
+    EXPECT_EQ(names, (std::vector<std::string>{"counts", "mixed", "normals", "order", "positions", "quadtree",
+                                               "settings", "triangles", "visible"}));
+    const Scene loaded = load_scene(file_);
+    EXPECT_EQ(loaded.layout, ReceiverLayout(VertexLayout{}));
+    expect_same(loaded.receivers, scene.receivers);
+    // Surfaces and an eye are kept for vertices, too.
+    add_surfaces(scene);
+    scene.receivers.to_eye.assign(scene.receivers.size(), glm::vec3(0, 1, 0));
+    expect_round_trip(scene);
+}
+
+TEST_F(ReceiverSectionsTest, TheSameSceneGivesTheSameBytes) {
+    Scene scene = pixel_scene();
+    add_surfaces(scene);
+    Sections first, second;
+    add_receiver_sections(first, scene.receivers, scene.layout);
+    add_receiver_sections(second, scene.receivers, scene.layout);
+    EXPECT_EQ(first, second);
+}
+
+TEST_F(ReceiverSectionsTest, RefusesToSaveWhatDoesNotBelongTogether) {
+    const auto refused_by = [&](const std::function<void(Scene&)>& change) {
+        Scene scene = pixel_scene();
+        change(scene);
+        EXPECT_THROW(save_scene(file_, scene), std::invalid_argument);
+        EXPECT_FALSE(fs::exists(file_));
+    };
+    refused_by([](Scene& s) { s.receivers.points.pop_back(); });
+    refused_by([](Scene& s) { s.receivers.normals.pop_back(); });
+    refused_by([](Scene& s) { s.receivers.to_eye.pop_back(); });
+    refused_by([](Scene& s) { s.receivers.surfaces.resize(1); });
+    refused_by([](Scene& s) { std::get<PixelLayout>(s.layout).samples.pop_back(); });
+    refused_by([](Scene& s) { std::get<PixelLayout>(s.layout).samples.back() = 11 * 7 * 9; });
+    refused_by([](Scene& s) {
+        std::swap(std::get<PixelLayout>(s.layout).samples[0], std::get<PixelLayout>(s.layout).samples[1]);
+    });
+    refused_by([](Scene& s) { s.layout = VertexLayout{}; });
+    refused_by([](Scene& s) { s.transfer.order.pop_back(); });
+}
+
+TEST_F(ReceiverSectionsTest, MissingAndShortSections) {
+    Scene scene = pixel_scene();
+    add_surfaces(scene);
+    save_scene(file_, scene);
+    const Sections good = read_sections(file_);
+    for (const char* name : {"layout_mask", "r_positions", "r_normals", "r_triangles", "r_barycentric",
+                             "r_specular", "r_highlight", "r_shape"})
+        refused(good, std::string("expected a section '") + name + "', got none",
+                [&](Sections& s) { s.erase(name); });
+    for (const char* name : {"layout_mask", "r_positions", "r_normals", "r_to_eye", "r_triangles",
+                             "r_barycentric", "r_albedo", "r_specular", "r_highlight", "r_shape"}) {
+        const std::string quoted = std::string("'") + name + "'";
+        refused(good, quoted, [&](Sections& s) { s.at(name).pop_back(); });
+        refused(good, quoted, [&](Sections& s) { s.at(name).clear(); });
+        refused(good, quoted, [&](Sections& s) { s.at(name).resize(s.at(name).size() + 48); });
+    }
+    // As if they were the vertices.
+    refused(good, "'r_to_eye'", [](Sections& s) { s.erase("layout"); });
+    refused(good, "", [](Sections& s) {
+        s.erase("layout");
+        s.erase("r_to_eye");
+        s.erase("r_albedo");
+    });
+}
+
+TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
+    Scene scene = pixel_scene();
+    add_surfaces(scene);
+    save_scene(file_, scene);
+    const Sections good = read_sections(file_);
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    for (const char* name :
+         {"r_positions", "r_normals", "r_to_eye", "r_albedo", "r_specular", "r_shape", "r_barycentric"}) {
+        refused(good, name, 5, nan);
+        refused(good, name, 4, std::numeric_limits<float>::infinity());
+    }
+    refused(good, "r_shape", 3, -1.0f);
+    refused(good, "r_barycentric", 3, -0.1f);
+    refused(good, "r_barycentric", 3, 1.5f);
+    refused(good, "r_triangles", 3, static_cast<std::uint32_t>(scene.mesh.num_triangles()));
+    refused(good, "r_highlight", 3, std::uint8_t{3});
+    // A sample more than there are receivers, and bits behind the last sample.
+    refused(good, "'r_positions'", [](Sections& s) {
+        for (std::byte& byte : s.at("layout_mask"))
+            if (byte != std::byte{0xff}) {
+                byte = std::byte{0xff};
+                break;
+            }
+    });
+    refused(good, "layout_mask", good.at("layout_mask").size() - 1, std::byte{0xff});
+}
+
+TEST_F(ReceiverSectionsTest, LayoutsThatAreNone) {
+    save_scene(file_, pixel_scene());
+    const Sections good = read_sections(file_);
+    const auto layout = [&](const std::string& text, const std::string& reason = "'layout'") {
+        refused(good, reason,
+                [&](Sections& s) { s.at("layout") = bytes_of(std::vector<char>(text.begin(), text.end())); });
+    };
+    const auto pixels = [](const std::string& changed, const std::string& value) {
+        std::string text = "{\"kind\": \"pixels\"";
+        for (const auto& [name, content] :
+             std::vector<std::pair<std::string, std::string>>{{"width", "11"},
+                                                              {"height", "7"},
+                                                              {"samples_per_axis", "3"},
+                                                              {"eye", "[3, 2, 4]"},
+                                                              {"target", "[0, 0, 0]"},
+                                                              {"fov_degrees", "33"}})
+            text += ", \"" + name + "\": " + (name == changed ? value : content);
+        return text + "}";
+    };
+    for (const char* text : {"", "{}", "[]", "7", "null", "{\"kind\": 3}", "{\"kind\": \"vertices\"}",
+                             "{\"kind\": \"texels\"}", "{\"kind\": \"texels\", \"width\": 0, \"height\": 4}",
+                             "{\"kind\": \"texels\", \"width\": 4294967296, \"height\": 4}"})
+        layout(text);
+    for (const char* name : {"width", "height", "samples_per_axis"})
+        for (const char* value : {"0", "-1", "1.5", "4000000000", "\"7\"", "null"})
+            layout(pixels(name, value));
+    layout(pixels("width", "12"), "'layout_mask'");
+    layout(pixels("samples_per_axis", "4"), "'layout_mask'");
+    layout("{\"kind\": \"texels\", \"width\": 16384, \"height\": 16384}", "'layout_mask'");
+    for (const char* value : {"[0, 0, 0]", "[1, 2]", "7", "[1, 2, \"3\"]", "[1e300, 0, 0]", "null"})
+        layout(pixels("eye", value));
+    for (const char* value : {"0", "180", "-5", "null", "1e300"})
+        layout(pixels("fov_degrees", value));
+}
+
+} // namespace
+} // namespace relumine::prt

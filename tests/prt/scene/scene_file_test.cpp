@@ -1,0 +1,372 @@
+#include "prt/scene/scene_file.h"
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <glm/common.hpp>
+#include <gtest/gtest.h>
+#include <xxhash.h>
+
+#include "files/output_file.h"
+#include "prt/precompute.h"
+#include "prt/scene/scene_check.h"
+#include "prt/scene/section_file.h"
+#include "prt/visibility/ray_scene.h"
+#include "tests/prt/damaged_file.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scene scene_of(const mesh::TriangleMesh& mesh, const PrecomputeOptions& options) {
+    return {.mesh = mesh,
+            .transfer = precompute(vertex_receivers(mesh), RayScene(mesh), options),
+            .settings = {.tolerance = options.tolerance,
+                         .epsilon = options.epsilon,
+                         .min_level = options.min_level,
+                         .face_resolution = options.face_resolution,
+                         .bias = options.bias,
+                         .floor_vertices = 11,
+                         .source = "bunny \"quoted\" \xc3\xa9.ply",
+                         .source_hash = 0xfedcba9876543210}};
+}
+
+/// Everything that a file can hold.
+Scene rich_scene() {
+    mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
+    mesh.positions.emplace_back(9.0f); // unreferenced
+    mesh.normals.emplace_back(0.0f);
+    std::mt19937 random(1);
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
+        mesh.colors.push_back(glm::abs(scenes::random_direction(random)));
+        mesh.uvs.emplace_back(i, 0.5f);
+    }
+    return scene_of(mesh, {.tolerance = 0.03f, .face_resolution = 32, .bias = 1e-3f});
+}
+
+/// About a kilobyte.
+Scene tiny_scene() {
+    return scene_of(scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f)),
+                    {.tolerance = 0.1f, .min_level = 1, .face_resolution = 4, .bias = 1e-3f});
+}
+
+bool same(const Scene& a, const Scene& b) {
+    const SceneSettings &s = a.settings, &t = b.settings;
+    return a.mesh.positions == b.mesh.positions && a.mesh.triangles == b.mesh.triangles &&
+           a.mesh.normals == b.mesh.normals && a.mesh.colors == b.mesh.colors && a.mesh.uvs == b.mesh.uvs &&
+           a.transfer.quadtree.split_flags() == b.transfer.quadtree.split_flags() &&
+           a.transfer.order == b.transfer.order && a.transfer.normals == b.transfer.normals &&
+           a.transfer.counts.num_receivers == b.transfer.counts.num_receivers &&
+           a.transfer.counts.num_leaves == b.transfer.counts.num_leaves &&
+           a.transfer.counts.visible == b.transfer.counts.visible &&
+           a.transfer.counts.mixed == b.transfer.counts.mixed &&
+           a.transfer.counts.mixed_before == b.transfer.counts.mixed_before &&
+           a.transfer.counts.counts == b.transfer.counts.counts && s.tolerance == t.tolerance &&
+           s.epsilon == t.epsilon && s.min_level == t.min_level && s.face_resolution == t.face_resolution &&
+           s.bias == t.bias && s.floor_vertices == t.floor_vertices && s.source == t.source &&
+           s.source_hash == t.source_hash;
+}
+
+class SceneFileTest : public testing::Test {
+protected:
+    void SetUp() override { fs::create_directories(folder_); }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    void expect_refused(const std::string& reason) const {
+        scenes::expect_refused(file_, reason, [&] { static_cast<void>(load_scene(file_)); });
+    }
+
+    fs::path folder_ =
+        fs::path(testing::TempDir()) /
+        ("scene_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path file_ = folder_ / "scene.prt";
+};
+
+TEST_F(SceneFileTest, RoundTripKeepsEveryBit) {
+    Scene scene = rich_scene();
+    const std::uint64_t size = save_scene(file_, scene);
+    EXPECT_EQ(size, fs::file_size(file_));
+    EXPECT_TRUE(same(load_scene(file_), scene));
+    scene.settings.epsilon = 5e-5f;
+    scene.settings.tolerance = 0.1f; // no binary fraction
+    scene.mesh.colors.clear();
+    scene.mesh.uvs.clear();
+    save_scene(file_, scene);
+    const Scene loaded = load_scene(file_);
+    EXPECT_TRUE(same(loaded, scene));
+    EXPECT_EQ(std::memcmp(loaded.mesh.normals.data(), scene.mesh.normals.data(),
+                          scene.mesh.num_vertices() * sizeof(glm::vec3)),
+              0);
+}
+
+TEST_F(SceneFileTest, AFileNameThatIsNotUnicodeIsKeptReadable) {
+    Scene scene = tiny_scene();
+    scene.settings.source = "latin-1 \xe9.ply";
+    save_scene(file_, scene);
+    EXPECT_EQ(load_scene(file_).settings.source.find("latin-1 "), 0u);
+}
+
+TEST_F(SceneFileTest, EveryTruncationIsRefused) {
+    save_scene(file_, tiny_scene());
+    const std::vector<std::byte> bytes = files::read(file_);
+    ASSERT_LT(bytes.size(), 2000u);
+    for (std::size_t length = bytes.size(); length-- > 0;) {
+        fs::resize_file(file_, length);
+        expect_refused("");
+    }
+}
+
+TEST_F(SceneFileTest, EveryCorruptByteIsRefusedOrHarmless) {
+    const Scene scene = tiny_scene();
+    save_scene(file_, scene);
+    const std::vector<std::byte> bytes = files::read(file_);
+    std::mt19937 random(2);
+    for (std::size_t i = 0; i < bytes.size(); ++i)
+        for (const unsigned change :
+             {1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 255u, 1u + static_cast<unsigned>(random() % 255u)}) {
+            scenes::put_byte(file_, i, bytes[i] ^ static_cast<std::byte>(change));
+            try {
+                EXPECT_TRUE(same(load_scene(file_), scene)) << "byte " << i;
+            } catch (const std::runtime_error& error) {
+                const std::string message = error.what();
+                EXPECT_EQ(message.find(file_.string() + ": "), 0u) << message;
+                EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+            }
+            scenes::put_byte(file_, i, bytes[i]);
+        }
+}
+
+/// Elements of a section, changed and put back; the file's checksums are right, its content is not.
+template<typename Element>
+void change(Sections& sections, const std::string& name,
+            const std::function<void(std::vector<Element>&)>& how) {
+    std::vector<std::byte>& bytes = sections.at(name);
+    std::vector<Element> elements(bytes.size() / sizeof(Element));
+    if (!elements.empty())
+        std::memcpy(elements.data(), bytes.data(), bytes.size());
+    how(elements);
+    bytes.resize(elements.size() * sizeof(Element));
+    if (!elements.empty())
+        std::memcpy(bytes.data(), elements.data(), bytes.size());
+}
+
+class ForgedSceneTest : public SceneFileTest {
+protected:
+    void SetUp() override {
+        SceneFileTest::SetUp();
+        save_scene(file_, rich_scene());
+        good_ = read_sections(file_);
+    }
+    void refused(const std::string& reason, const std::function<void(Sections&)>& forge) const {
+        Sections sections = good_;
+        forge(sections);
+        write_sections(file_, sections);
+        expect_refused(reason);
+    }
+    template<typename Element>
+    void refused(const std::string& reason, const std::string& name,
+                 const std::function<void(std::vector<Element>&)>& how) const {
+        refused(reason, [&](Sections& sections) { change<Element>(sections, name, how); });
+    }
+    Sections good_;
+};
+
+TEST_F(ForgedSceneTest, MissingSections) {
+    for (const auto& [name, bytes] : good_) {
+        if (name == "colors" || name == "uvs")
+            continue; // these two may be absent
+        refused("expected a section '" + name + "', got none", [&, n = name](Sections& s) { s.erase(n); });
+    }
+    Sections sections = good_;
+    sections.erase("colors");
+    sections.erase("uvs");
+    sections["of_the_future"] = std::vector<std::byte>(10);
+    write_sections(file_, sections);
+    EXPECT_TRUE(load_scene(file_).mesh.colors.empty());
+}
+
+TEST_F(ForgedSceneTest, SizesThatAreNoWholeNumberOfElements) {
+    for (const char* name :
+         {"positions", "triangles", "normals", "colors", "uvs", "order", "visible", "mixed"})
+        refused(std::string("'") + name + "'", [&](Sections& s) { s.at(name).pop_back(); });
+}
+
+TEST_F(ForgedSceneTest, SizesThatContradictEachOther) {
+    refused<glm::vec3>("'normals'", "positions", [](auto& p) { p.emplace_back(0.0f); });
+    refused<glm::vec3>("", "positions", [](auto& p) { p.pop_back(); });
+    refused<glm::vec3>("", "positions", [](auto& p) { p.clear(); });
+    refused<glm::vec3>("'normals'", "normals", [](auto& n) { n.pop_back(); });
+    refused<glm::vec3>("'colors'", "colors", [](auto& c) { c.pop_back(); });
+    refused<glm::vec3>("'colors'", "colors", [](auto& c) { c.clear(); });
+    refused<glm::vec2>("'uvs'", "uvs", [](auto& uv) { uv.emplace_back(0.0f); });
+    refused<std::uint32_t>("'order'", "order", [](auto& o) { o.pop_back(); });
+    refused<std::uint32_t>("'order'", "order", [](auto& o) { o.push_back(0); });
+    refused<std::uint64_t>("'counts'", "visible", [](auto& v) { v.pop_back(); });
+    refused<std::uint64_t>("'counts'", "visible", [](auto& v) { v.clear(); });
+    refused<std::uint64_t>("'counts'", "mixed", [](auto& m) { m.push_back(0); });
+    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c.pop_back(); });
+    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c.resize(c.size() + 16); });
+    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c.clear(); });
+}
+
+TEST_F(ForgedSceneTest, IndicesAndNumbersOutOfRange) {
+    const auto num_vertices = static_cast<std::uint32_t>(good_.at("positions").size() / sizeof(glm::vec3));
+    for (const std::uint32_t index : {num_vertices, ~0u})
+        refused<std::uint32_t>("'triangles'", "triangles", [&](auto& t) { t[t.size() / 2] = index; });
+    for (const float value :
+         {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        refused<glm::vec3>("'positions'", "positions", [&](auto& p) { p[7].y = value; });
+        refused<glm::vec3>("'normals'", "normals", [&](auto& n) { n[7].z = -value; });
+        refused<glm::vec3>("'colors'", "colors", [&](auto& c) { c[7].z = value; });
+    }
+    refused<std::uint32_t>("'order'", "order", [&](auto& o) { o[3] = num_vertices; });
+    refused<std::uint32_t>("'order'", "order", [](auto& o) { o[3] = o[4]; });
+    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c[c.size() / 3] = 17; });
+}
+
+TEST_F(ForgedSceneTest, BitsThatContradictTheCounts) {
+    refused<std::uint64_t>("'counts'", "mixed", [](auto& m) {
+        const auto word = std::find_if(m.begin(), m.end(), [](std::uint64_t w) { return w != 0; });
+        *word &= *word - 1;
+    });
+    refused("'counts'", [](Sections& s) { s.at("visible") = s.at("mixed"); });
+    refused<std::uint64_t>("'counts'", "visible", [](auto& v) { v.back() = ~std::uint64_t{0}; });
+}
+
+TEST_F(ForgedSceneTest, BrokenTrees) {
+    const auto flags = [&](const std::function<void(std::vector<std::uint8_t>&)>& how) {
+        refused<std::uint8_t>("", "quadtree", how);
+    };
+    flags([](auto& b) { b.clear(); });
+    flags([](auto& b) { b.resize(3); });
+    flags([](auto& b) { b.pop_back(); });
+    flags([](auto& b) { b.push_back(0); });
+    flags([](auto& b) { b[4] ^= 1u; });               // the first face is a leaf
+    flags([](auto& b) { b[b.size() / 2] ^= 0x10u; }); // a leaf more or less
+    flags([](auto& b) { std::fill(b.begin() + 4, b.end(), std::uint8_t{0xff}); });
+    flags([](auto& b) { std::fill(b.begin() + 4, b.end(), std::uint8_t{0}); });
+    flags([](auto& b) { b[0] ^= 1u; }); // number of flags
+    flags([](auto& b) { std::fill(b.begin(), b.begin() + 4, std::uint8_t{0xff}); });
+    // A good tree that is not this scene's.
+    flags([](auto& b) { b = {6, 0, 0, 0, 0}; });
+}
+
+TEST_F(ForgedSceneTest, SettingsThatAreNone) {
+    const auto settings = [&](const std::string& text) {
+        refused("'settings'", [&](Sections& s) {
+            s.at("settings").resize(text.size());
+            if (!text.empty())
+                std::memcpy(s.at("settings").data(), text.data(), text.size());
+        });
+    };
+    settings("");
+    settings("{}");
+    settings("[1, 2]");
+    settings("null");
+    settings("{\"tolerance\": 1");
+    settings(std::string(100000, '['));
+    const auto with = [](const std::string& name, const std::string& value) {
+        std::vector<std::pair<std::string, std::string>> members = {
+            {"tolerance", "0.1"},    {"min_level", "3"}, {"face_resolution", "64"},  {"bias", "0"},
+            {"floor_vertices", "0"}, {"source", "\"\""}, {"source_hash", "\"00ff\""}};
+        std::string text;
+        for (auto& [key, content] : members)
+            text += (text.empty() ? "{\"" : ", \"") + key + "\": " + (key == name ? value : content);
+        return text + "}";
+    };
+    settings(with("tolerance", "\"much\""));
+    settings(with("tolerance", "null"));
+    settings(with("min_level", "[]"));
+    settings(with("source", "7"));
+    settings(with("source_hash", "\"none\""));
+    settings(with("source_hash", "12"));
+    settings(with("source_hash", "\"123456789abcdef01\""));
+    // Numbers that the member cannot hold.
+    settings(with("min_level", "-1"));
+    settings(with("min_level", "1.5"));
+    settings(with("face_resolution", "4294967296"));
+    settings(with("face_resolution", "1e30"));
+    settings(with("floor_vertices", "-7"));
+    settings(with("tolerance", "1e300"));
+}
+
+TEST_F(SceneFileTest, RefusesToSaveWhatItCouldNotLoad) {
+    Scene scene = tiny_scene();
+    scene.mesh.positions.pop_back(); // receivers that are not the mesh's vertices
+    scene.mesh.normals.pop_back();
+    EXPECT_THROW(save_scene(file_, scene), std::invalid_argument);
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(SceneFileTest, TheCheckAcceptsWhatAPrecomputeWrites) {
+    Scene tiny = tiny_scene();
+    tiny.settings.floor_vertices = 0;
+    for (const Scene& scene : {rich_scene(), tiny}) {
+        save_scene(file_, scene);
+        EXPECT_NO_THROW(check_scene(load_scene(file_), file_));
+    }
+}
+
+TEST_F(SceneFileTest, TheCheckNamesWhatIsUnsound) {
+    const auto unsound = [&](const std::string& reason, const std::function<void(Scene&)>& how) {
+        Scene scene = rich_scene();
+        scene.receivers = vertex_receivers(scene.mesh);
+        how(scene);
+        scenes::expect_refused(file_, reason, [&] { check_scene(scene, file_); });
+    };
+    unsound("normals of length 1 or 0, got element 7", [](Scene& s) { s.mesh.normals[7] *= 1.01f; });
+    unsound("colours >= 0, got element 3", [](Scene& s) {
+        std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
+        s.mesh.colors[3].g = -1.0f;
+    });
+    const auto with_colours = [](Scene& s) {
+        std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
+    };
+    const auto setting = [&](const std::string& reason, const std::function<void(SceneSettings&)>& how) {
+        unsound(reason, [&](Scene& s) {
+            with_colours(s);
+            how(s.settings);
+        });
+    };
+    setting("a tolerance >= 0", [](SceneSettings& s) { s.tolerance = -1.0f; });
+    setting("a bias >= 0", [](SceneSettings& s) { s.bias = -1.0f; });
+    setting("a face resolution from 1", [](SceneSettings& s) { s.face_resolution = 0; });
+    setting("a floor among", [](SceneSettings& s) { s.floor_vertices = 1000; });
+    setting("clusters of levels", [](SceneSettings& s) { s.face_resolution = 2; });
+    setting("clusters of levels", [](SceneSettings& s) { s.min_level = 5; });
+    setting("highlights, got none", [](SceneSettings& s) { s.glossy_tolerance = 0.1f; });
+    unsound("finite uvs", [&](Scene& s) {
+        with_colours(s);
+        s.mesh.uvs[2].x = std::numeric_limits<float>::infinity();
+    });
+}
+
+TEST_F(SceneFileTest, UnwritablePlacesLeaveNothing) {
+    const fs::path missing = folder_ / "missing" / "scene.prt";
+    scenes::expect_refused(missing, "cannot write", [&] { save_scene(missing, tiny_scene()); });
+    EXPECT_TRUE(fs::is_empty(folder_));
+}
+
+TEST_F(SceneFileTest, NothingToLoad) {
+    expect_refused("cannot read");
+    scenes::expect_refused(folder_, "cannot read", [&] { static_cast<void>(load_scene(folder_)); });
+}
+
+TEST_F(SceneFileTest, FileHashIsXxHash64OfTheBytes) {
+    std::ofstream(file_) << "abc";
+    EXPECT_EQ(file_hash(file_), 0x44bc2cf5ad770999u); // published test value of XXH64("abc", seed 0)
+    EXPECT_THROW(static_cast<void>(file_hash(folder_ / "nothing")), std::runtime_error);
+}
+
+} // namespace
+} // namespace relumine::prt
