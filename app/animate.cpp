@@ -1,5 +1,5 @@
-// A scene under an environment that changes over time, frame by frame: the next frame is loaded and binned while this one is relit and
-// written.
+// A scene under an environment that changes over time, frame by frame: the next frame is loaded and
+// binned while this one is relit and written.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -32,8 +32,10 @@ namespace {
 
 /// A frame as it lights the scene.
 struct PreparedFrame {
-    relight::BinnedEnvironment binned = {}; ///< --method prt
-    cubemap::CubeMap background = {};       ///< the others, where pictures are drawn
+    /// --method prt
+    relight::BinnedEnvironment binned = {};
+    /// The others, where pictures are drawn
+    cubemap::CubeMap background = {};
     std::vector<lights::DistantLight> lights = {};
     double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0;
 };
@@ -47,11 +49,14 @@ struct Totals {
 
 class Animation {
 public:
-    Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence, Session& session)
-        : options_(options), sequence_(sequence), session_(session), pattern_(options.output_pattern()),
-          lit_(options.scene), relighter_(lit_.scene().transfer, lit_.shadow_rays()),
-          binner_(lit_.scene().transfer,
-                  relighter_.shadow_rays().blockers != nullptr ? relighter_.shadow_rays().tolerance : 0.0f),
+    Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence,
+              Session& session)
+        : options_(options), sequence_(sequence), session_(session),
+          pattern_(options.output_pattern()), lit_(options.scene),
+          relighter_(lit_.scene().transfer, lit_.shadow_rays()),
+          binner_(lit_.scene().transfer, relighter_.shadow_rays().blockers != nullptr
+                                             ? relighter_.shadow_rays().tolerance
+                                             : 0.0f),
           writer_(options.output, lit_) {}
 
     void run() {
@@ -66,8 +71,8 @@ public:
         if (!options_.vertices.empty())
             vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().receivers.size());
         const auto progress = session_.progress("frames");
-        cubemap::ReadAhead<PreparedFrame> ahead(todo_.size(),
-                                                [this](std::size_t i) { return prepare(todo_[i]); });
+        cubemap::ReadAhead<PreparedFrame> ahead(
+            todo_.size(), [this](std::size_t i) { return prepare(todo_[i]); });
         for (std::size_t i = 0; i < todo_.size(); ++i) {
             session_.poll();
             Stopwatch watch;
@@ -116,15 +121,17 @@ private:
             record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")),
                             options_.settings(sequence_), options_.resume);
         for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
-            const bool is_there = record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
-                                                              output_path(frame));
+            const bool is_there =
+                record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
+                                            output_path(frame));
             is_there_.push_back(is_there);
             num_kept_ += static_cast<std::size_t>(is_there);
             if (!is_there || !options_.vertices.empty())
                 todo_.push_back(frame);
         }
         if (options_.resume)
-            session_.say(fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
+            session_.say(
+                fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
     }
 
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
@@ -137,43 +144,47 @@ private:
 
     void cluster_frames() {
         Stopwatch watch;
-        const lights::FrameSamples samples =
-            lights::sample_frames([this](std::size_t frame) { return image_of(frame); }, sequence_.size(),
-                                  {.samples_per_frame = options_.num_samples,
-                                   .seed = options_.seed,
-                                   .stop = session_.stop(),
-                                   .on_progress = session_.progress("samples")});
+        const lights::FrameSamples samples = lights::sample_frames(
+            [this](std::size_t frame) { return image_of(frame); }, sequence_.size(),
+            {.samples_per_frame = options_.num_samples,
+             .seed = options_.seed,
+             .stop = session_.stop(),
+             .on_progress = session_.progress("samples")});
         session_.end_progress();
         session_.poll();
-        const lights::LightClusters clusters = lights::cluster_lights(
-            samples, {.num_clusters = options_.num_clusters, .seed = options_.seed, .stop = session_.stop()});
+        const lights::LightClusters clusters =
+            lights::cluster_lights(samples, {.num_clusters = options_.num_clusters,
+                                             .seed = options_.seed,
+                                             .stop = session_.stop()});
         session_.poll();
-        frame_lights_ = lights::frame_lights(
-            clusters, {.strength = options_.even ? lights::Strength::Even : lights::Strength::Followed,
-                       .fade = options_.fade});
+        frame_lights_ =
+            lights::frame_lights(clusters, {.strength = options_.even ? lights::Strength::Even
+                                                                      : lights::Strength::Followed,
+                                            .fade = options_.fade});
         const lights::KMeans& means = clusters.k_means;
-        session_.say(
-            fmt::format("{} samples in {} clusters, {} iterations{}, objective {:.4g} to {:.4g}, {} started "
-                        "again, {:.1f} s; {:.1f} lights live in a frame",
-                        samples.samples.size(), clusters.clusters.size(), means.objective.size(),
-                        means.converged ? "" : " (not converged)",
-                        means.objective.empty() ? 0.0 : means.objective.front(),
-                        means.objective.empty() ? 0.0 : means.objective.back(), means.num_reseeded,
-                        watch.lap(), clusters.mean_live()));
-        extra_report_ = {{"samples", samples.samples.size()}, {"light_clusters", clusters.clusters.size()},
-                         {"objective", means.objective},      {"reseeded", means.num_reseeded},
-                         {"converged", means.converged},      {"mean_live_lights", clusters.mean_live()},
-                         {"seconds_k_means", means.seconds}};
+        session_.say(fmt::format(
+            "{} samples in {} clusters, {} iterations{}, objective {:.4g} to {:.4g}, {} started "
+            "again, {:.1f} s; {:.1f} lights live in a frame",
+            samples.samples.size(), clusters.clusters.size(), means.objective.size(),
+            means.converged ? "" : " (not converged)",
+            means.objective.empty() ? 0.0 : means.objective.front(),
+            means.objective.empty() ? 0.0 : means.objective.back(), means.num_reseeded, watch.lap(),
+            clusters.mean_live()));
+        extra_report_ = {
+            {"samples", samples.samples.size()}, {"light_clusters", clusters.clusters.size()},
+            {"objective", means.objective},      {"reseeded", means.num_reseeded},
+            {"converged", means.converged},      {"mean_live_lights", clusters.mean_live()},
+            {"seconds_k_means", means.seconds}};
     }
 
     void measure() {
         const std::filesystem::path own(options_.vertices);
         const std::filesystem::path reference(options_.reference);
         const relight::FlickerReport flicker = relight::measure_flicker({&own, 1}, {&reference, 1});
-        session_.say(
-            fmt::format("{}: temporal inconsistency {:.5g} on average, {:.5g} at worst; relative L2 {:.5g}",
-                        options_.vertices, flicker.mean_inconsistency, flicker.worst_inconsistency,
-                        flicker.mean_relative_l2));
+        session_.say(fmt::format(
+            "{}: temporal inconsistency {:.5g} on average, {:.5g} at worst; relative L2 {:.5g}",
+            options_.vertices, flicker.mean_inconsistency, flicker.worst_inconsistency,
+            flicker.mean_relative_l2));
         extra_report_["mean_inconsistency"] = flicker.mean_inconsistency;
         extra_report_["inconsistency"] = flicker.inconsistency;
         extra_report_["mean_relative_l2"] = flicker.mean_relative_l2;
@@ -181,9 +192,9 @@ private:
         if (options_.plot.empty())
             return;
         const relight::NamedReport named{options_.method, flicker};
-        files::save_text(options_.plot,
-                         relight::inconsistency_plot(
-                             {&named, 1}, fmt::format("Temporal inconsistency, {}", options_.frames)));
+        files::save_text(options_.plot, relight::inconsistency_plot(
+                                            {&named, 1}, fmt::format("Temporal inconsistency, {}",
+                                                                     options_.frames)));
     }
 
     /// Runs on another thread; touches no state but the binner.
@@ -201,13 +212,14 @@ private:
                 result.lights =
                     options_.method == "clusters"
                         ? frame_lights_.frames.at(frame)
-                        : lights::place_lights(lights::Method::Importance, map, options_.num_lights,
-                                               options_.seed +
-                                                   static_cast<std::uint64_t>(sequence_.number(frame)));
+                        : lights::place_lights(
+                              lights::Method::Importance, map, options_.num_lights,
+                              options_.seed + static_cast<std::uint64_t>(sequence_.number(frame)));
                 result.background = std::move(map);
             }
         } catch (const std::invalid_argument& error) { // a radiance beyond all bounds
-            throw std::runtime_error(fmt::format("{}: {}", sequence_.path(frame).string(), error.what()));
+            throw std::runtime_error(
+                fmt::format("{}: {}", sequence_.path(frame).string(), error.what()));
         }
         result.seconds_bin = watch.lap();
         return result;
@@ -222,7 +234,8 @@ private:
             totals_.seconds_trace += relighter_.set_lights(frame.lights).seconds_trace;
             return std::move(frame.background);
         }
-        const relight::UpdateReport update = relighter_.set_frame(std::move(frame.binned), options_.bound);
+        const relight::UpdateReport update =
+            relighter_.set_frame(std::move(frame.binned), options_.bound);
         totals_.seconds_trace += update.seconds_trace;
         totals_.num_clusters += update.num_clusters;
         totals_.num_resummed += static_cast<std::size_t>(update.resummed);
@@ -240,13 +253,15 @@ private:
     }
 
     void report() {
-        const double per_frame = totals_.num_lit == 0 ? 0.0 : 1e3 / static_cast<double>(totals_.num_lit);
+        const double per_frame =
+            totals_.num_lit == 0 ? 0.0 : 1e3 / static_cast<double>(totals_.num_lit);
         const double relight_ms = per_frame * totals_.seconds_relight;
         session_.say(fmt::format(
-            "{}: {} frames by {}, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that load {:.0f}, "
+            "{}: {} frames by {}, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that "
+            "load {:.0f}, "
             "resample {:.0f}, bin {:.1f} ms; {:.1f} frames/s in all",
-            options_.output.path.empty() ? options_.vertices : options_.output.path, totals_.num_lit,
-            options_.method, relight_ms,
+            options_.output.path.empty() ? options_.vertices : options_.output.path,
+            totals_.num_lit, options_.method, relight_ms,
             totals_.seconds_trace > 0.0
                 ? fmt::format(" (shadow rays {:.1f} ms)", per_frame * totals_.seconds_trace)
                 : "",
@@ -289,7 +304,8 @@ private:
     std::vector<std::size_t> todo_;
     std::size_t num_kept_ = 0, num_written_ = 0;
     Totals totals_;
-    lights::FrameLights frame_lights_; ///< --method clusters
+    /// --method clusters
+    lights::FrameLights frame_lights_;
     nlohmann::json extra_report_ = nlohmann::json::object();
     std::vector<double> seconds_relight_frames_;
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
@@ -312,8 +328,9 @@ void run(const AnimateOptions& options, Session& session) {
     } catch (const prt::Cancelled&) {
         if (options.output.path.empty())
             throw;
-        throw std::runtime_error(fmt::format("cancelled; {} of {} frames are written, --resume goes on",
-                                             animation.num_written(), sequence.size()));
+        throw std::runtime_error(
+            fmt::format("cancelled; {} of {} frames are written, --resume goes on",
+                        animation.num_written(), sequence.size()));
     }
 }
 

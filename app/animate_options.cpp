@@ -18,23 +18,25 @@ namespace fs = std::filesystem;
 void AnimateOptions::add_to(CLI::App& command) {
     scene.add_to(command);
     command
-        .add_option("FRAMES", frames,
-                    "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
+        .add_option(
+            "FRAMES", frames,
+            "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
         ->required();
     command.add_option("--frames", range,
                        "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)");
     environment.add_conversion_to(command);
     command
-        .add_option(
-            "--method", method,
-            "prt: clusters' transfer, exact; clusters: lights that live over many frames (Staton et al.); "
-            "importance: a few lights chosen anew for every frame")
+        .add_option("--method", method,
+                    "prt: clusters' transfer, exact; clusters: lights that live over many frames "
+                    "(Staton et al.); "
+                    "importance: a few lights chosen anew for every frame")
         ->check(CLI::IsMember({"prt", "clusters", "importance"}))
         ->capture_default_str();
     command
-        .add_option("--bound", bound,
-                    "prt: update only clusters whose light changed by more than this part of it; 0: all "
-                    "that changed")
+        .add_option(
+            "--bound", bound,
+            "prt: update only clusters whose light changed by more than this part of it; 0: all "
+            "that changed")
         ->check(number_between(0.0, 1.0))
         ->capture_default_str();
     command.add_option("--lights", num_lights, "importance: lights in a frame")
@@ -55,8 +57,9 @@ void AnimateOptions::add_to(CLI::App& command) {
     output.add_to(command);
     command.get_option("--output")
         ->required(false)
-        ->description("what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
-                      "(numbers), .ply, .glb");
+        ->description(
+            "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
+            "(numbers), .ply, .glb");
     command.add_option("--vertices", vertices,
                        "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
     command.add_option(
@@ -67,7 +70,8 @@ void AnimateOptions::add_to(CLI::App& command) {
     command.add_option("--fps", frames_per_second, "frames per second of the movie")
         ->check(number_between(0.01, 1000.0))
         ->capture_default_str();
-    command.add_flag("--resume", resume, "keep frames that are there already, from the same inputs");
+    command.add_flag("--resume", resume,
+                     "keep frames that are there already, from the same inputs");
 }
 
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
@@ -75,8 +79,9 @@ std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
         return std::nullopt;
     const auto pattern = cubemap::FramePattern::parse(output.path);
     if (!pattern)
-        throw std::runtime_error(fmt::format(
-            "{}: expected a place for the frame's number as in lit.%04d.png, got none", output.path));
+        throw std::runtime_error(
+            fmt::format("{}: expected a place for the frame's number as in lit.%04d.png, got none",
+                        output.path));
     return pattern;
 }
 
@@ -98,14 +103,16 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     }
     if (!vertices.empty()) {
         if (fs::path(vertices).extension() != ".npy")
-            throw std::runtime_error(fmt::format("{}: expected a name that ends in .npy", vertices));
+            throw std::runtime_error(
+                fmt::format("{}: expected a name that ends in .npy", vertices));
         check_output(vertices, {scene.path});
     }
     if (!reference.empty()) {
         if (vertices.empty())
             throw CLI::ValidationError("--measure", "expected --vertices with it");
         if (fs::path(reference).extension() != ".npy" || !fs::exists(reference))
-            throw std::runtime_error(fmt::format("{}: expected a .npy file that is there", reference));
+            throw std::runtime_error(
+                fmt::format("{}: expected a .npy file that is there", reference));
         check_output(vertices, {reference});
     }
     if (!plot.empty()) {
@@ -119,20 +126,20 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
         if (fs::path(movie).extension() != ".mp4")
             throw std::runtime_error(fmt::format("{}: expected a name that ends in .mp4", movie));
         if (fs::path(output.path).extension() != ".png")
-            throw std::runtime_error(
-                fmt::format("{}: expected -o with .png frames to make it of, got '{}'", movie, output.path));
+            throw std::runtime_error(fmt::format(
+                "{}: expected -o with .png frames to make it of, got '{}'", movie, output.path));
         static_cast<void>(find_ffmpeg(movie));
         check_output(movie, {scene.path});
     }
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all =
-        fmt::format("{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {} {} {}", RELUMINE_VERSION,
-                    FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
-                    environment.face_resolution, environment.fix, environment.rotate_degrees, method, bound,
-                    num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye,
-                    output.target, output.fov_degrees, output.size, output.transparent, output.gutter);
+    std::string all = fmt::format(
+        "{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {} {} {}", RELUMINE_VERSION,
+        FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
+        environment.face_resolution, environment.fix, environment.rotate_degrees, method, bound,
+        num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye, output.target,
+        output.fov_degrees, output.size, output.transparent, output.gutter);
     if (method == "clusters") { // every frame depends on all
         all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
         for (const cubemap::FrameFile& frame : sequence.files())

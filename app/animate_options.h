@@ -18,22 +18,35 @@ namespace relumine::app {
 
 struct AnimateOptions {
     SceneOptions scene;
-    std::string frames; ///< FRAMES
-    std::string range;  ///< --frames; empty: all
+    /// FRAMES
+    std::string frames;
+    /// --frames; empty: all
+    std::string range;
     EnvironmentOptions environment;
     std::string method = "prt";
-    double bound = 0.0;          ///< --method prt
-    std::size_t num_lights = 64; ///< --method importance: lights per frame
+    /// --method prt
+    double bound = 0.0;
+    /// --method importance: lights per frame
+    std::size_t num_lights = 64;
     std::uint64_t seed = 1;
-    std::size_t num_clusters = 512; ///< --method clusters: of all frames
-    std::size_t num_samples = 1024; ///< of a frame
-    std::size_t fade = 0;           ///< frames
-    bool even = false;              ///< the paper's strength
-    std::string reference;          ///< --measure: .npy of all frames, or empty
-    std::string plot;               ///< of --measure: .svg, or empty
-    OutputOptions output;           ///< path: a pattern, or empty
-    std::string vertices;           ///< .npy, or empty
-    std::string movie;              ///< .mp4, or empty
+    /// --method clusters: of all frames
+    std::size_t num_clusters = 512;
+    /// Of a frame
+    std::size_t num_samples = 1024;
+    /// frames
+    std::size_t fade = 0;
+    /// The paper's strength
+    bool even = false;
+    /// --measure: .npy of all frames, or empty
+    std::string reference;
+    /// Of --measure: .svg, or empty
+    std::string plot;
+    /// Path: a pattern, or empty
+    OutputOptions output;
+    /// .npy, or empty
+    std::string vertices;
+    /// .mp4, or empty
+    std::string movie;
     double frames_per_second = 24.0;
     bool resume = false;
 
@@ -41,7 +54,8 @@ struct AnimateOptions {
 
     /// Refuses what cannot be done before any work is.
     void check(const cubemap::FrameSequence& sequence) const;
-    /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no place.
+    /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no
+    /// place.
     [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
     /// All that shapes every frame, for FrameRecord.
     [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;

@@ -8,18 +8,21 @@
 namespace relumine::app {
 
 void CheckpointOptions::add_to(CLI::App& command) {
-    command.add_flag("--resume", resume_,
-                     "go on from the last checkpoint of the same work, SCENE.prt.checkpoint, where there is "
-                     "one; without it the work begins anew and its checkpoints replace that one");
+    command.add_flag(
+        "--resume", resume_,
+        "go on from the last checkpoint of the same work, SCENE.prt.checkpoint, where there is "
+        "one; without it the work begins anew and its checkpoints replace that one");
     command
-        .add_option("--checkpoint-seconds", seconds_,
-                    "time between two checkpoints; 0: none. The last goes away when the scene is written")
+        .add_option(
+            "--checkpoint-seconds", seconds_,
+            "time between two checkpoints; 0: none. The last goes away when the scene is written")
         ->check(number_between(0.0, 86400.0))
         ->capture_default_str();
 }
 
-std::unique_ptr<prt::CheckpointFile>
-CheckpointOptions::open(const std::string& output, prt::Fingerprint fingerprint, Session& session) const {
+std::unique_ptr<prt::CheckpointFile> CheckpointOptions::open(const std::string& output,
+                                                             prt::Fingerprint fingerprint,
+                                                             Session& session) const {
     if (seconds_ == 0.0 && !resume_)
         return nullptr;
     // A disk that stays full need not be told of every twenty seconds.
@@ -30,12 +33,13 @@ CheckpointOptions::open(const std::string& output, prt::Fingerprint fingerprint,
     const double never = 1e9;
     auto checkpoint = std::make_unique<prt::CheckpointFile>(
         output, std::move(fingerprint),
-        prt::CheckpointFile::Options{.resume = resume_,
-                                     .interval =
-                                         std::chrono::duration<double>(seconds_ == 0.0 ? never : seconds_),
-                                     .on_problem = warn});
+        prt::CheckpointFile::Options{
+            .resume = resume_,
+            .interval = std::chrono::duration<double>(seconds_ == 0.0 ? never : seconds_),
+            .on_problem = warn});
     if (checkpoint->exists())
-        session.detail(fmt::format("going on from {}", prt::CheckpointFile::folder_for(output).string()));
+        session.detail(
+            fmt::format("going on from {}", prt::CheckpointFile::folder_for(output).string()));
     return checkpoint;
 }
 

@@ -17,7 +17,8 @@ class CheckpointOptions {
 public:
     void add_to(CLI::App& command);
 
-    /// The checkpoint beside `output`; none where it is switched off. Throws std::runtime_error when one is to be resumed from that does not fit.
+    /// The checkpoint beside `output`; none where it is switched off. Throws std::runtime_error
+    /// when one is to be resumed from that does not fit.
     [[nodiscard]] std::unique_ptr<prt::CheckpointFile>
     open(const std::string& output, prt::Fingerprint fingerprint, Session& session) const;
 

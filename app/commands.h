@@ -1,4 +1,5 @@
-// The subcommands. Each adds itself to the program; its work runs when the command line has been read.
+// The subcommands. Each adds itself to the program; its work runs when the command line has been
+// read.
 #pragma once
 
 #include <CLI/CLI.hpp>

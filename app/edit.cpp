@@ -33,12 +33,15 @@ struct Options {
     EnvironmentOptions environment;
     std::string layers;
     OutputOptions output;
-    std::string disc; ///< direction of the quick edit
+    /// Direction of the quick edit
+    std::string disc;
     double radius_degrees = 10.0;
     std::string gain = "2";
     std::string saved_environment;
-    std::string who;    ///< position
-    std::string lit_by; ///< a layer or a disc
+    /// position
+    std::string who;
+    /// A layer or a disc
+    std::string lit_by;
     bool watch = false;
 };
 
@@ -60,7 +63,8 @@ cubemap::LightLayer disc_layer(const Options& options) {
     const glm::vec3 gain =
         parse_vec3("--gain", is_grey ? fmt::format("{0},{0},{0}", options.gain) : options.gain);
     if (!(gain.r >= 0.0f && gain.g >= 0.0f && gain.b >= 0.0f))
-        throw CLI::ValidationError("--gain", fmt::format("expected numbers >= 0, got '{}'", options.gain));
+        throw CLI::ValidationError("--gain",
+                                   fmt::format("expected numbers >= 0, got '{}'", options.gain));
     cubemap::LightLayer layer;
     layer.name = "disc";
     layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
@@ -88,7 +92,8 @@ std::string numbered(const std::string& pattern, int frame) {
     }
     if (name == pattern)
         throw std::runtime_error(fmt::format(
-            "{}: expected a number like %04d in the name, as the layers have frames, got none", pattern));
+            "{}: expected a number like %04d in the name, as the layers have frames, got none",
+            pattern));
     return name;
 }
 
@@ -166,9 +171,10 @@ private:
                           {"receivers", report.num_receivers},
                           {"sharp_lights", report.num_sharp_lights},
                           {"seconds", report.seconds}});
-        session_.say(fmt::format("{}: touched {} of {} clusters in {:.2f} ms; a full relight took {:.1f} ms",
-                                 name, report.num_clusters, lit_.scene().transfer.num_clusters(),
-                                 1e3 * report.seconds, 1e3 * seconds_full_));
+        session_.say(
+            fmt::format("{}: touched {} of {} clusters in {:.2f} ms; a full relight took {:.1f} ms",
+                        name, report.num_clusters, lit_.scene().transfer.num_clusters(),
+                        1e3 * report.seconds, 1e3 * seconds_full_));
     }
 
     void apply_one_by_one() {
@@ -191,7 +197,8 @@ private:
         const int first = static_cast<int>(std::ceil(layers_.frames.front().frame));
         const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
         for (int frame = first; frame <= last; ++frame) {
-            record(fmt::format("frame {}", frame), editor_.set_layers(cubemap::layers_at(layers_, frame)));
+            record(fmt::format("frame {}", frame),
+                   editor_.set_layers(cubemap::layers_at(layers_, frame)));
             save(numbered(options_.output.path, frame), editor_.radiance(), editor_.environment());
             session_.poll();
         }
@@ -209,17 +216,19 @@ private:
         const cubemap::CubeMap map = relight::contribution_map(editor_.relighter(), {&receiver, 1});
         save_map(options_.output.path, map, options_.output.exposure_ev);
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
-                                 prt::receiver_name(lit_.scene().layout), receiver, nearest->x, nearest->y,
-                                 nearest->z));
+                                 prt::receiver_name(lit_.scene().layout), receiver, nearest->x,
+                                 nearest->y, nearest->z));
     }
 
     /// The scene as a region of the environment lights it, with that region behind it.
     void save_lit_by() {
-        const LitBy part = lit_by(editor_.relighter(), lit_by_region(options_.lit_by, editor_.layers()));
+        const LitBy part =
+            lit_by(editor_.relighter(), lit_by_region(options_.lit_by, editor_.layers()));
         save(options_.output.path, part.radiance, part.environment);
         lit_by_share_ = part.share;
-        session_.say(fmt::format("{}: what '{}' lights, {:.1f} % of the light that the scene reflects",
-                                 options_.output.path, options_.lit_by, 100.0 * part.share));
+        session_.say(
+            fmt::format("{}: what '{}' lights, {:.1f} % of the light that the scene reflects",
+                        options_.output.path, options_.lit_by, 100.0 * part.share));
     }
 
     void watch() {
@@ -231,8 +240,10 @@ private:
             try {
                 LoadedEnvironment environment = load_environment(options_.environment, session_);
                 const double seconds_load = environment.seconds_load + environment.seconds_resample;
-                const relight::UpdateReport report = editor_.update_base(std::move(environment.map));
-                const double since_saved = std::chrono::duration<double>(Clock::now() - *saved).count();
+                const relight::UpdateReport report =
+                    editor_.update_base(std::move(environment.map));
+                const double since_saved =
+                    std::chrono::duration<double>(Clock::now() - *saved).count();
                 Stopwatch output;
                 record("saved", report);
                 const std::size_t index = edits_.size() - 1;
@@ -243,10 +254,11 @@ private:
                 edits_[index].update({{"seconds_load", seconds_load},
                                       {"seconds_reaction", seconds_reaction},
                                       {"seconds_output", seconds_output}});
-                session_.say(fmt::format("lit {:.1f} ms after it was saved, and {:.1f} ms to load it; "
-                                         "{:.1f} ms to write {}",
-                                         1e3 * seconds_reaction, 1e3 * seconds_load, 1e3 * seconds_output,
-                                         options_.output.path));
+                session_.say(
+                    fmt::format("lit {:.1f} ms after it was saved, and {:.1f} ms to load it; "
+                                "{:.1f} ms to write {}",
+                                1e3 * seconds_reaction, 1e3 * seconds_load, 1e3 * seconds_output,
+                                options_.output.path));
             } catch (const std::runtime_error& error) {
                 session_.say(error.what());
             }
@@ -274,29 +286,32 @@ void run(const Options& options, Session& session) {
 } // namespace
 
 void add_edit(CLI::App& program, Session& session) {
-    CLI::App& command =
-        *program.add_subcommand("edit", "put light layers over the environment and update the scene");
+    CLI::App& command = *program.add_subcommand(
+        "edit", "put light layers over the environment and update the scene");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command);
     command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)");
     options->output.add_to(command);
-    command.add_option(
-        "--disc", options->disc,
-        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the scene to the light");
-    command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
+    command.add_option("--disc", options->disc,
+                       "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
+                       "scene to the light");
+    command
+        .add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
         ->check(number_between(1e-6, 180.0))
         ->capture_default_str();
     command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
         ->capture_default_str();
     command.add_option("--save-env", options->saved_environment,
                        "write the edited environment: cube .exr or .hdr");
-    command.add_option("--who", options->who,
-                       "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
+    command.add_option(
+        "--who", options->who,
+        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
     command
-        .add_option("--lit-by", options->lit_by,
-                    "write the scene as lit by a region of the environment alone: a layer's name, or "
-                    "X,Y,Z,RADIUS for a disc")
+        .add_option(
+            "--lit-by", options->lit_by,
+            "write the scene as lit by a region of the environment alone: a layer's name, or "
+            "X,Y,Z,RADIUS for a disc")
         ->excludes("--who");
     command.add_flag("--watch", options->watch,
                      "go on: when another program saves ENV, update and write OUT again");

@@ -24,11 +24,14 @@ namespace {
 struct Options {
     std::string input;
     std::string output;
-    std::string layout; ///< of the input; empty: as the file says
+    /// Of the input; empty: as the file says
+    std::string layout;
     std::string from = "openexr";
-    std::string to_layout; ///< empty: what `to` usually reads
+    /// Empty: what `to` usually reads
+    std::string to_layout;
     std::string to = "openexr";
-    std::string size; ///< W or WxH
+    /// W or WxH
+    std::string size;
     std::uint32_t face_resolution = 0;
     std::string samples = "auto";
     double rotate_degrees = 0.0;
@@ -50,15 +53,17 @@ cubemap::EnvironmentImage load(const Options& options, const cubemap::Convention
     if (!options.layout.empty()) {
         load_options.layout = parse_layout(options.layout);
         if (!from.reads(*load_options.layout))
-            throw CLI::ValidationError("--layout", fmt::format("expected {} with --from {}, got {}",
-                                                               layouts_of(from), from.name, options.layout));
+            throw CLI::ValidationError("--layout",
+                                       fmt::format("expected {} with --from {}, got {}",
+                                                   layouts_of(from), from.name, options.layout));
     } else if (from.layouts.size() == 1) {
         load_options.layout = from.layouts.front();
     }
     cubemap::EnvironmentImage image = cubemap::load_environment(options.input, load_options);
     if (!from.reads(image.layout))
-        throw std::runtime_error(fmt::format("{}: expected {} with --from {}, got a {}", options.input,
-                                             layouts_of(from), from.name, cubemap::name(image.layout)));
+        throw std::runtime_error(fmt::format("{}: expected {} with --from {}, got a {}",
+                                             options.input, layouts_of(from), from.name,
+                                             cubemap::name(image.layout)));
     // Programs other than OpenEXR's own do not look at the attribute.
     if (!from.has_attribute && image.sampling == cubemap::Sampling::Borders) {
         image.sampling = cubemap::Sampling::TexelCentres;
@@ -67,7 +72,8 @@ cubemap::EnvironmentImage load(const Options& options, const cubemap::Convention
     }
     session.detail(fmt::format("{}: {}", options.input, image.assumptions));
     if (image.fixed)
-        session.say(fmt::format("{}: replaced {} bad pixels", options.input, image.bad_pixels.count()));
+        session.say(
+            fmt::format("{}: replaced {} bad pixels", options.input, image.bad_pixels.count()));
     return image;
 }
 
@@ -80,7 +86,8 @@ std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
     char rest = 0;
     const int found = std::sscanf(text.c_str(), "%ux%u%c", &width, &height,
                                   &rest); // NOLINT(cert-err34-c): checked by the count
-    if ((found != 2 && !(found == 1 && text.find('x') == std::string::npos)) || text.front() == '-' ||
+    if ((found != 2 && !(found == 1 && text.find('x') == std::string::npos)) ||
+        text.front() == '-' ||
         text != (found == 2 ? fmt::format("{}x{}", width, height) : fmt::format("{}", width)))
         throw CLI::ValidationError("--size", fmt::format("expected W or WxH, got '{}'", text));
     return cubemap::ImageSize{width, found == 2 ? height : 0};
@@ -90,11 +97,12 @@ std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
 cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layout) {
     constexpr std::uint64_t MostPixels = std::uint64_t{1} << 28; // 3 GB
     if (!cubemap::fits(layout, size.width, size.height))
-        throw CLI::ValidationError("--size", fmt::format("expected the proportions of a {}, got {}x{}",
-                                                         cubemap::name(layout), size.width, size.height));
+        throw CLI::ValidationError("--size",
+                                   fmt::format("expected the proportions of a {}, got {}x{}",
+                                               cubemap::name(layout), size.width, size.height));
     if (std::uint64_t{size.width} * size.height > MostPixels)
-        throw CLI::ValidationError("--size", fmt::format("expected at most {} pixels, got {}x{}", MostPixels,
-                                                         size.width, size.height));
+        throw CLI::ValidationError("--size", fmt::format("expected at most {} pixels, got {}x{}",
+                                                         MostPixels, size.width, size.height));
     return size;
 }
 
@@ -107,13 +115,14 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
         if (size->height != 0)
             return checked(*size, layout);
         // The height that belongs to a width.
-        const cubemap::ImageSize unit = layout == cubemap::Layout::LatLong ? cubemap::ImageSize{2, 1}
-                                        : cubemap::has_faces(layout)       ? cubemap::natural_size(layout, 1)
-                                                                           : cubemap::ImageSize{1, 1};
+        const cubemap::ImageSize unit =
+            layout == cubemap::Layout::LatLong ? cubemap::ImageSize{2, 1}
+            : cubemap::has_faces(layout)       ? cubemap::natural_size(layout, 1)
+                                               : cubemap::ImageSize{1, 1};
         if (size->width % unit.width != 0)
-            throw CLI::ValidationError("--size",
-                                       fmt::format("expected a multiple of {} as the width of a {}, got {}",
-                                                   unit.width, cubemap::name(layout), size->width));
+            throw CLI::ValidationError(
+                "--size", fmt::format("expected a multiple of {} as the width of a {}, got {}",
+                                      unit.width, cubemap::name(layout), size->width));
         const std::uint64_t height = std::uint64_t{size->width} / unit.width * unit.height;
         return checked({size->width, static_cast<std::uint32_t>(std::min<std::uint64_t>(
                                          height, std::numeric_limits<std::uint32_t>::max()))},
@@ -122,8 +131,9 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
     if (options.face_resolution != 0) {
         constexpr std::uint32_t Largest = 16384;
         if (options.face_resolution > Largest)
-            throw CLI::ValidationError("--face-resolution", fmt::format("expected 1 to {}, got {}", Largest,
-                                                                        options.face_resolution));
+            throw CLI::ValidationError(
+                "--face-resolution",
+                fmt::format("expected 1 to {}, got {}", Largest, options.face_resolution));
         return checked(cubemap::natural_size(layout, options.face_resolution), layout);
     }
     return cubemap::conversion_size(image, layout);
@@ -138,15 +148,17 @@ cubemap::Layout target_layout(const Options& options, const cubemap::Environment
     if (!options.to_layout.empty())
         layout = parse_layout(options.to_layout);
     if (!to.reads(layout))
-        throw CLI::ValidationError("--to-layout", fmt::format("expected {} with --to {}, got {}",
-                                                              layouts_of(to), to.name, option_name(layout)));
-    if (six_files && layout != cubemap::Layout::Cube)
         throw CLI::ValidationError("--to-layout",
-                                   fmt::format("expected cube for six files, got {}", option_name(layout)));
+                                   fmt::format("expected {} with --to {}, got {}", layouts_of(to),
+                                               to.name, option_name(layout)));
+    if (six_files && layout != cubemap::Layout::Cube)
+        throw CLI::ValidationError(
+            "--to-layout", fmt::format("expected cube for six files, got {}", option_name(layout)));
     return layout;
 }
 
-nlohmann::json described(const cubemap::EnvironmentImage& image, const cubemap::Convention& convention) {
+nlohmann::json described(const cubemap::EnvironmentImage& image,
+                         const cubemap::Convention& convention) {
     const glm::dvec3 mean = cubemap::statistics(image).mean_radiance;
     return {{"layout", cubemap::name(image.layout)},
             {"convention", convention.name},
@@ -179,8 +191,9 @@ void run(const Options& options, Session& session) {
 
     const cubemap::Layout layout = target_layout(options, image, to);
     const cubemap::ImageSize size = target_size(options, image, layout);
-    cubemap::Sampling sampling = to.has_attribute ? cubemap::default_sampling(options.output, layout)
-                                                  : cubemap::Sampling::TexelCentres;
+    cubemap::Sampling sampling = to.has_attribute
+                                     ? cubemap::default_sampling(options.output, layout)
+                                     : cubemap::Sampling::TexelCentres;
     if (options.samples == "centres")
         sampling = cubemap::Sampling::TexelCentres;
     nlohmann::json result = {{"input", described(image, from)}};
@@ -191,8 +204,8 @@ void run(const Options& options, Session& session) {
                                          .degrees_about_y = options.rotate_degrees,
                                          .world_from_target = to.world_from(layout)};
     if (sun_file)
-        result["sun"] =
-            sun_file->split(image, turn.world_from_target * turn.target_from_source(), options.input);
+        result["sun"] = sun_file->split(image, turn.world_from_target * turn.target_from_source(),
+                                        options.input);
     cubemap::EnvironmentImage converted =
         cubemap::convert(image, {layout, sampling, size.width, size.height}, turn);
     if (to.swaps_z_faces)
@@ -221,7 +234,8 @@ void add_convert(CLI::App& group, Session& session) {
     CLI::App& command = *group.add_subcommand("convert", "from one layout and program to another");
     auto options = std::make_shared<Options>();
     std::vector<std::string> names;
-    std::string list = "\n\nCONVENTIONS (u to the right, v down, both in [0, 1]; docs/environments.md)\n";
+    std::string list =
+        "\n\nCONVENTIONS (u to the right, v down, both in [0, 1]; docs/environments.md)\n";
     for (const cubemap::Convention& convention : cubemap::conventions()) {
         names.emplace_back(convention.name);
         list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
@@ -231,7 +245,8 @@ void add_convert(CLI::App& group, Session& session) {
         .add_option("IN", options->input,
                     "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
         ->required();
-    command.add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
+    command
+        .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
         ->required();
     command.add_option("--layout", options->layout, "layout of IN, where the file does not tell")
         ->check(CLI::IsMember(layout_names()));
@@ -245,15 +260,16 @@ void add_convert(CLI::App& group, Session& session) {
     command.add_option("--to", options->to, "whose convention OUT follows")
         ->check(CLI::IsMember(names))
         ->capture_default_str();
-    command.add_option("--size", options->size,
-                       "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
-                       "octahedral 640; cube to cube as it is)");
+    command.add_option(
+        "--size", options->size,
+        "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
+        "octahedral 640; cube to cube as it is)");
     command.add_option("--face-resolution", options->face_resolution,
                        "the same as a cube face: a lat-long gets 4R x 2R pixels");
     command
-        .add_option(
-            "--samples", options->samples,
-            "centres: at texel centres and without the envmap attribute, even in OpenEXR's lat-long and cube")
+        .add_option("--samples", options->samples,
+                    "centres: at texel centres and without the envmap attribute, even in OpenEXR's "
+                    "lat-long and cube")
         ->check(CLI::IsMember({"auto", "centres"}))
         ->capture_default_str();
     command
@@ -261,9 +277,9 @@ void add_convert(CLI::App& group, Session& session) {
                     "turn the environment about +Y, degrees: +Z goes to +X at 90")
         ->check(number_between(-36000.0, 36000.0))
         ->capture_default_str();
-    command.add_flag(
-        "--split-sun", options->split_sun,
-        "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a light, in world axes");
+    command.add_flag("--split-sun", options->split_sun,
+                     "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
+                     "light, in world axes");
     command.add_flag("--fix-env", options->fix,
                      "replace NaN and negative radiance by 0, infinite by the largest finite");
     session.add_common_options(command);

@@ -32,15 +32,17 @@ constexpr std::array<NamedLayout, cubemap::AllLayouts.size()> Layouts = {{
 CLI::Option* EnvironmentOptions::add_to(CLI::App& command) {
     CLI::Option* environment =
         command
-            .add_option("ENV", path,
-                        "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz")
+            .add_option(
+                "ENV", path,
+                "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz")
             ->required();
     add_conversion_to(command);
     return environment;
 }
 
 void EnvironmentOptions::add_conversion_to(CLI::App& command) {
-    command.add_option("--layout", layout, "layout of the environment, where the file does not tell")
+    command
+        .add_option("--layout", layout, "layout of the environment, where the file does not tell")
         ->check(CLI::IsMember(layout_names()));
     command
         .add_option("--face-resolution", face_resolution,
@@ -49,7 +51,8 @@ void EnvironmentOptions::add_conversion_to(CLI::App& command) {
     command.add_flag("--fix-env", fix,
                      "replace NaN and negative radiance by 0, infinite by the largest finite");
     command
-        .add_option("--rotate", rotate_degrees, "turn the environment about +Y, degrees: +Z goes to +X at 90")
+        .add_option("--rotate", rotate_degrees,
+                    "turn the environment about +Y, degrees: +Z goes to +X at 90")
         ->check(number_between(-36000.0, 36000.0))
         ->capture_default_str();
 }
@@ -61,12 +64,14 @@ cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Se
     cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
     session.detail(fmt::format("{}: {}", options.path, image.assumptions));
     if (image.fixed)
-        session.say(fmt::format("{}: replaced {} bad pixels", options.path, image.bad_pixels.count()));
+        session.say(
+            fmt::format("{}: replaced {} bad pixels", options.path, image.bad_pixels.count()));
     session.poll();
     return image;
 }
 
-cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image, const EnvironmentOptions& options) {
+cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
+                             const EnvironmentOptions& options) {
     const std::uint32_t resolution =
         options.face_resolution != 0 ? options.face_resolution : cubemap::natural_resolution(image);
     cubemap::CubeMap map = cubemap::resample(image, resolution);

@@ -17,8 +17,10 @@ namespace relumine::app {
 /// The ENV argument and its options.
 struct EnvironmentOptions {
     std::string path;
-    std::string layout;                ///< empty: as the file says
-    std::uint32_t face_resolution = 0; ///< 0: the image's own
+    /// Empty: as the file says
+    std::string layout;
+    /// 0: the image's own
+    std::uint32_t face_resolution = 0;
     bool fix = false;
     double rotate_degrees = 0.0;
 
@@ -33,18 +35,21 @@ struct LoadedEnvironment {
     cubemap::CubeMap map;
     std::string assumptions;
     double seconds_load = 0.0;
-    double seconds_resample = 0.0; ///< with the rotation
+    /// With the rotation
+    double seconds_resample = 0.0;
 };
 
 /// The image as the file has it. Says on -v what was assumed, and always when pixels were fixed.
-[[nodiscard]] cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Session& session);
+[[nodiscard]] cubemap::EnvironmentImage load_image(const EnvironmentOptions& options,
+                                                   const Session& session);
 
 /// An image resampled to a cube map and rotated.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options);
 
 /// Loads, resamples and rotates. Says on -v what was assumed, and always when pixels were fixed.
-[[nodiscard]] LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session);
+[[nodiscard]] LoadedEnvironment load_environment(const EnvironmentOptions& options,
+                                                 const Session& session);
 
 /// The names that --layout takes.
 [[nodiscard]] const std::vector<std::string>& layout_names();

@@ -22,12 +22,14 @@ std::chrono::system_clock::time_point change_time(const std::filesystem::path& p
     if (::stat(path.c_str(), &status) != 0)
         return Clock::now();
     return Clock::time_point(std::chrono::duration_cast<Clock::duration>(
-        std::chrono::seconds(status.st_ctim.tv_sec) + std::chrono::nanoseconds(status.st_ctim.tv_nsec)));
+        std::chrono::seconds(status.st_ctim.tv_sec) +
+        std::chrono::nanoseconds(status.st_ctim.tv_nsec)));
 }
 
 } // namespace
 
-FileWatch::FileWatch(const std::filesystem::path& path) : path_(path), file_name_(path.filename().string()) {
+FileWatch::FileWatch(const std::filesystem::path& path)
+    : path_(path), file_name_(path.filename().string()) {
     const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
     descriptor_ = ::inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     // The folder, not the file: a renamed-over file is another file.
@@ -36,7 +38,8 @@ FileWatch::FileWatch(const std::filesystem::path& path) : path_(path), file_name
         const int error = errno;
         if (descriptor_ >= 0)
             ::close(descriptor_);
-        throw std::runtime_error(fmt::format("{}: cannot watch: {}", path.string(), std::strerror(error)));
+        throw std::runtime_error(
+            fmt::format("{}: cannot watch: {}", path.string(), std::strerror(error)));
     }
 }
 

@@ -9,7 +9,8 @@
 
 namespace relumine::app {
 
-/// Watches one file by name, so that programs that write in place and programs that rename a new file over the old one both count.
+/// Watches one file by name, so that programs that write in place and programs that rename a new
+/// file over the old one both count.
 class FileWatch {
 public:
     /// Throws std::runtime_error naming the path.
@@ -18,9 +19,11 @@ public:
     FileWatch(const FileWatch&) = delete;
     FileWatch& operator=(const FileWatch&) = delete;
 
-    /// Blocks until the file has been saved since the last call, and tells when: the file system's time of its last write or renaming
-    /// (in steps of a few milliseconds). Nothing when asked to stop (noticed within 50 ms).
-    [[nodiscard]] std::optional<std::chrono::system_clock::time_point> wait(const std::stop_token& stop);
+    /// Blocks until the file has been saved since the last call, and tells when: the file system's
+    /// time of its last write or renaming (in steps of a few milliseconds). Nothing when asked to
+    /// stop (noticed within 50 ms).
+    [[nodiscard]] std::optional<std::chrono::system_clock::time_point>
+    wait(const std::stop_token& stop);
 
 private:
     std::filesystem::path path_;

@@ -36,21 +36,24 @@ void write_scene(const data_gen::Scene& scene, const Options& options, Session& 
     mesh::save(path, mesh, std::vector<glm::vec3>(mesh.num_vertices(), glm::vec3(1.0f)));
     session.say(fmt::format("{}: {} vertices, {} triangles", path.string(), mesh.num_vertices(),
                             mesh.num_triangles()));
-    files.push_back(
-        {{"file", path.string()}, {"vertices", mesh.num_vertices()}, {"triangles", mesh.num_triangles()}});
+    files.push_back({{"file", path.string()},
+                     {"vertices", mesh.num_vertices()},
+                     {"triangles", mesh.num_triangles()}});
 }
 
-void write_environment(const data_gen::Environment& environment, const Options& options, Session& session,
-                       nlohmann::json& files) {
+void write_environment(const data_gen::Environment& environment, const Options& options,
+                       Session& session, nlohmann::json& files) {
     const cubemap::CubeMap map = environment.make(options.face_resolution);
     session.poll();
     make_folder(options.folder);
     const std::filesystem::path folder = options.folder;
     for (const auto& [path, layout] :
          {std::pair{folder / fmt::format("{}.exr", environment.name), cubemap::Layout::Cube},
-          std::pair{folder / fmt::format("{}_latlong.exr", environment.name), cubemap::Layout::LatLong}}) {
+          std::pair{folder / fmt::format("{}_latlong.exr", environment.name),
+                    cubemap::Layout::LatLong}}) {
         cubemap::save_environment(path, map, layout);
-        session.say(fmt::format("{}: {}, R = {}", path.string(), cubemap::name(layout), map.resolution));
+        session.say(
+            fmt::format("{}: {}, R = {}", path.string(), cubemap::name(layout), map.resolution));
         files.push_back({{"file", path.string()}, {"face_resolution", map.resolution}});
     }
 }
@@ -58,12 +61,14 @@ void write_environment(const data_gen::Environment& environment, const Options& 
 void run(const Options& options, bool resolution_given, Session& session) {
     if (options.name == "sequence") {
         generate_sequence(options.sequence, options.folder,
-                          resolution_given ? std::optional(options.face_resolution) : std::nullopt, session);
+                          resolution_given ? std::optional(options.face_resolution) : std::nullopt,
+                          session);
         return;
     }
     if (!options.sequence.kind.empty())
         throw CLI::ValidationError(
-            "KIND", fmt::format("expected none but after `sequence`, got '{}'", options.sequence.kind));
+            "KIND",
+            fmt::format("expected none but after `sequence`, got '{}'", options.sequence.kind));
     nlohmann::json files = nlohmann::json::array();
     for (const data_gen::Scene& scene : data_gen::scenes())
         if (options.name == scene.name || options.name == "all")
@@ -90,8 +95,8 @@ void add_generate(CLI::App& program, Session& session) {
         names.emplace_back(environment.name);
         list += fmt::format("  {:12} {}\n", environment.name, environment.description);
     }
-    list +=
-        "\n`generate sequence KIND` makes one environment per frame, KIND.0000.exr and on. KIND is one of:\n";
+    list += "\n`generate sequence KIND` makes one environment per frame, KIND.0000.exr and on. "
+            "KIND is one of:\n";
     for (const data_gen::Sequence& sequence : data_gen::sequences())
         list += fmt::format("  {:12} {}\n", sequence.name, sequence.description);
     command.footer(list);
@@ -100,20 +105,23 @@ void add_generate(CLI::App& program, Session& session) {
         ->check(CLI::IsMember(names))
         ->type_name("NAME");
     options->sequence.add_to(command);
-    command.add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
+    command
+        .add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
         ->required();
-    command.add_option("--vertices", options->num_vertices, "vertices of a scene, met within a few per cent")
+    command
+        .add_option("--vertices", options->num_vertices,
+                    "vertices of a scene, met within a few per cent")
         ->check(CLI::NonNegativeNumber)
         ->capture_default_str();
-    const CLI::Option* resolution =
-        command
-            .add_option(
-                "--face-resolution", options->face_resolution,
-                "R of an environment: cube 6 x R x R, lat-long 4R x 2R; of a sequence 128 when it is not "
-                "given, of `turn` that of its --env")
-            ->capture_default_str();
+    const CLI::Option* resolution = command
+                                        .add_option("--face-resolution", options->face_resolution,
+                                                    "R of an environment: cube 6 x R x R, lat-long "
+                                                    "4R x 2R; of a sequence 128 when it is not "
+                                                    "given, of `turn` that of its --env")
+                                        ->capture_default_str();
     session.add_common_options(command);
-    command.callback([options, resolution, &session] { run(*options, resolution->count() > 0, session); });
+    command.callback(
+        [options, resolution, &session] { run(*options, resolution->count() > 0, session); });
 }
 
 } // namespace relumine::app

@@ -21,8 +21,9 @@ const data_gen::Sequence& named(const std::string& kind) {
     for (const data_gen::Sequence& sequence : data_gen::sequences())
         if (sequence.name == kind)
             return sequence;
-    throw CLI::ValidationError("KIND", kind.empty() ? "expected what sequence to make, got none"
-                                                    : fmt::format("expected a sequence, got '{}'", kind));
+    throw CLI::ValidationError("KIND", kind.empty()
+                                           ? "expected what sequence to make, got none"
+                                           : fmt::format("expected a sequence, got '{}'", kind));
 }
 
 data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& options,
@@ -33,9 +34,9 @@ data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& option
     if (face_resolution)
         result.face_resolution = *face_resolution;
     if (sequence.needs_probe != !options.environment.empty())
-        throw CLI::ValidationError("--env", fmt::format("expected {} for `{}`",
-                                                        sequence.needs_probe ? "an environment" : "none",
-                                                        sequence.name));
+        throw CLI::ValidationError(
+            "--env", fmt::format("expected {} for `{}`",
+                                 sequence.needs_probe ? "an environment" : "none", sequence.name));
     if (sequence.needs_probe) {
         EnvironmentOptions environment;
         environment.path = options.environment;
@@ -54,7 +55,8 @@ void GenerateSequenceOptions::add_to(CLI::App& command) {
         ->capture_default_str();
     command.add_option("--env", environment, "the environment that `sequence turn` turns");
     command
-        .add_option("--layout", layout, "of a sequence's frames: cross (texels as they are), cube or latlong")
+        .add_option("--layout", layout,
+                    "of a sequence's frames: cross (texels as they are), cube or latlong")
         ->check(CLI::IsMember({"cross", "cube", "latlong"}))
         ->capture_default_str();
 }
@@ -80,16 +82,18 @@ void generate_sequence(const GenerateSequenceOptions& options, const std::string
             progress(static_cast<double>(frame + 1) / static_cast<double>(options.num_frames));
     }
     session.end_progress();
-    session.say(fmt::format("{}: {} frames, {}, R = {}", name, options.num_frames, cubemap::name(layout),
-                            resolution));
-    session.report({{"frames", name}, {"num_frames", options.num_frames}, {"face_resolution", resolution}});
+    session.say(fmt::format("{}: {} frames, {}, R = {}", name, options.num_frames,
+                            cubemap::name(layout), resolution));
+    session.report(
+        {{"frames", name}, {"num_frames", options.num_frames}, {"face_resolution", resolution}});
 }
 
 void make_folder(const std::string& path) {
     std::error_code error;
     std::filesystem::create_directories(path, error);
     if (error)
-        throw std::runtime_error(fmt::format("{}: cannot make the folder: {}", path, error.message()));
+        throw std::runtime_error(
+            fmt::format("{}: cannot make the folder: {}", path, error.message()));
 }
 
 } // namespace relumine::app

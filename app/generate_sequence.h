@@ -13,16 +13,19 @@
 namespace relumine::app {
 
 struct GenerateSequenceOptions {
-    std::string kind; ///< empty where there is none on the command line
+    /// Empty where there is none on the command line
+    std::string kind;
     std::size_t num_frames = 100;
-    std::string environment;      ///< --env
-    std::string layout = "cross"; ///< which holds the texels of the cube map as they are
+    /// --env
+    std::string environment;
+    /// Which holds the texels of the cube map as they are
+    std::string layout = "cross";
 
     void add_to(CLI::App& command);
 };
 
-/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of --env. After Ctrl-C the frames that were written
-/// stay.
+/// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of --env. After
+/// Ctrl-C the frames that were written stay.
 void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
                        std::optional<std::uint32_t> face_resolution, Session& session);
 

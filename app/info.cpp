@@ -41,11 +41,11 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
                                 100.0 * static_cast<double>(scene.receivers.size()) /
                                     static_cast<double>(pixels->num_samples())));
         session.say(fmt::format("view                from ({}, {}, {}) to ({}, {}, {}), {} degrees",
-                                camera.eye.x, camera.eye.y, camera.eye.z, camera.target.x, camera.target.y,
-                                camera.target.z, camera.fov_degrees));
+                                camera.eye.x, camera.eye.y, camera.eye.z, camera.target.x,
+                                camera.target.y, camera.target.z, camera.fov_degrees));
     } else if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout)) {
-        session.say(fmt::format("receivers           {} of {}, {:.1f} % of the atlas", scene.receivers.size(),
-                                prt::description(scene.layout),
+        session.say(fmt::format("receivers           {} of {}, {:.1f} % of the atlas",
+                                scene.receivers.size(), prt::description(scene.layout),
                                 100.0 * static_cast<double>(scene.receivers.size()) /
                                     static_cast<double>(texels->num_texels())));
     }
@@ -58,9 +58,10 @@ void describe_scene(const Options& options, const Session& session) {
     const prt::SceneSettings& settings = scene.settings;
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const auto file_bytes = std::filesystem::file_size(options.path);
-    session.say(fmt::format("scene               {} vertices, {} triangles from {} (xxHash64 {:016x})",
-                            scene.mesh.num_vertices(), scene.mesh.num_triangles(), settings.source,
-                            settings.source_hash));
+    session.say(
+        fmt::format("scene               {} vertices, {} triangles from {} (xxHash64 {:016x})",
+                    scene.mesh.num_vertices(), scene.mesh.num_triangles(), settings.source,
+                    settings.source_hash));
     say_receivers(scene, session);
     session.say(fmt::format("clusters            {}", scene.transfer.num_clusters()));
     session.say(settings.epsilon ? fmt::format("epsilon             {}", *settings.epsilon)
@@ -70,9 +71,10 @@ void describe_scene(const Options& options, const Session& session) {
     session.say(fmt::format(
         "bias, floor         {}, {}", settings.bias,
         settings.floor_vertices == 0 ? "none" : fmt::format("{0} x {0}", settings.floor_vertices)));
-    session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs", counts.num_mixed(),
-                            counts.num_blocks() * counts.num_leaves));
-    session.say(fmt::format("file                {:.1f} MB{}", static_cast<double>(file_bytes) * 1e-6,
+    session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs",
+                            counts.num_mixed(), counts.num_blocks() * counts.num_leaves));
+    session.say(fmt::format("file                {:.1f} MB{}",
+                            static_cast<double>(file_bytes) * 1e-6,
                             options.check ? ", checked: whole and sound" : ""));
     nlohmann::json result = {{"kind", "scene"},
                              {"vertices", scene.mesh.num_vertices()},
@@ -107,9 +109,10 @@ std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& ma
     };
     const glm::vec3& base = material.base_color;
     if (material.model == mesh::MaterialModel::MetallicRoughness)
-        return fmt::format("metallic-roughness, base {} {} {}{}, metallic {}, roughness {}{}", base.r, base.g,
-                           base.b, texture(material.base_color_texture), material.metallic,
-                           material.roughness, texture(material.metallic_roughness_texture));
+        return fmt::format("metallic-roughness, base {} {} {}{}, metallic {}, roughness {}{}",
+                           base.r, base.g, base.b, texture(material.base_color_texture),
+                           material.metallic, material.roughness,
+                           texture(material.metallic_roughness_texture));
     const std::string diffuse =
         fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
     if (material.specular == glm::vec3(0.0f))
@@ -144,8 +147,8 @@ void describe_mesh(const Options& options, const Session& session) {
     const auto num_loose = std::count(mesh.normals.begin(), mesh.normals.end(), glm::vec3(0.0f));
     session.say(fmt::format("mesh                {} vertices, {} triangles", mesh.num_vertices(),
                             mesh.num_triangles()));
-    session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x, box.min.y,
-                            box.min.z, box.max.x, box.max.y, box.max.z));
+    session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,
+                            box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
     session.say(fmt::format("without a face      {} vertices", num_loose));
     session.say(fmt::format("colours, uvs        {}, {}", mesh.colors.empty() ? "no" : "yes",
                             !mesh.uvs.empty()          ? "yes"
@@ -153,7 +156,8 @@ void describe_mesh(const Options& options, const Session& session) {
                                                        : "no"));
     nlohmann::json materials = nlohmann::json::array();
     for (const mesh::Material& material : mesh.materials) {
-        session.say(fmt::format("material            {}: {}", material.name, description(mesh, material)));
+        session.say(
+            fmt::format("material            {}: {}", material.name, description(mesh, material)));
         materials.push_back(json_of(mesh, material));
     }
     for (const std::string& group : mesh.groups)
@@ -181,8 +185,8 @@ void run(const Options& options, const Session& session) {
             "{}: expected an environment (.exr or .hdr) to draw with --picture, got something else",
             options.path));
     if (options.check && extension != ".prt")
-        throw std::runtime_error(
-            fmt::format("{}: expected a scene (.prt) to --check, got something else", options.path));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene (.prt) to --check, got something else", options.path));
     if (extension == ".prt")
         describe_scene(options, session);
     else if (is_environment)
@@ -194,11 +198,16 @@ void run(const Options& options, const Session& session) {
 } // namespace
 
 void add_info(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand("info", "what a file is: a scene, an environment or a mesh");
+    CLI::App& command =
+        *program.add_subcommand("info", "what a file is: a scene, an environment or a mesh");
     auto options = std::make_shared<Options>();
-    command.add_option("FILE", options->path, ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
+    command
+        .add_option("FILE", options->path,
+                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
         ->required();
-    command.add_option("--layout", options->layout, "layout of an environment, where the file does not tell")
+    command
+        .add_option("--layout", options->layout,
+                    "layout of an environment, where the file does not tell")
         ->check(CLI::IsMember(layout_names()));
     command.add_option("--picture", options->picture,
                        "draw an environment: lat-long .png with the axes and the sun marked");

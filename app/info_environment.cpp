@@ -39,8 +39,8 @@ nlohmann::json array(const glm::dvec3& v) {
 
 std::string direction_text(const glm::dvec3& w) {
     const cubemap::SkyAngles angles = cubemap::sky_angles(w);
-    return fmt::format("{:.4f} {:.4f} {:.4f}, azimuth {:.1f}, elevation {:.1f} degrees", w.x, w.y, w.z,
-                       angles.azimuth_degrees, angles.elevation_degrees);
+    return fmt::format("{:.4f} {:.4f} {:.4f}, azimuth {:.1f}, elevation {:.1f} degrees", w.x, w.y,
+                       w.z, angles.azimuth_degrees, angles.elevation_degrees);
 }
 
 nlohmann::json direction_json(const glm::dvec3& w) {
@@ -52,54 +52,59 @@ nlohmann::json direction_json(const glm::dvec3& w) {
 
 void say_image(const cubemap::EnvironmentImage& image, const Session& session) {
     const cubemap::BadPixels& bad = image.bad_pixels;
-    session.say(fmt::format("layout              {} {} x {}", cubemap::name(image.layout), image.width,
-                            image.height));
+    session.say(fmt::format("layout              {} {} x {}", cubemap::name(image.layout),
+                            image.width, image.height));
     session.say(fmt::format("assumed             {}", image.assumptions));
     session.say(fmt::format("samples             {}", image.sampling == cubemap::Sampling::Borders
                                                           ? "on the borders"
                                                           : "at texel centres"));
-    session.say(fmt::format("as a cube map       6 x {0} x {0}", cubemap::natural_resolution(image)));
+    session.say(
+        fmt::format("as a cube map       6 x {0} x {0}", cubemap::natural_resolution(image)));
     session.say(fmt::format("bad pixels          {} NaN, {} infinite, {} negative{}", bad.num_nan,
                             bad.num_infinite, bad.num_negative,
-                            bad.count() == 0 ? ""
-                                             : fmt::format("; first at ({}, {}); what follows is with "
-                                                           "--fix-env, light with it too",
-                                                           bad.first_x, bad.first_y)));
+                            bad.count() == 0
+                                ? ""
+                                : fmt::format("; first at ({}, {}); what follows is with "
+                                              "--fix-env, light with it too",
+                                              bad.first_x, bad.first_y)));
 }
 
 void say_light(const Findings& found, const Session& session) {
     const cubemap::EnvironmentStatistics& s = found.statistics;
-    session.say(fmt::format("mean radiance       {:.5g} {:.5g} {:.5g}, luminance {:.5g}", s.mean_radiance.r,
-                            s.mean_radiance.g, s.mean_radiance.b, s.mean_luminance));
-    session.say(fmt::format("luminance range     {:.4g} to {:.4g}, {:.1f} EV", s.min_positive_luminance,
-                            s.max_luminance, s.dynamic_range_ev));
+    session.say(fmt::format("mean radiance       {:.5g} {:.5g} {:.5g}, luminance {:.5g}",
+                            s.mean_radiance.r, s.mean_radiance.g, s.mean_radiance.b,
+                            s.mean_luminance));
+    session.say(fmt::format("luminance range     {:.4g} to {:.4g}, {:.1f} EV",
+                            s.min_positive_luminance, s.max_luminance, s.dynamic_range_ev));
     session.say(fmt::format("brightest towards   {}", direction_text(s.brightest_direction)));
     std::vector<std::string> sides;
     for (const std::size_t axis : {2u, 3u, 0u, 1u, 4u, 5u})
         sides.push_back(
             fmt::format("{} {:.4g}", AxisNames[axis], cubemap::luminance(s.axis_irradiance[axis])));
-    session.say(
-        fmt::format("irradiance          {} (luminance, on surfaces that face so)", fmt::join(sides, ", ")));
+    session.say(fmt::format("irradiance          {} (luminance, on surfaces that face so)",
+                            fmt::join(sides, ", ")));
     if (!found.search.sun) {
         session.say(fmt::format("sun                 none: {}", found.search.why_none));
         return;
     }
     const cubemap::Sun& sun = *found.search.sun;
     session.say(fmt::format("sun towards         {}", direction_text(sun.direction)));
-    session.say(
-        fmt::format("sun                 {:.2f} degrees wide (a pixel {:.2f}), irradiance {:.4g} {:.4g} "
-                    "{:.4g}, {:.3g} % of all light",
-                    cubemap::disc_diameter_degrees(sun.solid_angle), found.search.pixel_diameter_degrees,
-                    sun.irradiance.r, sun.irradiance.g, sun.irradiance.b, 100.0 * sun.share_of_power));
+    session.say(fmt::format(
+        "sun                 {:.2f} degrees wide (a pixel {:.2f}), irradiance {:.4g} {:.4g} "
+        "{:.4g}, {:.3g} % of all light",
+        cubemap::disc_diameter_degrees(sun.solid_angle), found.search.pixel_diameter_degrees,
+        sun.irradiance.r, sun.irradiance.g, sun.irradiance.b, 100.0 * sun.share_of_power));
 }
 
 void say_warnings(const Findings& found, const Session& session) {
     if (found.clipped)
-        session.say(fmt::format("warning             a clipped or veiled sun is likely towards {}: {}",
-                                direction_text(found.clipped->direction), found.clipped->why));
+        session.say(
+            fmt::format("warning             a clipped or veiled sun is likely towards {}: {}",
+                        direction_text(found.clipped->direction), found.clipped->why));
     for (const cubemap::SeamFault& fault : found.faults)
-        session.say(fmt::format("warning             {} out of line: {:.2g} EV, beside it {:.2g} EV",
-                                fault.where, fault.step_ev, fault.usual_step_ev));
+        session.say(
+            fmt::format("warning             {} out of line: {:.2g} EV, beside it {:.2g} EV",
+                        fault.where, fault.step_ev, fault.usual_step_ev));
     if (found.faults.empty())
         session.say("seams and poles     in line");
 }
@@ -111,8 +116,9 @@ nlohmann::json report(const cubemap::EnvironmentImage& image, const Findings& fo
         irradiance[AxisNames[axis]] = array(s.axis_irradiance[axis]);
     nlohmann::json faults = nlohmann::json::array();
     for (const cubemap::SeamFault& fault : found.faults)
-        faults.push_back(
-            {{"where", fault.where}, {"step_ev", fault.step_ev}, {"usual_step_ev", fault.usual_step_ev}});
+        faults.push_back({{"where", fault.where},
+                          {"step_ev", fault.step_ev},
+                          {"usual_step_ev", fault.usual_step_ev}});
     nlohmann::json result = {{"kind", "environment"},
                              {"layout", cubemap::name(image.layout)},
                              {"assumptions", image.assumptions},
@@ -176,7 +182,8 @@ void describe_environment(const EnvironmentInfoOptions& options, const Session& 
         if (found.clipped)
             mark = {.direction = found.clipped->direction, .label = "sun?"};
         if (found.search.sun)
-            mark = {.direction = found.search.sun->direction, .label = found.clipped ? "sun?" : "sun"};
+            mark = {.direction = found.search.sun->direction,
+                    .label = found.clipped ? "sun?" : "sun"};
         relight::save_environment_picture(options.picture, image, mark);
     }
     say_image(image, session);

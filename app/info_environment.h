@@ -9,11 +9,14 @@ namespace relumine::app {
 
 struct EnvironmentInfoOptions {
     std::string path;
-    std::string layout;  ///< empty: as the file says
-    std::string picture; ///< empty: none
+    /// Empty: as the file says
+    std::string layout;
+    /// Empty: none
+    std::string picture;
 };
 
-/// Says what an environment is and what may be wrong with it; docs/environment-doctor.md explains every line.
+/// Says what an environment is and what may be wrong with it; docs/environment-doctor.md explains
+/// every line.
 void describe_environment(const EnvironmentInfoOptions& options, const Session& session);
 
 } // namespace relumine::app

@@ -19,28 +19,37 @@ namespace relumine::app {
 
 namespace {
 
-// One list of random lights says little about the method: another seed's error is half or twice as large.
+// One list of random lights says little about the method: another seed's error is half or twice as
+// large.
 constexpr std::size_t SeedsOfRandomMethods = 8;
 
 /// One method at one number of lights.
 struct Row {
     std::string method;
-    std::size_t num_lights = 0;  ///< asked for
-    std::size_t num_seeds = 1;   ///< lists that were measured
-    std::size_t num_found = 0;   ///< transfer_lights() may need fewer
-    double relative_l2 = 0.0;    ///< root mean square over the seeds
-    double seconds_choose = 0.0; ///< mean over the seeds
-    double seconds_light = 0.0;  ///< of the samples
+    /// Asked for
+    std::size_t num_lights = 0;
+    /// Lists that were measured
+    std::size_t num_seeds = 1;
+    /// transfer_lights() may need fewer
+    std::size_t num_found = 0;
+    /// Root mean square over the seeds
+    double relative_l2 = 0.0;
+    /// Mean over the seeds
+    double seconds_choose = 0.0;
+    /// Of the samples
+    double seconds_light = 0.0;
 };
 
 /// The scene, its environment and the truth about some receivers.
 class Comparison {
 public:
-    Comparison(const ComparisonOptions& options, const EnvironmentOptions& environment, Session& session)
+    Comparison(const ComparisonOptions& options, const EnvironmentOptions& environment,
+               Session& session)
         : options_(options), session_(session), lit_({.path = options.scene}),
           map_(cube_map_of(load_image(environment, session), environment)),
           relighter_(lit_.scene().transfer, lit_.shadow_rays()), receivers_(lit_.scene().receivers),
-          sample_(relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
+          sample_(
+              relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
         require_diffuse(lit_.scene(), options.scene);
         relighter_.set_environment(map_);
         exact_ = relight::exact_radiance(receivers_, sample_, lit_.rays(), map_,
@@ -52,15 +61,17 @@ public:
 
     [[nodiscard]] Row row(const std::string& method, std::size_t count) {
         const bool is_random = method == lights::name(lights::Method::Importance);
-        Row row{.method = method, .num_lights = count, .num_seeds = is_random ? SeedsOfRandomMethods : 1};
+        Row row{.method = method,
+                .num_lights = count,
+                .num_seeds = is_random ? SeedsOfRandomMethods : 1};
         double squares = 0.0;
         for (std::size_t i = 0; i < row.num_seeds; ++i) {
             session_.poll();
             Stopwatch watch;
             const std::vector<lights::DistantLight> list =
-                method == TransferMethod
-                    ? lights_for_scene(relighter_, count, session_)
-                    : lights::place_lights(*lights::method_named(method), map_, count, options_.seed + i);
+                method == TransferMethod ? lights_for_scene(relighter_, count, session_)
+                                         : lights::place_lights(*lights::method_named(method), map_,
+                                                                count, options_.seed + i);
             row.seconds_choose += watch.lap() / static_cast<double>(row.num_seeds);
             row.num_found = list.size();
             const double error = relative_l2(list);
@@ -102,7 +113,8 @@ std::vector<std::string> all_methods() {
     return methods;
 }
 
-void draw(const ComparisonOptions& options, const std::string& environment, const std::vector<Row>& rows) {
+void draw(const ComparisonOptions& options, const std::string& environment,
+          const std::vector<Row>& rows) {
     relight::Plot plot{.title = fmt::format("Light lists of {}", environment),
                        .x_label = "lights",
                        .y_label = "relative L2 error",
@@ -122,8 +134,8 @@ void draw(const ComparisonOptions& options, const std::string& environment, cons
 
 } // namespace
 
-std::vector<lights::DistantLight> lights_for_scene(const relight::Relighter& relighter, std::size_t count,
-                                                   Session& session) {
+std::vector<lights::DistantLight> lights_for_scene(const relight::Relighter& relighter,
+                                                   std::size_t count, Session& session) {
     const std::vector<lights::DistantLight> list = relight::transfer_lights(
         relighter, count,
         {.stop = session.stop(), .on_progress = session.progress(fmt::format("{} lights", count))});
@@ -137,7 +149,8 @@ void compare_methods(const ComparisonOptions& options, const EnvironmentOptions&
     const std::string name = std::filesystem::path(environment.path).filename().string();
     session.say(fmt::format("{} on {}, {} receivers, R = {}, against exact integration\n", name,
                             options.scene, comparison.num_samples(), comparison.resolution()));
-    session.say("| method | lights | relative L2 | choose | light the receivers |\n|---|---|---|---|---|");
+    session.say(
+        "| method | lights | relative L2 | choose | light the receivers |\n|---|---|---|---|---|");
     std::vector<Row> rows;
     nlohmann::json report = nlohmann::json::array();
     for (const std::string& method : all_methods())

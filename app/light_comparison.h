@@ -18,20 +18,26 @@ namespace relumine::app {
 inline constexpr const char* TransferMethod = "transfer";
 
 struct ComparisonOptions {
-    std::string scene;                     ///< .prt
-    std::vector<std::size_t> numbers = {}; ///< of lights
-    std::uint64_t seed = 1;         ///< the first of importance sampling, and of the choice of receivers
-    std::size_t num_samples = 2000; ///< receivers, 0 for all
-    std::string plot = {};          ///< .svg, or empty
+    /// .prt
+    std::string scene;
+    /// Of lights
+    std::vector<std::size_t> numbers = {};
+    /// The first of importance sampling, and of the choice of receivers
+    std::uint64_t seed = 1;
+    /// Receivers, 0 for all
+    std::size_t num_samples = 2000;
+    /// .svg, or empty
+    std::string plot = {};
 };
 
 /// Lights chosen for a scene by transfer_lights(); what went wrong names the environment.
-[[nodiscard]] std::vector<lights::DistantLight> lights_for_scene(const relight::Relighter& relighter,
-                                                                 std::size_t count, Session& session);
+[[nodiscard]] std::vector<lights::DistantLight>
+lights_for_scene(const relight::Relighter& relighter, std::size_t count, Session& session);
 
-/// Lights the scene's receivers with the lists of all methods and all numbers of lights, a shadow ray for each light; says a Markdown table of
-/// relative L2 errors against exact integration and times, reports the same, and draws it. For the random method the error is the root mean
-/// square over lists of eight seeds, `seed` and those that follow it.
+/// Lights the scene's receivers with the lists of all methods and all numbers of lights, a shadow
+/// ray for each light; says a Markdown table of relative L2 errors against exact integration and
+/// times, reports the same, and draws it. For the random method the error is the root mean square
+/// over lists of eight seeds, `seed` and those that follow it.
 void compare_methods(const ComparisonOptions& options, const EnvironmentOptions& environment,
                      Session& session);
 

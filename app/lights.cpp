@@ -33,11 +33,14 @@ struct Options {
     EnvironmentOptions environment;
     std::string path;
     std::string picture;
-    std::string format; ///< empty: by the output's extension
+    /// Empty: by the output's extension
+    std::string format;
     std::string method = std::string(lights::name(lights::Method::VarianceCut));
     std::vector<std::size_t> numbers = {64};
-    std::string scene;   ///< .prt: the lights' error on it is said; the transfer method chooses for it
-    std::string compare; ///< .prt: all methods are compared on it
+    /// .prt: the lights' error on it is said; the transfer method chooses for it
+    std::string scene;
+    /// .prt: all methods are compared on it
+    std::string compare;
     std::string plot;
     std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
@@ -52,7 +55,8 @@ lights::LightFormat format_of(const Options& options) {
     std::string known;
     for (const lights::LightFormat format : lights::AllLightFormats)
         known += fmt::format("{}, ", lights::extension(format));
-    throw std::runtime_error(fmt::format("{}: expected {}or --format, got '{}'", options.path, known,
+    throw std::runtime_error(fmt::format("{}: expected {}or --format, got '{}'", options.path,
+                                         known,
                                          std::filesystem::path(options.path).extension().string()));
 }
 
@@ -83,7 +87,8 @@ void check_outputs(const Options& options) {
     check_output(options.picture, {options.environment.path});
 }
 
-/// A lat-long as it is in the file; everything else, and what is turned or given another resolution, by way of a cube map.
+/// A lat-long as it is in the file; everything else, and what is turned or given another
+/// resolution, by way of a cube map.
 cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, const Session& session) {
     cubemap::EnvironmentImage image = load_image(options, session);
     if (image.layout == cubemap::Layout::LatLong && options.face_resolution == 0 &&
@@ -103,7 +108,8 @@ struct Lit {
         relighter.set_environment(environment);
     }
 
-    /// Relative L2 difference of what the lights give to all receivers, traced, from what the environment gives.
+    /// Relative L2 difference of what the lights give to all receivers, traced, from what the
+    /// environment gives.
     [[nodiscard]] double error(std::span<const lights::DistantLight> list) const {
         const prt::Receivers& receivers = scene.scene().receivers;
         std::vector<std::uint32_t> all(receivers.size());
@@ -111,14 +117,15 @@ struct Lit {
         const std::vector<glm::vec3> under_lights =
             relight::radiance_under(list, receivers.normals, scene.shadow_rays());
         const std::span<const glm::vec3> environment = relighter.radiance();
-        return relight::compare(all, std::vector<glm::dvec3>(environment.begin(), environment.end()),
+        return relight::compare(all,
+                                std::vector<glm::dvec3>(environment.begin(), environment.end()),
                                 under_lights)
             .relative_l2;
     }
 };
 
-lights::Placement place(const Options& options, const cubemap::EnvironmentImage& map, const Lit* lit,
-                        Session& session) {
+lights::Placement place(const Options& options, const cubemap::EnvironmentImage& map,
+                        const Lit* lit, Session& session) {
     const std::size_t count = options.numbers.front();
     try {
         if (options.method == TransferMethod)
@@ -131,7 +138,8 @@ lights::Placement place(const Options& options, const cubemap::EnvironmentImage&
 
 void compare(const Options& options, Session& session) {
     if (!options.path.empty() || !options.picture.empty() || !options.scene.empty())
-        throw CLI::ValidationError("--compare", "expected neither -o nor --picture nor --scene with it");
+        throw CLI::ValidationError("--compare",
+                                   "expected neither -o nor --picture nor --scene with it");
     if (!options.plot.empty()) {
         if (std::filesystem::path(options.plot).extension() != ".svg")
             throw std::runtime_error(fmt::format("{}: expected .svg", options.plot));
@@ -172,10 +180,10 @@ void run(const Options& options, Session& session) {
     session.poll();
 
     if (!options.path.empty()) {
-        lights::LightList list{.lights = placement.lights,
-                               .environment =
-                                   std::filesystem::path(options.environment.path).filename().string(),
-                               .method = options.method};
+        lights::LightList list{
+            .lights = placement.lights,
+            .environment = std::filesystem::path(options.environment.path).filename().string(),
+            .method = options.method};
         if (options.method == lights::name(lights::Method::Importance))
             list.seed = options.seed;
         lights::export_lights(options.path, list, format_of(options), options.export_options);
@@ -191,11 +199,12 @@ void run(const Options& options, Session& session) {
     const auto [dimmest, brightest] = std::minmax_element(shares.begin(), shares.end());
     const double all = lights::luminance(power);
     const double scale = all > 0.0 ? 1.0 / all : 0.0;
-    session.say(fmt::format("{} lights by {} from {} x {} pixels in {:.1f} ms", placement.lights.size(),
-                            options.method, map.width, map.height, 1e3 * seconds_place));
-    session.say(
-        fmt::format("power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
-                    power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
+    session.say(fmt::format("{} lights by {} from {} x {} pixels in {:.1f} ms",
+                            placement.lights.size(), options.method, map.width, map.height,
+                            1e3 * seconds_place));
+    session.say(fmt::format(
+        "power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
+        power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
     nlohmann::json result = {{"method", options.method},
                              {"lights", placement.lights.size()},
                              {"width", map.width},
@@ -207,8 +216,8 @@ void run(const Options& options, Session& session) {
                              {"seconds_place", seconds_place}};
     if (lit) {
         const double error = lit->error(placement.lights);
-        session.say(fmt::format("{} lights: {:.2g} % relative L2 on this asset", placement.lights.size(),
-                                100.0 * error));
+        session.say(fmt::format("{} lights: {:.2g} % relative L2 on this asset",
+                                placement.lights.size(), 100.0 * error));
         result["relative_l2"] = error;
     }
     session.report(result);
@@ -221,19 +230,26 @@ void add_lights(CLI::App& program, Session& session) {
         *program.add_subcommand("lights", "a few distant lights that stand for an environment");
     auto options = std::make_shared<Options>();
     options->environment.add_to(command);
-    command.add_option("-o,--output", options->path,
-                       "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf");
+    command.add_option(
+        "-o,--output", options->path,
+        "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf");
     command.add_option("--picture", options->picture,
                        "the environment with regions and lights drawn: .png or .exr");
-    command.add_option("-n,--number", options->numbers, "how many lights; with --compare several, 16,64,256")
+    command
+        .add_option("-n,--number", options->numbers,
+                    "how many lights; with --compare several, 16,64,256")
         ->delimiter(',')
         ->check(number_between(1, 1e9))
         ->capture_default_str();
-    command.add_option("--scene", options->scene,
-                       "scene file: says how well the lights light it; --method transfer chooses for it");
-    command.add_option("--compare", options->compare,
-                       "scene file: a table of all methods' errors on it against exact integration");
-    command.add_option("--samples", options->num_samples, "--compare: receivers chosen at random, 0 for all")
+    command.add_option(
+        "--scene", options->scene,
+        "scene file: says how well the lights light it; --method transfer chooses for it");
+    command.add_option(
+        "--compare", options->compare,
+        "scene file: a table of all methods' errors on it against exact integration");
+    command
+        .add_option("--samples", options->num_samples,
+                    "--compare: receivers chosen at random, 0 for all")
         ->check(number_between(0, 1e9))
         ->capture_default_str();
     command.add_option("--plot", options->plot, "--compare: error against number of lights, .svg");
@@ -243,10 +259,11 @@ void add_lights(CLI::App& program, Session& session) {
         methods.emplace_back(lights::name(method));
     methods.emplace_back(TransferMethod);
     command
-        .add_option("--method", options->method,
-                    "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
-                    "close together (Viriyothai and Debevec); importance: random directions, stratified; "
-                    "transfer: those that light --scene most like the environment")
+        .add_option(
+            "--method", options->method,
+            "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
+            "close together (Viriyothai and Debevec); importance: random directions, stratified; "
+            "transfer: those that light --scene most like the environment")
         ->check(CLI::IsMember(methods))
         ->capture_default_str();
     command.add_option("--seed", options->seed, "of importance sampling")
@@ -256,13 +273,15 @@ void add_lights(CLI::App& program, Session& session) {
     formats.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         formats.emplace_back(lights::name(format));
-    command.add_option("--format", options->format, "format of the light list, whatever its extension")
+    command
+        .add_option("--format", options->format, "format of the light list, whatever its extension")
         ->check(CLI::IsMember(formats));
     command.add_flag("--soft", options->export_options.soft,
                      "lights as wide as the part of the sphere they stand for (USD, Blender)");
     command
         .add_option("--lumens-per-watt", options->export_options.lumens_per_watt,
-                    "glTF: intensity in lux is irradiance times this; 1 keeps the environment's unit, 683 is "
+                    "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
+                    "unit, 683 is "
                     "photometric")
         ->check(number_between(1e-6, 1e6))
         ->capture_default_str();

@@ -17,21 +17,24 @@ namespace {
 double sum_of(std::span<const glm::vec3> radiance) {
     double sum = 0.0;
     for (const glm::vec3& value : radiance)
-        sum += static_cast<double>(value.r) + static_cast<double>(value.g) + static_cast<double>(value.b);
+        sum += static_cast<double>(value.r) + static_cast<double>(value.g) +
+               static_cast<double>(value.b);
     return sum;
 }
 
 } // namespace
 
-cubemap::Region lit_by_region(const std::string& text, std::span<const cubemap::LightLayer> layers) {
+cubemap::Region lit_by_region(const std::string& text,
+                              std::span<const cubemap::LightLayer> layers) {
     const auto layer =
         std::find_if(layers.begin(), layers.end(), [&](const auto& l) { return l.name == text; });
     if (layer != layers.end())
         return layer->region;
     const auto refuse = [&](const std::string& why) {
-        throw CLI::ValidationError("--lit-by", fmt::format("expected the name of a layer or X,Y,Z,RADIUS "
-                                                           "with a RADIUS in degrees, got '{}'{}",
-                                                           text, why));
+        throw CLI::ValidationError("--lit-by",
+                                   fmt::format("expected the name of a layer or X,Y,Z,RADIUS "
+                                               "with a RADIUS in degrees, got '{}'{}",
+                                               text, why));
     };
     const std::size_t last_comma = text.rfind(',');
     if (last_comma == std::string::npos)

@@ -13,15 +13,19 @@
 
 namespace relumine::app {
 
-/// The region of the layer of that name, or "X,Y,Z,RADIUS": a disc with a hard edge. Throws CLI::ValidationError for anything else.
+/// The region of the layer of that name, or "X,Y,Z,RADIUS": a disc with a hard edge. Throws
+/// CLI::ValidationError for anything else.
 [[nodiscard]] cubemap::Region lit_by_region(const std::string& text,
                                             std::span<const cubemap::LightLayer> layers);
 
 /// What a region of the environment, all layers included, gives to the scene.
 struct LitBy {
-    std::vector<glm::vec3> radiance = {}; ///< [num_receivers], albedo 1
-    cubemap::CubeMap environment = {};    ///< the rest is black
-    double share = 0.0;                   ///< of the sum of all receivers' radiance (RGB together)
+    /// [num_receivers], albedo 1
+    std::vector<glm::vec3> radiance = {};
+    /// The rest is black
+    cubemap::CubeMap environment = {};
+    /// Of the sum of all receivers' radiance (RGB together)
+    double share = 0.0;
 };
 [[nodiscard]] LitBy lit_by(const relight::Relighter& relighter, const cubemap::Region& region);
 

@@ -19,9 +19,9 @@ void SceneOptions::add_to(CLI::App& command) {
         ->required();
     command.add_flag("--clusters-only", clusters_only,
                      "light the sun through its cluster too, without shadow rays of its own");
-    command.add_option(
-        "--surface-albedo", albedo,
-        "scenes with materials: albedo of all surfaces in place of the precompute's, a number or R,G,B");
+    command.add_option("--surface-albedo", albedo,
+                       "scenes with materials: albedo of all surfaces in place of the "
+                       "precompute's, a number or R,G,B");
     command.add_option(
         "--surface-specular", specular,
         "scenes with highlights: their F0 (Ks) in place of the precompute's, a number or R,G,B");
@@ -33,8 +33,8 @@ prt::Scene load(const SceneOptions& options) {
     if (!options.mesh_too || !mesh::has_mesh_extension(options.path))
         return prt::load_scene(options.path);
     if (options.clusters_only)
-        throw std::runtime_error(
-            fmt::format("{}: expected a scene file with --clusters-only, got a mesh", options.path));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene file with --clusters-only, got a mesh", options.path));
     prt::Scene scene;
     scene.mesh = mesh::load(options.path);
     scene.receivers = prt::vertex_receivers(scene.mesh);
@@ -47,9 +47,10 @@ void recolour(prt::Scene& scene, const SceneOptions& options) {
     if (options.albedo.empty() && options.specular.empty())
         return;
     if (scene.receivers.surfaces.empty())
-        throw std::runtime_error(fmt::format("{}: expected a scene with materials for --surface-albedo and "
-                                             "--surface-specular, got one without",
-                                             options.path));
+        throw std::runtime_error(
+            fmt::format("{}: expected a scene with materials for --surface-albedo and "
+                        "--surface-specular, got one without",
+                        options.path));
     for (prt::Surface& surface : scene.receivers.surfaces) {
         if (!options.albedo.empty())
             surface.albedo = parse_color("--surface-albedo", options.albedo);
@@ -71,8 +72,9 @@ relight::ShadowRays LitScene::shadow_rays() const {
         return {};
     const prt::SceneSettings& settings = scene_.settings;
     const float tolerance =
-        settings.epsilon ? *settings.epsilon * std::sqrt(static_cast<float>(scene_.transfer.num_receivers()))
-                         : settings.tolerance;
+        settings.epsilon
+            ? *settings.epsilon * std::sqrt(static_cast<float>(scene_.transfer.num_receivers()))
+            : settings.tolerance;
     return {.blockers = &rays_,
             .positions = scene_.receivers.positions,
             .bias = settings.bias,

@@ -15,9 +15,12 @@ namespace relumine::app {
 struct SceneOptions {
     std::string path = {};
     bool clusters_only = false;
-    bool mesh_too = false;     ///< a mesh will do: lit without clusters
-    std::string albedo = {};   ///< of all surfaces, in place of the precompute's; empty: those
-    std::string specular = {}; ///< of all highlights, likewise
+    /// A mesh will do: lit without clusters
+    bool mesh_too = false;
+    /// Of all surfaces, in place of the precompute's; empty: those
+    std::string albedo = {};
+    /// Of all highlights, likewise
+    std::string specular = {};
 
     void add_to(CLI::App& command);
 };

@@ -12,7 +12,8 @@
 
 namespace {
 
-/// One line of plain text, whatever the library's message looked like: what a file holds may be quoted in it.
+/// One line of plain text, whatever the library's message looked like: what a file holds may be
+/// quoted in it.
 std::string one_line(std::string message) {
     while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
         message.pop_back();
@@ -27,9 +28,10 @@ std::string one_line(std::string message) {
 int main(int argc, char** argv) {
     using namespace relumine;
     app::Session session;
-    CLI::App program{"Relights meshes under measured environment light. Exit code 0: done, 1: the work "
-                     "failed, 2: wrong usage.",
-                     "relumine"};
+    CLI::App program{
+        "Relights meshes under measured environment light. Exit code 0: done, 1: the work "
+        "failed, 2: wrong usage.",
+        "relumine"};
     program.set_version_flag("--version", "relumine " RELUMINE_VERSION);
     app::add_commands(program, session);
 
@@ -37,8 +39,8 @@ int main(int argc, char** argv) {
     std::unique_ptr<tbb::global_control> thread_limit;
     program.parse_complete_callback([&] {
         if (session.num_threads > 0)
-            thread_limit = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
-                                                                 session.num_threads);
+            thread_limit = std::make_unique<tbb::global_control>(
+                tbb::global_control::max_allowed_parallelism, session.num_threads);
     });
     const auto fail = [&](const std::string& message) {
         session.end_progress();
@@ -62,8 +64,9 @@ int main(int argc, char** argv) {
         const std::vector<std::string> rest = program.remaining();
         const bool no_subcommand = program.get_subcommands().empty() && !rest.empty();
         fmt::print(stderr, "relumine: {} (see relumine --help)\n",
-                   one_line(no_subcommand ? fmt::format("expected a subcommand, got '{}'", rest.front())
-                                          : error.what()));
+                   one_line(no_subcommand
+                                ? fmt::format("expected a subcommand, got '{}'", rest.front())
+                                : error.what()));
         return 2;
     } catch (const prt::Cancelled&) {
         return fail("cancelled; nothing was written");

@@ -20,8 +20,10 @@ struct Model {
     std::string_view name;
     prt::Highlight highlight;
     std::string_view albedo;
-    std::string_view specular; ///< empty: none
-    std::string_view shape;    ///< empty: none
+    /// Empty: none
+    std::string_view specular;
+    /// Empty: none
+    std::string_view shape;
     float max_shape;
 };
 constexpr std::array<Model, 3> Models = {{
@@ -49,7 +51,8 @@ private:
     std::map<std::string_view, std::vector<std::string_view>> values_;
 };
 
-/// Group names may have any letters: the model is looked for behind the last = that a model's name follows.
+/// Group names may have any letters: the model is looked for behind the last = that a model's name
+/// follows.
 const Model& Parser::take_model(std::string_view& rest, MaterialOption& result) const {
     const std::string_view text = text_;
     for (std::size_t start = text.size() + 1; start-- > 0;) {
@@ -104,7 +107,8 @@ std::vector<float> Parser::numbers(std::string_view key, float max) const {
     for (const std::string_view word : found->second) {
         float value = 0.0f;
         const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() || !(value >= 0.0f && value <= max))
+        if (error != std::errc() || end != word.data() + word.size() ||
+            !(value >= 0.0f && value <= max))
             fail(fmt::format("numbers of 0 to {} as {}", max, key), word);
         result.push_back(value);
     }
@@ -154,8 +158,9 @@ prt::Surface MaterialOption::applied_to(const prt::Surface& surface) const {
     if (specular)
         specular_color = *specular;
     else if (highlight == prt::Highlight::Ggx)
-        specular_color =
-            surface.highlight == prt::Highlight::Ggx ? surface.specular : glm::vec3(0.04f); // glass, plastic
+        specular_color = surface.highlight == prt::Highlight::Ggx
+                             ? surface.specular
+                             : glm::vec3(0.04f); // glass, plastic
     return {.albedo = albedo.value_or(surface.albedo),
             .specular = specular_color,
             .highlight = highlight,
@@ -168,8 +173,10 @@ MaterialOption parse_material(const std::string& text, const std::string& option
 
 prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options,
                                       const mesh::TriangleMesh& mesh, const std::string& option) {
-    // The last option that names a group, or all, decides; a mesh without groups has one without a name.
-    std::vector<std::optional<MaterialOption>> by_group(std::max<std::size_t>(mesh.groups.size(), 1));
+    // The last option that names a group, or all, decides; a mesh without groups has one without a
+    // name.
+    std::vector<std::optional<MaterialOption>> by_group(
+        std::max<std::size_t>(mesh.groups.size(), 1));
     for (const MaterialOption& material : options) {
         if (material.group.empty()) {
             std::fill(by_group.begin(), by_group.end(), material);
@@ -180,20 +187,22 @@ prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options
             throw CLI::ValidationError(
                 option,
                 mesh.groups.empty()
-                    ? fmt::format("expected no group, since the mesh has none, got '{}'", material.group)
-                    : fmt::format(
-                          "expected a group of the mesh ({}{}), got '{}'",
-                          fmt::join(mesh.groups.begin(),
-                                    mesh.groups.begin() + static_cast<std::ptrdiff_t>(
-                                                              std::min<std::size_t>(mesh.groups.size(), 8)),
-                                    ", "),
-                          mesh.groups.size() > 8 ? ", ..." : "", material.group));
+                    ? fmt::format("expected no group, since the mesh has none, got '{}'",
+                                  material.group)
+                    : fmt::format("expected a group of the mesh ({}{}), got '{}'",
+                                  fmt::join(mesh.groups.begin(),
+                                            mesh.groups.begin() +
+                                                static_cast<std::ptrdiff_t>(
+                                                    std::min<std::size_t>(mesh.groups.size(), 8)),
+                                            ", "),
+                                  mesh.groups.size() > 8 ? ", ..." : "", material.group));
         by_group[static_cast<std::size_t>(found - mesh.groups.begin())] = material;
     }
     return [by_group = std::move(by_group)](const mesh::TriangleMesh& of, std::uint32_t triangle,
                                             const prt::Surface& surface) {
         const std::size_t group = of.triangle_groups.empty() ? 0 : of.triangle_groups[triangle];
-        return group < by_group.size() && by_group[group] ? by_group[group]->applied_to(surface) : surface;
+        return group < by_group.size() && by_group[group] ? by_group[group]->applied_to(surface)
+                                                          : surface;
     };
 }
 

@@ -1,5 +1,6 @@
-// Materials on the command line: ggx:roughness=0.3,albedo=0.5,0.4,0.3,f0=0.04 or blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8;
-// with GROUP= in front for one object of a file that has several.
+// Materials on the command line: ggx:roughness=0.3,albedo=0.5,0.4,0.3,f0=0.04 or
+// blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8; with GROUP= in front for one object of a
+// file that has several.
 #pragma once
 
 #include <optional>
@@ -15,12 +16,14 @@ namespace relumine::app {
 
 /// What one option says. Colours that it leaves out stay the file's.
 struct MaterialOption {
-    std::string group = {}; ///< empty: the whole mesh
+    /// Empty: the whole mesh
+    std::string group = {};
     prt::Highlight highlight = prt::Highlight::None;
     float shape = 1.0f;
-    std::optional<glm::vec3> albedo = {}; ///< `albedo` or `kd`
-    std::optional<glm::vec3> specular =
-        {}; ///< `f0` or `ks`; without it 0.04 where the file has no F0 of its own
+    /// `albedo` or `kd`
+    std::optional<glm::vec3> albedo = {};
+    /// `f0` or `ks`; without it 0.04 where the file has no F0 of its own
+    std::optional<glm::vec3> specular = {};
 
     /// The surface in place of the file's.
     [[nodiscard]] prt::Surface applied_to(const prt::Surface& surface) const;
@@ -30,7 +33,8 @@ struct MaterialOption {
 [[nodiscard]] MaterialOption parse_material(const std::string& text,
                                             const std::string& option = "--material");
 
-/// All options on a mesh, in their order: later ones win. Throws CLI::ValidationError for a group that the mesh does not have.
+/// All options on a mesh, in their order: later ones win. Throws CLI::ValidationError for a group
+/// that the mesh does not have.
 [[nodiscard]] prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options,
                                                     const mesh::TriangleMesh& mesh,
                                                     const std::string& option = "--material");

@@ -23,9 +23,10 @@ std::optional<std::uint64_t> parse_size(const std::string& text) {
     double factor = 1.0;
     if (!unit.empty()) {
         const std::string units = "KMGT";
-        const auto at = units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit.front()))));
-        const bool is_known =
-            at != std::string::npos && (unit.size() == 1 || unit.substr(1) == "B" || unit.substr(1) == "iB");
+        const auto at =
+            units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit.front()))));
+        const bool is_known = at != std::string::npos &&
+                              (unit.size() == 1 || unit.substr(1) == "B" || unit.substr(1) == "iB");
         if (!is_known)
             return {};
         factor = static_cast<double>(std::uint64_t{1} << (10 * (at + 1)));
@@ -44,7 +45,8 @@ void MemoryOption::add_to(CLI::App& command) {
                 max_bytes_ = parse_size(text);
                 if (!max_bytes_)
                     throw CLI::ValidationError(
-                        "--max-memory", fmt::format("expected a size like 500M or 4G, got '{}'", text));
+                        "--max-memory",
+                        fmt::format("expected a size like 500M or 4G, got '{}'", text));
             },
             "refuse the work when it would take more memory, stop when it does: 500M, 4G")
         ->type_name("SIZE");
@@ -53,8 +55,8 @@ void MemoryOption::add_to(CLI::App& command) {
 void MemoryOption::check_scene(const prt::SceneSizes& sizes, const std::string& mesh) const {
     if (max_bytes_ && prt::scene_bytes(sizes) > *max_bytes_)
         throw std::runtime_error(
-            fmt::format("{}: expected work within {}, got a scene that takes {} of memory alone", mesh,
-                        megabytes(*max_bytes_), megabytes(prt::scene_bytes(sizes))));
+            fmt::format("{}: expected work within {}, got a scene that takes {} of memory alone",
+                        mesh, megabytes(*max_bytes_), megabytes(prt::scene_bytes(sizes))));
 }
 
 void MemoryOption::check_estimate(const prt::SceneSizes& sizes, const prt::Receivers& receivers,
@@ -67,14 +69,16 @@ void MemoryOption::check_estimate(const prt::SceneSizes& sizes, const prt::Recei
     precompute.plane_bytes = prt::plane_bytes_within(sizes, *max_bytes_);
     const prt::MemoryEstimate estimate =
         prt::estimate_memory(sizes, receivers, blockers, precompute, *max_bytes_);
-    session.detail(fmt::format("memory: about {} for about {} clusters", megabytes(estimate.peak_bytes),
-                               estimate.num_clusters));
+    session.detail(fmt::format("memory: about {} for about {} clusters",
+                               megabytes(estimate.peak_bytes), estimate.num_clusters));
     if (estimate.is_at_least || estimate.peak_bytes > *max_bytes_)
-        throw std::runtime_error(fmt::format(
-            "{}: expected work within {}, got an estimate of {} {} of memory for {}{} clusters; a larger "
-            "--tolerance takes less",
-            mesh, megabytes(*max_bytes_), estimate.is_at_least ? "more than" : "about",
-            megabytes(estimate.peak_bytes), estimate.is_at_least ? "more than " : "", estimate.num_clusters));
+        throw std::runtime_error(
+            fmt::format("{}: expected work within {}, got an estimate of {} {} of memory for {}{} "
+                        "clusters; a larger "
+                        "--tolerance takes less",
+                        mesh, megabytes(*max_bytes_), estimate.is_at_least ? "more than" : "about",
+                        megabytes(estimate.peak_bytes), estimate.is_at_least ? "more than " : "",
+                        estimate.num_clusters));
     precompute.max_column_bytes = prt::max_column_bytes(sizes, precompute.plane_bytes, *max_bytes_);
     report["memory_estimate"] = estimate.peak_bytes;
     report["clusters_estimate"] = estimate.num_clusters;
@@ -87,9 +91,11 @@ std::optional<std::uint64_t> MemoryOption::max_glossy_bytes(const prt::SceneSize
     return prt::max_glossy_bytes(sizes, column_bytes, *max_bytes_);
 }
 
-std::string MemoryOption::stopped(const prt::TooManyClusters& error, const std::string& mesh) const {
-    return fmt::format("{}: expected work within {}, got at least {} clusters, which take more; stopped",
-                       mesh, megabytes(max_bytes_.value_or(0)), error.num_clusters);
+std::string MemoryOption::stopped(const prt::TooManyClusters& error,
+                                  const std::string& mesh) const {
+    return fmt::format(
+        "{}: expected work within {}, got at least {} clusters, which take more; stopped", mesh,
+        megabytes(max_bytes_.value_or(0)), error.num_clusters);
 }
 
 } // namespace relumine::app

@@ -38,7 +38,8 @@ struct Descriptor {
 /// ffmpeg with a pipe to its input; its complaints go to a file beside the movie.
 class Encoder {
 public:
-    Encoder(const fs::path& ffmpeg, const fs::path& output, const fs::path& complaints, double fps) {
+    Encoder(const fs::path& ffmpeg, const fs::path& output, const fs::path& complaints,
+            double fps) {
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0)
             throw std::runtime_error(fmt::format("cannot start ffmpeg: {}", std::strerror(errno)));
@@ -80,7 +81,8 @@ public:
         posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
         posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaints.c_str(),
                                          O_WRONLY | O_CREAT | O_TRUNC, 0600);
-        // This program blocks the signals that end programs, to take them in a thread of its own; ffmpeg must not inherit that.
+        // This program blocks the signals that end programs, to take them in a thread of its own;
+        // ffmpeg must not inherit that.
         posix_spawnattr_t attributes;
         posix_spawnattr_init(&attributes);
         sigset_t none;
@@ -136,7 +138,8 @@ private:
 
 std::string last_line(const fs::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
-    std::istringstream lines(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    std::istringstream lines(
+        std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
     std::string last = "no reason given";
     for (std::string line; std::getline(lines, line);)
         if (!line.empty())
@@ -154,11 +157,13 @@ fs::path find_ffmpeg(const std::string& movie) {
         if (::access(candidate.c_str(), X_OK) == 0 && !fs::is_directory(candidate))
             return candidate;
     }
-    throw std::runtime_error(fmt::format("{}: expected ffmpeg on the PATH to make it, found none", movie));
+    throw std::runtime_error(
+        fmt::format("{}: expected ffmpeg on the PATH to make it, found none", movie));
 }
 
-void make_movie(const fs::path& ffmpeg, const std::string& movie, std::span<const std::string> pictures,
-                double frames_per_second, const std::stop_token& stop) {
+void make_movie(const fs::path& ffmpeg, const std::string& movie,
+                std::span<const std::string> pictures, double frames_per_second,
+                const std::stop_token& stop) {
     // When ffmpeg dies, the pipe's end is an error here, not the end of this program.
     std::signal(SIGPIPE, SIG_IGN);
     files::OutputFile output{fs::path(movie)};

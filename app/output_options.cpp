@@ -69,7 +69,8 @@ std::vector<glm::vec3> coloured(const std::string& albedo, const prt::Scene& sce
     const std::optional<glm::vec3> factor = parse_albedo(albedo);
     if (!factor) {
         if (scene.mesh.colors.empty())
-            throw std::runtime_error("--albedo mesh: expected a mesh with vertex colours, got one without");
+            throw std::runtime_error(
+                "--albedo mesh: expected a mesh with vertex colours, got one without");
         const std::vector<glm::vec3> colors = prt::colors_at(scene.mesh, scene.receivers);
         for (std::size_t i = 0; i < result.size(); ++i)
             result[i] *= colors[i];
@@ -84,9 +85,11 @@ bool is_picture(const std::string& extension) {
     return extension == ".png" || extension == ".exr";
 }
 
-/// What the receivers show: the mesh from the camera of the options, their own view, or their lightmap.
+/// What the receivers show: the mesh from the camera of the options, their own view, or their
+/// lightmap.
 relight::Picture picture_of(const OutputOptions& options, const LitScene& lit,
-                            std::span<const glm::vec3> colors, const cubemap::CubeMap& environment) {
+                            std::span<const glm::vec3> colors,
+                            const cubemap::CubeMap& environment) {
     const prt::Scene& scene = lit.scene();
     if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout))
         return options.transparent ? relight::compose_cut_out(*pixels, colors)
@@ -101,22 +104,24 @@ relight::Picture picture_of(const OutputOptions& options, const LitScene& lit,
 
 void OutputOptions::add_to(CLI::App& command) {
     command
-        .add_option(
-            "-o,--output", path,
-            "what to write: .png .exr (picture), .ply .glb (mesh with vertex colours), .npy (numbers)")
+        .add_option("-o,--output", path,
+                    "what to write: .png .exr (picture), .ply .glb (mesh with vertex colours), "
+                    ".npy (numbers)")
         ->required();
     command
         .add_option("--albedo", albedo,
                     "reflectance: a number, R,G,B, or `mesh` for the mesh's vertex colours")
         ->capture_default_str();
-    exposure_option_ =
-        command.add_option("--exposure", exposure_ev, "brighten pictures and colours by this many stops")
-            ->check(number_between(-100.0, 100.0))
-            ->capture_default_str();
+    exposure_option_ = command
+                           .add_option("--exposure", exposure_ev,
+                                       "brighten pictures and colours by this many stops")
+                           ->check(number_between(-100.0, 100.0))
+                           ->capture_default_str();
     camera_options_ = {
         command.add_option("--eye", eye, "camera position X,Y,Z (automatic)"),
         command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)"),
-        command.add_option("--fov", fov_degrees, "vertical field of view in degrees")->capture_default_str(),
+        command.add_option("--fov", fov_degrees, "vertical field of view in degrees")
+            ->capture_default_str(),
         command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str()};
     command.add_flag("--transparent", transparent,
                      "scenes of pixels: no environment behind, but alpha (premultiplied in .exr)");
@@ -148,9 +153,9 @@ void OutputOptions::check_fits(const prt::Scene& scene) const {
         return;
     const std::string extension = extension_of(path);
     if (extension == ".ply" || extension == ".glb")
-        throw std::runtime_error(
-            fmt::format("{}: expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'", path,
-                        prt::description(scene.layout), extension));
+        throw std::runtime_error(fmt::format(
+            "{}: expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'", path,
+            prt::description(scene.layout), extension));
     for (const CLI::Option* option : camera_options_)
         if (option->count() > 0)
             throw std::runtime_error(
@@ -176,9 +181,11 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
         mesh::save(path, scene.mesh, colors);
 }
 
-std::string OutputOptions::exposure_hint(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+std::string OutputOptions::exposure_hint(const prt::Scene& scene,
+                                         std::span<const glm::vec3> radiance,
                                          const Session& session) const {
-    if (session.json || session.quiet || exposure_option_->count() > 0 || extension_of(path) != ".png")
+    if (session.json || session.quiet || exposure_option_->count() > 0 ||
+        extension_of(path) != ".png")
         return "";
     const float better = relight::suitable_exposure_ev(coloured(albedo, scene, radiance));
     return better == 0.0f ? "" : fmt::format("; --exposure {} suits it better", better);
@@ -196,10 +203,11 @@ void FrameWriter::save(const std::string& path, std::span<const glm::vec3> radia
     }
     const mesh::TriangleMesh& mesh = lit_.scene().mesh;
     if (!view_)
-        view_ = std::make_unique<relight::PictureView>(mesh, lit_.rays(), camera_of(options_, lit_.scene()),
-                                                       parse_size(options_.size));
-    relight::save_picture(path, view_->draw(coloured(options_.albedo, lit_.scene(), radiance), environment),
-                          options_.exposure_ev);
+        view_ = std::make_unique<relight::PictureView>(
+            mesh, lit_.rays(), camera_of(options_, lit_.scene()), parse_size(options_.size));
+    relight::save_picture(
+        path, view_->draw(coloured(options_.albedo, lit_.scene(), radiance), environment),
+        options_.exposure_ev);
 }
 
 std::vector<glm::vec3> FrameWriter::values(std::span<const glm::vec3> radiance) const {
@@ -236,11 +244,13 @@ void save_map(const std::string& path, const cubemap::CubeMap& map, double expos
         std::vector<float> brightness;
         for (const glm::vec3& pixel : image.pixels)
             brightness.push_back(std::max({pixel.r, pixel.g, pixel.b}));
-        const auto white = brightness.end() - 1 - static_cast<std::ptrdiff_t>(brightness.size() / 1000);
+        const auto white =
+            brightness.end() - 1 - static_cast<std::ptrdiff_t>(brightness.size() / 1000);
         std::nth_element(brightness.begin(), white, brightness.end());
         white_ev = *white > 0.0f ? -std::log2(static_cast<double>(*white)) : 0.0;
     }
-    relight::save_picture(path, {.width = image.width, .height = image.height, .pixels = image.pixels},
+    relight::save_picture(path,
+                          {.width = image.width, .height = image.height, .pixels = image.pixels},
                           exposure_ev + white_ev);
 }
 

@@ -23,34 +23,41 @@ struct OutputOptions {
     std::string path;
     std::string albedo = "1";
     double exposure_ev = 0.0;
-    std::string eye;    ///< empty: automatic
-    std::string target; ///< empty: automatic
+    /// Empty: automatic
+    std::string eye;
+    /// Empty: automatic
+    std::string target;
     float fov_degrees = 35.0f;
     std::string size = "1024x768";
-    bool transparent = false;  ///< pixel receivers: no environment behind
-    std::uint32_t gutter = 16; ///< texel receivers: texels around the charts
+    /// Pixel receivers: no environment behind
+    bool transparent = false;
+    /// Texel receivers: texels around the charts
+    std::uint32_t gutter = 16;
 
     void add_to(CLI::App& command);
 
     /// Refuses what cannot be written, or is one of the inputs, before any work is done.
     void check(const std::vector<std::string>& inputs) const;
 
-    /// Refuses outputs and options that the scene's receivers have no use for: meshes of pixels and texels, a camera where
-    /// there is none to choose. Throws std::runtime_error.
+    /// Refuses outputs and options that the scene's receivers have no use for: meshes of pixels and
+    /// texels, a camera where there is none to choose. Throws std::runtime_error.
     void check_fits(const prt::Scene& scene) const;
 
-    /// Writes by extension: .png .exr pictures (of texel receivers: their lightmap), .ply .glb meshes with vertex colours, .npy numbers.
+    /// Writes by extension: .png .exr pictures (of texel receivers: their lightmap), .ply .glb
+    /// meshes with vertex colours, .npy numbers.
     void save(const LitScene& lit, std::span<const glm::vec3> radiance,
               const cubemap::CubeMap& environment) const;
 
-    /// What to tell the user where a .png comes out far too bright or too dark and no exposure was chosen: "; --exposure -3 suits it better",
-    /// else nothing, as where the session is silent.
-    [[nodiscard]] std::string exposure_hint(const prt::Scene& scene, std::span<const glm::vec3> radiance,
+    /// What to tell the user where a .png comes out far too bright or too dark and no exposure was
+    /// chosen: "; --exposure -3 suits it better", else nothing, as where the session is silent.
+    [[nodiscard]] std::string exposure_hint(const prt::Scene& scene,
+                                            std::span<const glm::vec3> radiance,
                                             const Session& session) const;
 
 private:
     const CLI::Option* exposure_option_ = nullptr;
-    std::vector<const CLI::Option*> camera_options_; ///< --eye, --target, --fov, --size
+    /// --eye, --target, --fov, --size
+    std::vector<const CLI::Option*> camera_options_;
 };
 
 /// Writes many frames of a scene that stands still: what the camera sees is found once.
@@ -67,16 +74,19 @@ public:
 private:
     OutputOptions options_;
     const LitScene& lit_;
-    std::unique_ptr<relight::PictureView> view_; ///< once there is a picture
+    /// Once there is a picture
+    std::unique_ptr<relight::PictureView> view_;
 };
 
 /// A path's extension in small letters, with the dot.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
-/// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever name.
+/// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever
+/// name.
 void check_output(const std::string& path, const std::vector<std::string>& inputs);
 
-/// Writes a cube map as a lat-long picture: .exr (linear), or .png with the brightest thousandth white, then exposed.
+/// Writes a cube map as a lat-long picture: .exr (linear), or .png with the brightest thousandth
+/// white, then exposed.
 void save_map(const std::string& path, const cubemap::CubeMap& map, double exposure_ev);
 
 } // namespace relumine::app

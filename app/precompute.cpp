@@ -41,10 +41,11 @@ struct Options {
     prt::PrecomputeOptions precompute;
 };
 
-/// Both parts of the transfer. `rays` and all it is made of go before the scene is written, which needs memory of its own.
+/// Both parts of the transfer. `rays` and all it is made of go before the scene is written, which
+/// needs memory of its own.
 void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& precompute,
-             std::unique_ptr<prt::CheckpointFile>& checkpoint, prt::PrecomputeStatistics& statistics,
-             Session& session, nlohmann::json& report) {
+             std::unique_ptr<prt::CheckpointFile>& checkpoint,
+             prt::PrecomputeStatistics& statistics, Session& session, nlohmann::json& report) {
     prt::SceneSizes sizes{.num_vertices = scene.mesh.num_vertices(),
                           .num_triangles = scene.mesh.num_triangles(),
                           .has_beams = options.engine == "beam"};
@@ -57,7 +58,8 @@ void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& 
     checkpoint = options.checkpoint.open(
         options.output,
         prt::fingerprint(scene.mesh, scene.receivers, precompute,
-                         is_glossy ? std::optional(options.surfaces.glossy_tolerance()) : std::nullopt),
+                         is_glossy ? std::optional(options.surfaces.glossy_tolerance())
+                                   : std::nullopt),
         session);
     precompute.checkpoint = checkpoint.get();
     precompute.more_follows = is_glossy;
@@ -67,8 +69,8 @@ void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& 
             beams.emplace(scene.mesh, rays);
         const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
         sizes.num_receivers = scene.receivers.size();
-        options.memory.check_estimate(sizes, scene.receivers, blockers, options.mesh, precompute, session,
-                                      report);
+        options.memory.check_estimate(sizes, scene.receivers, blockers, options.mesh, precompute,
+                                      session, report);
         try {
             scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
         } catch (const prt::TooManyClusters& error) {
@@ -76,12 +78,13 @@ void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& 
         }
         session.end_progress();
     }
-    options.surfaces.precompute_highlights(scene, rays, precompute,
-                                           options.memory.max_glossy_bytes(sizes, statistics.column_bytes),
-                                           options.mesh, session, report);
+    options.surfaces.precompute_highlights(
+        scene, rays, precompute, options.memory.max_glossy_bytes(sizes, statistics.column_bytes),
+        options.mesh, session, report);
 }
 
-std::uint64_t save(const Options& options, prt::Scene& scene, const prt::PrecomputeOptions& precompute) {
+std::uint64_t save(const Options& options, prt::Scene& scene,
+                   const prt::PrecomputeOptions& precompute) {
     scene.settings = {.tolerance = precompute.tolerance,
                       .epsilon = precompute.epsilon,
                       .min_level = precompute.min_level,
@@ -99,7 +102,8 @@ void run(const Options& options, Session& session) {
     Stopwatch watch;
     // Found out now, not after a minute of work.
     if (std::filesystem::path(options.output).extension() != ".prt")
-        throw std::runtime_error(fmt::format("{}: expected a name that ends in .prt", options.output));
+        throw std::runtime_error(
+            fmt::format("{}: expected a name that ends in .prt", options.output));
     check_output(options.output, {options.mesh});
     options.receivers.check();
     options.surfaces.check();
@@ -111,7 +115,8 @@ void run(const Options& options, Session& session) {
         mesh::append_floor(scene.mesh, *options.floor_vertices, options.floor_scale);
     const std::size_t num_vertices = scene.mesh.num_vertices();
     const std::size_t num_triangles = scene.mesh.num_triangles();
-    session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh, num_vertices, num_triangles));
+    session.detail(
+        fmt::format("{}: {} vertices, {} triangles", options.mesh, num_vertices, num_triangles));
 
     prt::PrecomputeOptions precompute = options.precompute;
     precompute.bias = options.bias.value_or(prt::automatic_bias(scene.mesh));
@@ -127,22 +132,23 @@ void run(const Options& options, Session& session) {
     } catch (const std::exception& error) {
         if (!checkpoint || !checkpoint->exists())
             throw;
-        throw std::runtime_error(fmt::format("{}; the same command with --resume goes on from {}",
-                                             error.what(),
-                                             prt::CheckpointFile::folder_for(options.output).string()));
+        throw std::runtime_error(
+            fmt::format("{}; the same command with --resume goes on from {}", error.what(),
+                        prt::CheckpointFile::folder_for(options.output).string()));
     }
     if (checkpoint)
         checkpoint->remove();
 
     const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
-    const std::string others = on_vertices ? ""
-                                           : fmt::format(", {} receivers ({})", scene.receivers.size(),
-                                                         prt::description(scene.layout));
-    session.say(
-        fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({:.1f} M rays/s), {:.1f} MB",
-                    options.output, num_vertices, num_triangles, others, statistics.num_clusters,
-                    statistics.seconds, static_cast<double>(statistics.num_rays) / statistics.seconds * 1e-6,
-                    static_cast<double>(file_bytes) * 1e-6));
+    const std::string others = on_vertices
+                                   ? ""
+                                   : fmt::format(", {} receivers ({})", scene.receivers.size(),
+                                                 prt::description(scene.layout));
+    session.say(fmt::format(
+        "{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({:.1f} M rays/s), {:.1f} MB",
+        options.output, num_vertices, num_triangles, others, statistics.num_clusters,
+        statistics.seconds, static_cast<double>(statistics.num_rays) / statistics.seconds * 1e-6,
+        static_cast<double>(file_bytes) * 1e-6));
     report.update({{"vertices", num_vertices},
                    {"receivers", scene.receivers.size()},
                    {"triangles", num_triangles},
@@ -167,7 +173,8 @@ void add_precompute(CLI::App& program, Session& session) {
     CLI::App& command =
         *program.add_subcommand("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<Options>();
-    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")->required();
+    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
+        ->required();
     command.add_option("-o,--output", options->output, "the scene file to write, .prt")->required();
     command
         .add_option_function<std::vector<std::string>>(
@@ -176,14 +183,16 @@ void add_precompute(CLI::App& program, Session& session) {
                 std::uint32_t n = 193;
                 if (!values.empty() && !values.front().empty() &&
                     !CLI::detail::lexical_cast(values.front(), n))
-                    throw CLI::ValidationError("--floor",
-                                               fmt::format("expected a number, got '{}'", values.front()));
+                    throw CLI::ValidationError(
+                        "--floor", fmt::format("expected a number, got '{}'", values.front()));
                 options->floor_vertices = n;
             },
             "add a floor of N x N vertices under the mesh; 193 when no N is given")
         ->expected(0, 1)
         ->type_name("[N]");
-    command.add_option("--floor-scale", options->floor_scale, "side of the floor over the mesh's width")
+    command
+        .add_option("--floor-scale", options->floor_scale,
+                    "side of the floor over the mesh's width")
         ->needs("--floor")
         ->capture_default_str();
     command
@@ -198,7 +207,8 @@ void add_precompute(CLI::App& program, Session& session) {
     command.add_option("--epsilon", options->precompute.epsilon,
                        "the paper's form of the tolerance: grows lax with the mesh's size");
     command
-        .add_option("--min-depth", options->precompute.min_level, "every cell is split at least this often")
+        .add_option("--min-depth", options->precompute.min_level,
+                    "every cell is split at least this often")
         ->capture_default_str();
     command
         .add_option("--face-resolution", options->precompute.face_resolution,
@@ -208,7 +218,8 @@ void add_precompute(CLI::App& program, Session& session) {
                        "lift of the rays' origins off the surface, in the mesh's unit");
     command
         .add_option("--engine", options->engine,
-                    "how visibility is traced: whole beams of rays, or each ray with Embree; the results are "
+                    "how visibility is traced: whole beams of rays, or each ray with Embree; the "
+                    "results are "
                     "the same")
         ->check(CLI::IsMember({"beam", "embree"}))
         ->capture_default_str();

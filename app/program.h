@@ -7,7 +7,8 @@
 
 namespace relumine::app {
 
-/// Adds the subcommands, whose work runs when the line is parsed, and refuses empty values. The session must outlive the program.
+/// Adds the subcommands, whose work runs when the line is parsed, and refuses empty values. The
+/// session must outlive the program.
 void add_commands(CLI::App& program, Session& session);
 
 } // namespace relumine::app

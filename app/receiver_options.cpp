@@ -22,13 +22,15 @@ nlohmann::json array(const glm::vec3& v) {
 
 void ReceiverOptions::add_to(CLI::App& command) {
     command
-        .add_option("--receivers", receivers_,
-                    "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples each) or texels:WxH "
-                    "(a lightmap on the mesh's uvs)")
+        .add_option(
+            "--receivers", receivers_,
+            "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples each) or texels:WxH "
+            "(a lightmap on the mesh's uvs)")
         ->capture_default_str();
-    command.add_option("--view", view_,
-                       "the camera of pixels, and the eye that highlights are for: EX,EY,EZ,TX,TY,TZ[,FOV] "
-                       "(eye, target, vertical degrees: 35) or auto");
+    command.add_option(
+        "--view", view_,
+        "the camera of pixels, and the eye that highlights are for: EX,EY,EZ,TX,TY,TZ[,FOV] "
+        "(eye, target, vertical degrees: 35) or auto");
 }
 
 ReceiverOptions::Wanted ReceiverOptions::wanted() const {
@@ -38,7 +40,8 @@ ReceiverOptions::Wanted ReceiverOptions::wanted() const {
     const auto refuse = [&] {
         throw CLI::ValidationError(
             "--receivers",
-            fmt::format("expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got '{}'", receivers_));
+            fmt::format("expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got '{}'",
+                        receivers_));
     };
     std::istringstream text(receivers_);
     std::string kind;
@@ -59,14 +62,17 @@ ReceiverOptions::Wanted ReceiverOptions::wanted() const {
         return size >= 1 && size <= prt::MaxPictureSize;
     };
     if (!is_size(width) || !is_size(height))
-        throw CLI::ValidationError("--receivers", fmt::format("expected a size of 1 to {} a side, got '{}'",
-                                                              prt::MaxPictureSize, receivers_));
+        throw CLI::ValidationError("--receivers",
+                                   fmt::format("expected a size of 1 to {} a side, got '{}'",
+                                               prt::MaxPictureSize, receivers_));
     if (samples < 1 || samples > prt::MaxSamplesPerAxis)
-        throw CLI::ValidationError("--receivers", fmt::format("expected 1 to {} samples a side, got '{}'",
-                                                              prt::MaxSamplesPerAxis, receivers_));
+        throw CLI::ValidationError("--receivers",
+                                   fmt::format("expected 1 to {} samples a side, got '{}'",
+                                               prt::MaxSamplesPerAxis, receivers_));
     if (static_cast<std::size_t>(width * height * samples * samples) > prt::MaxLayoutPlaces)
-        throw CLI::ValidationError("--receivers", fmt::format("expected at most {} samples in all, got '{}'",
-                                                              prt::MaxLayoutPlaces, receivers_));
+        throw CLI::ValidationError("--receivers",
+                                   fmt::format("expected at most {} samples in all, got '{}'",
+                                               prt::MaxLayoutPlaces, receivers_));
     wanted.width = static_cast<std::uint32_t>(width);
     wanted.height = static_cast<std::uint32_t>(height);
     wanted.samples_per_axis = static_cast<std::uint32_t>(samples);
@@ -86,8 +92,8 @@ std::optional<prt::Camera> ReceiverOptions::camera() const {
             numbers.push_back(number);
     }
     if (numbers.size() != 6 && numbers.size() != 7)
-        throw CLI::ValidationError("--view",
-                                   fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV], got '{}'", view_));
+        throw CLI::ValidationError(
+            "--view", fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV], got '{}'", view_));
     prt::Camera camera{.eye = {numbers[0], numbers[1], numbers[2]},
                        .target = {numbers[3], numbers[4], numbers[5]}};
     if (numbers.size() == 7)
@@ -103,13 +109,15 @@ std::optional<prt::Camera> ReceiverOptions::camera() const {
 void ReceiverOptions::check() const {
     const bool pixels = wanted().kind == Kind::Pixels;
     if (pixels && view_.empty())
-        throw CLI::ValidationError("--receivers", "expected --view (a camera, or auto) with pixels");
+        throw CLI::ValidationError("--receivers",
+                                   "expected --view (a camera, or auto) with pixels");
     if (!view_.empty())
         static_cast<void>(camera());
 }
 
-void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays, const std::string& mesh_name,
-                            const Session& session, nlohmann::json& report) const {
+void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays,
+                            const std::string& mesh_name, const Session& session,
+                            nlohmann::json& report) const {
     const Wanted wanted = this->wanted();
     try {
         if (wanted.kind == Kind::Pixels)
@@ -132,22 +140,23 @@ void ReceiverOptions::apply_eye(prt::Scene& scene) const {
     prt::look_from(scene.receivers, scene.settings.view->eye);
 }
 
-void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene, const prt::RayScene& rays,
-                                   const Session& session, nlohmann::json& report) const {
+void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene,
+                                   const prt::RayScene& rays, const Session& session,
+                                   nlohmann::json& report) const {
     const std::optional<prt::Camera> own = camera();
     prt::PixelReceivers pixels = prt::pixel_receivers(
         scene.mesh, rays,
-        {.camera =
-             own ? *own
-                 : relight::automatic_camera(scene.mesh, {.width = wanted.width, .height = wanted.height}),
+        {.camera = own ? *own
+                       : relight::automatic_camera(
+                             scene.mesh, {.width = wanted.width, .height = wanted.height}),
          .width = wanted.width,
          .height = wanted.height,
          .samples_per_axis = wanted.samples_per_axis});
     scene.receivers = std::move(pixels.receivers);
     scene.layout = std::move(pixels.layout);
     report["layout"] = layout_json(scene);
-    session.detail(
-        fmt::format("{}: {} samples hit the mesh", prt::description(scene.layout), scene.receivers.size()));
+    session.detail(fmt::format("{}: {} samples hit the mesh", prt::description(scene.layout),
+                               scene.receivers.size()));
 }
 
 void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, const Session& session,
@@ -156,15 +165,17 @@ void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, cons
         prt::texel_receivers(scene.mesh, {.width = wanted.width, .height = wanted.height});
     const prt::AtlasReport& atlas = texels.report;
     if (atlas.num_overlapping > 0)
-        session.say(fmt::format("warning: {} texels lie in several triangles, the first at column {}, row "
-                                "{}: charts overlap, the first triangle of the mesh wins",
-                                atlas.num_overlapping, atlas.first_overlap % wanted.width,
-                                atlas.first_overlap / wanted.width));
+        session.say(
+            fmt::format("warning: {} texels lie in several triangles, the first at column {}, row "
+                        "{}: charts overlap, the first triangle of the mesh wins",
+                        atlas.num_overlapping, atlas.first_overlap % wanted.width,
+                        atlas.first_overlap / wanted.width));
     if (atlas.num_outside > 0)
         session.say(fmt::format("warning: {} triangles have uvs outside of 0 to 1: cut off there",
                                 atlas.num_outside));
     if (atlas.num_flat > 0)
-        session.detail(fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
+        session.detail(
+            fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
     scene.receivers = std::move(texels.receivers);
     scene.layout = std::move(texels.layout);
     report["layout"] = layout_json(scene);
@@ -173,7 +184,8 @@ void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, cons
     report["triangles_outside"] = atlas.num_outside;
     report["triangles_flat_in_uv"] = atlas.num_flat;
     if (atlas.num_overlapping > 0)
-        report["first_overlap"] = {atlas.first_overlap % wanted.width, atlas.first_overlap / wanted.width};
+        report["first_overlap"] = {atlas.first_overlap % wanted.width,
+                                   atlas.first_overlap / wanted.width};
 }
 
 nlohmann::json layout_json(const prt::Scene& scene) {
@@ -197,16 +209,17 @@ nlohmann::json layout_json(const prt::Scene& scene) {
 
 void require_vertices(const prt::Scene& scene, const std::string& path) {
     if (!std::holds_alternative<prt::VertexLayout>(scene.layout))
-        throw std::runtime_error(fmt::format("{}: expected a scene whose receivers are vertices, got {}",
-                                             path, prt::description(scene.layout)));
+        throw std::runtime_error(
+            fmt::format("{}: expected a scene whose receivers are vertices, got {}", path,
+                        prt::description(scene.layout)));
 }
 
 void require_diffuse(const prt::Scene& scene, const std::string& path) {
     if (!scene.receivers.surfaces.empty())
-        throw std::runtime_error(
-            fmt::format("{}: expected a scene without materials (highlights or albedo), as lights are chosen "
-                        "for plain white surfaces",
-                        path));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene without materials (highlights or albedo), as lights are chosen "
+            "for plain white surfaces",
+            path));
 }
 
 } // namespace relumine::app

@@ -1,4 +1,5 @@
-// What `relumine precompute` computes the transfer of: vertices, pixels of a view or texels of a lightmap.
+// What `relumine precompute` computes the transfer of: vertices, pixels of a view or texels of a
+// lightmap.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +22,8 @@ public:
     /// Refuses wrong usage before any work is done.
     void check() const;
 
-    /// Gives the scene its receivers and layout; says and reports what they are. `mesh_name` is for messages. Throws std::runtime_error for a view
-    /// that sees nothing and a mesh without uvs.
+    /// Gives the scene its receivers and layout; says and reports what they are. `mesh_name` is for
+    /// messages. Throws std::runtime_error for a view that sees nothing and a mesh without uvs.
     void apply(prt::Scene& scene, const prt::RayScene& rays, const std::string& mesh_name,
                const Session& session, nlohmann::json& report) const;
 
@@ -33,7 +34,8 @@ private:
         std::uint32_t width = 0, height = 0, samples_per_axis = 1;
     };
     [[nodiscard]] Wanted wanted() const;
-    [[nodiscard]] std::optional<prt::Camera> camera() const; ///< none: automatic
+    /// None: automatic
+    [[nodiscard]] std::optional<prt::Camera> camera() const;
     void apply_eye(prt::Scene& scene) const;
     void apply_pixels(const Wanted& wanted, prt::Scene& scene, const prt::RayScene& rays,
                       const Session& session, nlohmann::json& report) const;
@@ -41,16 +43,19 @@ private:
                              nlohmann::json& report);
 
     std::string receivers_ = "vertices";
-    std::string view_; ///< empty: none
+    /// Empty: none
+    std::string view_;
 };
 
 /// The layout for people and for --json: size, camera, coverage. Empty for vertices.
 [[nodiscard]] nlohmann::json layout_json(const prt::Scene& scene);
 
-/// Throws std::runtime_error "path: expected a scene whose receivers are vertices, got ..." for other layouts.
+/// Throws std::runtime_error "path: expected a scene whose receivers are vertices, got ..." for
+/// other layouts.
 void require_vertices(const prt::Scene& scene, const std::string& path);
 
-/// Throws std::runtime_error "path: expected a scene without materials ..." for receivers with surfaces.
+/// Throws std::runtime_error "path: expected a scene without materials ..." for receivers with
+/// surfaces.
 void require_diffuse(const prt::Scene& scene, const std::string& path);
 
 } // namespace relumine::app

@@ -21,7 +21,8 @@ namespace {
 struct Options {
     SceneOptions scene{.mesh_too = true};
     EnvironmentOptions environment;
-    std::string lights; ///< a light list in place of an environment
+    /// A light list in place of an environment
+    std::string lights;
     OutputOptions output;
 };
 
@@ -29,8 +30,9 @@ void light_with_environment(const Options& options, Session& session) {
     Stopwatch watch;
     const LitScene lit(options.scene);
     if (!lit.has_clusters())
-        throw std::runtime_error(fmt::format(
-            "{}: expected a scene file (`relumine precompute`) or --lights, got a mesh", options.scene.path));
+        throw std::runtime_error(
+            fmt::format("{}: expected a scene file (`relumine precompute`) or --lights, got a mesh",
+                        options.scene.path));
     const prt::Scene& scene = lit.scene();
     options.output.check_fits(scene);
     const double seconds_load_scene = watch.lap();
@@ -46,13 +48,13 @@ void light_with_environment(const Options& options, Session& session) {
     options.output.save(lit, relighter.radiance(), relighter.environment());
     const double seconds_output = watch.lap();
 
-    session.say(fmt::format("{}: {} receivers under {} (R = {}): load {:.0f}, resample {:.0f}, bin {:.1f}, "
-                            "trace {:.1f} ({} lights), relight {:.1f} ms{}",
-                            options.output.path, scene.transfer.num_receivers(), options.environment.path,
-                            resolution, 1e3 * environment.seconds_load, 1e3 * environment.seconds_resample,
-                            1e3 * times.seconds_bin, 1e3 * times.seconds_trace, times.num_sharp_lights,
-                            1e3 * times.seconds_relight,
-                            options.output.exposure_hint(scene, relighter.radiance(), session)));
+    session.say(fmt::format(
+        "{}: {} receivers under {} (R = {}): load {:.0f}, resample {:.0f}, bin {:.1f}, "
+        "trace {:.1f} ({} lights), relight {:.1f} ms{}",
+        options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
+        1e3 * environment.seconds_load, 1e3 * environment.seconds_resample, 1e3 * times.seconds_bin,
+        1e3 * times.seconds_trace, times.num_sharp_lights, 1e3 * times.seconds_relight,
+        options.output.exposure_hint(scene, relighter.radiance(), session)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -87,14 +89,15 @@ void light_with_list(const Options& options, Session& session) {
     const std::vector<glm::vec3> radiance = radiance_under(list, lit);
     const double seconds_light = watch.lap();
     session.poll();
-    options.output.save(lit, radiance, cubemap::CubeMap(1)); // nothing but lights: a black background
+    options.output.save(lit, radiance,
+                        cubemap::CubeMap(1)); // nothing but lights: a black background
     const double seconds_output = watch.lap();
 
-    session.say(
-        fmt::format("{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
-                    radiance.size(), list.lights.size(), options.lights, 1e3 * seconds_light,
-                    options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
-                    options.output.exposure_hint(lit.scene(), radiance, session)));
+    session.say(fmt::format(
+        "{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
+        radiance.size(), list.lights.size(), options.lights, 1e3 * seconds_light,
+        options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
+        options.output.exposure_hint(lit.scene(), radiance, session)));
     session.report({{"receivers", radiance.size()},
                     {"lights", list.lights.size()},
                     {"traced", !options.scene.clusters_only},
@@ -107,7 +110,8 @@ void run(const Options& options, Session& session) {
     if (options.environment.path.empty() == options.lights.empty())
         throw CLI::ValidationError("relight", "expected either ENV or --lights");
     const bool with_list = !options.lights.empty();
-    options.output.check({options.scene.path, with_list ? options.lights : options.environment.path});
+    options.output.check(
+        {options.scene.path, with_list ? options.lights : options.environment.path});
     if (with_list)
         light_with_list(options, session);
     else
@@ -118,13 +122,14 @@ void run(const Options& options, Session& session) {
 
 void add_relight(CLI::App& program, Session& session) {
     CLI::App& command = *program.add_subcommand(
-        "relight", "light a scene with an environment or a light list: a picture, a mesh or numbers");
+        "relight",
+        "light a scene with an environment or a light list: a picture, a mesh or numbers");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command)->required(false);
-    command.add_option(
-        "--lights", options->lights,
-        "in place of ENV: a light list (.json, from `relumine lights`), a shadow ray for each light");
+    command.add_option("--lights", options->lights,
+                       "in place of ENV: a light list (.json, from `relumine lights`), a shadow "
+                       "ray for each light");
     options->output.add_to(command);
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });

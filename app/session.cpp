@@ -22,10 +22,12 @@ namespace relumine::app {
 namespace {
 
 double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
-/// Ctrl-C, SIGTERM and a closed terminal, unless `nohup` says that it is none of the program's business.
+/// Ctrl-C, SIGTERM and a closed terminal, unless `nohup` says that it is none of the program's
+/// business.
 sigset_t signals_to_stop() {
     sigset_t signals;
     sigemptyset(&signals);
@@ -39,7 +41,8 @@ sigset_t signals_to_stop() {
 
 std::string duration(double seconds) {
     const long whole = std::lround(seconds);
-    return whole < 60 ? fmt::format("{} s", whole) : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+    return whole < 60 ? fmt::format("{} s", whole)
+                      : fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }
 
 std::optional<glm::vec3> three_numbers(const std::string& text) {
@@ -58,9 +61,11 @@ std::optional<glm::vec3> three_numbers(const std::string& text) {
 } // namespace
 
 Session::Session() {
-    // A write beyond the process's limit fails then like one on a full disk, with a message and nothing left behind.
+    // A write beyond the process's limit fails then like one on a full disk, with a message and
+    // nothing left behind.
     std::signal(SIGXFSZ, SIG_IGN);
-    // Signals are taken by one thread, so that whatever it calls need not be safe inside a handler. Threads started later inherit the mask.
+    // Signals are taken by one thread, so that whatever it calls need not be safe inside a handler.
+    // Threads started later inherit the mask.
     const sigset_t signals = signals_to_stop();
     pthread_sigmask(SIG_BLOCK, &signals, nullptr);
     std::thread([signals, source = stop_source_]() mutable {
@@ -68,7 +73,8 @@ Session::Session() {
         sigwait(&signals, &signal);
         const double first = now();
         source.request_stop();
-        // `timeout` and batch systems signal a process and then its whole group: the same wish twice, not impatience.
+        // `timeout` and batch systems signal a process and then its whole group: the same wish
+        // twice, not impatience.
         constexpr double SameWish = 1.0; // seconds
         do
             sigwait(&signals, &signal);
@@ -97,8 +103,10 @@ std::function<void(double)> Session::progress(const std::string& what) {
     if (quiet)
         return {};
     struct State {
-        double start = -1.0;         ///< when it was first called
-        double first_fraction = 0.0; ///< and with what: the run may take up another one
+        /// When it was first called
+        double start = -1.0;
+        /// And with what: the run may take up another one
+        double first_fraction = 0.0;
         double last_shown = 0.0;
         int last_tenth = 0;
     };
@@ -177,9 +185,11 @@ glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
 
 glm::vec3 parse_color(const std::string& option, const std::string& text) {
     const bool is_grey = text.find(',') == std::string::npos;
-    const std::optional<glm::vec3> color = three_numbers(is_grey ? fmt::format("{0},{0},{0}", text) : text);
+    const std::optional<glm::vec3> color =
+        three_numbers(is_grey ? fmt::format("{0},{0},{0}", text) : text);
     if (!color)
-        throw CLI::ValidationError(option, fmt::format("expected R,G,B or one number, got '{}'", text));
+        throw CLI::ValidationError(option,
+                                   fmt::format("expected R,G,B or one number, got '{}'", text));
     if (color->r < 0.0f || color->g < 0.0f || color->b < 0.0f)
         throw CLI::ValidationError(option, fmt::format("expected numbers >= 0, got '{}'", text));
     return *color;
@@ -188,8 +198,10 @@ glm::vec3 parse_color(const std::string& option, const std::string& text) {
 CLI::Validator number_between(double min, double max) {
     return {[min, max](const std::string& text) {
                 double value = 0.0;
-                const bool inside = CLI::detail::lexical_cast(text, value) && value >= min && value <= max;
-                return inside ? std::string() : fmt::format("expected {} to {}, got '{}'", min, max, text);
+                const bool inside =
+                    CLI::detail::lexical_cast(text, value) && value >= min && value <= max;
+                return inside ? std::string()
+                              : fmt::format("expected {} to {}, got '{}'", min, max, text);
             },
             fmt::format("{} to {}", min, max)};
 }

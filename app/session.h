@@ -21,20 +21,22 @@ public:
     bool json = false;
     bool quiet = false;
     bool verbose = false;
-    unsigned num_threads = 0; ///< 0: all
+    /// 0: all
+    unsigned num_threads = 0;
 
     Session();
 
     /// Adds --json, --threads, -q and -v to a subcommand.
     void add_common_options(CLI::App& command);
 
-    /// Set by Ctrl-C, SIGTERM and SIGHUP. Another of them, a second later or more, ends the program at once.
+    /// Set by Ctrl-C, SIGTERM and SIGHUP. Another of them, a second later or more, ends the program
+    /// at once.
     [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;
 
-    /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the first second or with -q. To be called
-    /// with fractions in [0, 1].
+    /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the
+    /// first second or with -q. To be called with fractions in [0, 1].
     [[nodiscard]] std::function<void(double)> progress(const std::string& what);
     /// Ends the bar's line. Harmless when there is none.
     void end_progress();
@@ -70,7 +72,8 @@ private:
 /// Three numbers "X,Y,Z" of an option. Throws CLI::ValidationError (wrong usage) for anything else.
 [[nodiscard]] glm::vec3 parse_vec3(const std::string& option, const std::string& text);
 
-/// A colour "R,G,B" or one number for all three, >= 0. Throws CLI::ValidationError for anything else.
+/// A colour "R,G,B" or one number for all three, >= 0. Throws CLI::ValidationError for anything
+/// else.
 [[nodiscard]] glm::vec3 parse_color(const std::string& option, const std::string& text);
 
 /// Accepts numbers from `min` to `max`. Unlike CLI::Range not NaN.

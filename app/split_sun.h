@@ -12,19 +12,21 @@
 
 namespace relumine::app {
 
-/// The file that takes the sun split off a map: "out.exr" has "out.sun.json", a light list of one light (direction, irradiance, solid
-/// angle) in world axes.
+/// The file that takes the sun split off a map: "out.exr" has "out.sun.json", a light list of one
+/// light (direction, irradiance, solid angle) in world axes.
 class SunFile {
 public:
     /// Where it will be.
     [[nodiscard]] static std::filesystem::path path_beside(std::filesystem::path map_path);
 
-    /// Creates a temporary file beside the map's, so that an unwritable folder is found before any work is done.
+    /// Creates a temporary file beside the map's, so that an unwritable folder is found before any
+    /// work is done.
     explicit SunFile(const std::filesystem::path& map_path);
 
-    /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary file, its direction carried by
-    /// `world_from_image`. Returns the sun's figures for the session's report. Throws std::runtime_error "source: expected a sun to
-    /// split off, got none: why"; `source` names the map.
+    /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary
+    /// file, its direction carried by `world_from_image`. Returns the sun's figures for the
+    /// session's report. Throws std::runtime_error "source: expected a sun to split off, got none:
+    /// why"; `source` names the map.
     nlohmann::json split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
                          const std::string& source);
 

@@ -11,10 +11,11 @@
 namespace relumine::app {
 
 void SurfaceOptions::add_to(CLI::App& command) {
-    command.add_option("--material", materials_,
-                       "surface in place of the file's: ggx:roughness=0.3,albedo=0.5,f0=0.04, "
-                       "blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8; GROUP=... for one object; "
-                       "highlights need --view");
+    command.add_option(
+        "--material", materials_,
+        "surface in place of the file's: ggx:roughness=0.3,albedo=0.5,f0=0.04, "
+        "blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8; GROUP=... for one object; "
+        "highlights need --view");
     command
         .add_option("--glossy-tolerance", glossy_tolerance_,
                     "relative error of a highlight under a small light anywhere")
@@ -53,15 +54,16 @@ void SurfaceOptions::apply(prt::Scene& scene, const Session& session) const {
         surface.highlight = prt::Highlight::None;
     }
     if (num_highlights != 0)
-        session.say(fmt::format(
-            "warning: {} receivers have highlights, which need --view: left out, the scene is diffuse",
-            num_highlights));
+        session.say(fmt::format("warning: {} receivers have highlights, which need --view: left "
+                                "out, the scene is diffuse",
+                                num_highlights));
 }
 
 void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
                                            const prt::PrecomputeOptions& precompute,
-                                           std::optional<std::uint64_t> max_bytes, const std::string& mesh,
-                                           Session& session, nlohmann::json& report) const {
+                                           std::optional<std::uint64_t> max_bytes,
+                                           const std::string& mesh, Session& session,
+                                           nlohmann::json& report) const {
     if (!prt::has_highlights(scene.receivers)) {
         prt::set_surfaces(scene.transfer, scene.receivers);
         return;
@@ -71,10 +73,12 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
         return surface.highlight == prt::Highlight::Ggx && surface.shape < narrowest;
     };
     const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
-    if (const auto count = std::count_if(surfaces.begin(), surfaces.end(), is_too_sharp); count != 0)
-        session.say(fmt::format("warning: {} receivers are smoother than roughness {:.3f}: cells of the "
-                                "quadtree cannot hold so sharp a highlight, it comes out wider",
-                                count, narrowest));
+    if (const auto count = std::count_if(surfaces.begin(), surfaces.end(), is_too_sharp);
+        count != 0)
+        session.say(
+            fmt::format("warning: {} receivers are smoother than roughness {:.3f}: cells of the "
+                        "quadtree cannot hold so sharp a highlight, it comes out wider",
+                        count, narrowest));
     prt::GlossyOptions glossy{.tolerance = glossy_tolerance_,
                               .face_resolution = precompute.face_resolution,
                               .bias = precompute.bias,
@@ -82,9 +86,10 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
                               .stop = session.stop(),
                               .on_progress = session.progress("highlights")};
     const auto refused = [&](std::string_view kind, std::uint64_t num_entries) {
-        return std::runtime_error(fmt::format(
-            "{}: expected highlights within {} of memory, got {} {}; a larger --glossy-tolerance takes less",
-            mesh, megabytes(*max_bytes), kind, megabytes(num_entries * prt::BytesPerEntry)));
+        return std::runtime_error(fmt::format("{}: expected highlights within {} of memory, got {} "
+                                              "{}; a larger --glossy-tolerance takes less",
+                                              mesh, megabytes(*max_bytes), kind,
+                                              megabytes(num_entries * prt::BytesPerEntry)));
     };
     if (max_bytes) {
         const std::uint64_t estimate =
@@ -104,15 +109,17 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
     session.end_progress();
     prt::set_surfaces(scene.transfer, scene.receivers);
     scene.settings.glossy_tolerance = glossy_tolerance_;
-    const double cells_per_block =
-        static_cast<double>(statistics.num_entries) / static_cast<double>(scene.transfer.counts.num_blocks());
-    session.say(fmt::format("highlights: {:.0f} cells per block of {} receivers in {:.1f} s, {:.1f} MB",
-                            cells_per_block, prt::BlockSize, statistics.seconds,
-                            static_cast<double>(scene.transfer.glossy->num_bytes()) * 1e-6));
-    report["glossy"] = {{"tolerance", glossy_tolerance_},     {"cells", statistics.num_entries},
-                        {"cells_per_block", cells_per_block}, {"rays", statistics.num_rays},
-                        {"seconds", statistics.seconds},      {"bytes", scene.transfer.glossy->num_bytes()},
-                        {"narrowest_roughness", narrowest}};
+    const double cells_per_block = static_cast<double>(statistics.num_entries) /
+                                   static_cast<double>(scene.transfer.counts.num_blocks());
+    session.say(
+        fmt::format("highlights: {:.0f} cells per block of {} receivers in {:.1f} s, {:.1f} MB",
+                    cells_per_block, prt::BlockSize, statistics.seconds,
+                    static_cast<double>(scene.transfer.glossy->num_bytes()) * 1e-6));
+    report["glossy"] = {
+        {"tolerance", glossy_tolerance_},     {"cells", statistics.num_entries},
+        {"cells_per_block", cells_per_block}, {"rays", statistics.num_rays},
+        {"seconds", statistics.seconds},      {"bytes", scene.transfer.glossy->num_bytes()},
+        {"narrowest_roughness", narrowest}};
 }
 
 } // namespace relumine::app

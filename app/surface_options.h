@@ -22,13 +22,15 @@ public:
     /// Refuses wrong usage before any work is done.
     void check() const;
 
-    /// Gives the scene's receivers their surfaces: the mesh's materials, changed by the options. None where there are neither.
+    /// Gives the scene's receivers their surfaces: the mesh's materials, changed by the options.
+    /// None where there are neither.
     void apply(prt::Scene& scene, const Session& session) const;
 
     [[nodiscard]] float glossy_tolerance() const { return glossy_tolerance_; }
 
-    /// Computes the glossy part of the scene's transfer, where its receivers have highlights and an eye. `precompute` is what the diffuse
-    /// part was computed with, its checkpoint included. Throws std::runtime_error when it takes more than `max_bytes`, or would by an estimate;
+    /// Computes the glossy part of the scene's transfer, where its receivers have highlights and an
+    /// eye. `precompute` is what the diffuse part was computed with, its checkpoint included.
+    /// Throws std::runtime_error when it takes more than `max_bytes`, or would by an estimate;
     /// `mesh` is for that message.
     void precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
                                const prt::PrecomputeOptions& precompute,

@@ -24,7 +24,8 @@ void run(const Options& options, Session& session) {
     const LitScene lit(options.scene);
     const prt::Scene& scene = lit.scene();
     const LoadedEnvironment environment = load_environment(options.environment, session);
-    const std::vector<glm::vec3> relit = relight::relight(scene.transfer, environment.map, lit.shadow_rays());
+    const std::vector<glm::vec3> relit =
+        relight::relight(scene.transfer, environment.map, lit.shadow_rays());
 
     Stopwatch watch;
     const std::vector<std::uint32_t> sample =
@@ -42,11 +43,11 @@ void run(const Options& options, Session& session) {
     const std::string name = prt::receiver_name(scene.layout);
     session.say(fmt::format("{} receivers, R = {}, exact integration in {:.1f} s", sample.size(),
                             environment.map.resolution, seconds));
-    session.say(
-        fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} % of the mean radiance {:.4g}",
-                    error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs, error.mean_radiance));
-    session.say(
-        fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x, worst.y, worst.z));
+    session.say(fmt::format(
+        "relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} % of the mean radiance {:.4g}",
+        error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs, error.mean_radiance));
+    session.say(fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x,
+                            worst.y, worst.z));
     session.report({{"relative_l2", error.relative_l2},
                     {"mean_abs", error.mean_abs},
                     {"max_abs", error.max_abs},

@@ -46,13 +46,15 @@ void set_size(const std::string& text, viewer::ViewOptions& view) {
     const std::size_t x = text.find('x');
     const auto number = [](const std::string& digits) {
         int value = 0;
-        const bool good = CLI::detail::lexical_cast(digits, value) && value >= 320 && value <= 16384;
+        const bool good =
+            CLI::detail::lexical_cast(digits, value) && value >= 320 && value <= 16384;
         return good ? value : 0;
     };
     view.width = x == std::string::npos ? 0 : number(text.substr(0, x));
     view.height = x == std::string::npos ? 0 : number(text.substr(x + 1));
     if (view.width == 0 || view.height == 0)
-        throw CLI::ValidationError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
+        throw CLI::ValidationError("--size",
+                                   fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
 }
 
 /// Without an environment: an even grey, in which layers show.
@@ -61,7 +63,8 @@ cubemap::CubeMap plain_grey() {
     return cubemap::CubeMap(Resolution, glm::vec3(0.25f));
 }
 
-void report(const viewer::ViewReport& result, const relight::LightEditor& editor, const Session& session) {
+void report(const viewer::ViewReport& result, const relight::LightEditor& editor,
+            const Session& session) {
     const std::vector<double>& seconds = result.drag_seconds;
     double sum = 0.0;
     double worst = 0.0;
@@ -70,10 +73,11 @@ void report(const viewer::ViewReport& result, const relight::LightEditor& editor
         worst = std::max(worst, value);
     }
     const double mean = seconds.empty() ? 0.0 : sum / static_cast<double>(seconds.size());
-    session.say(fmt::format("{} frames, {:.1f} ms each ({}); {} drag events relit in {:.2f} ms on average, "
-                            "{:.2f} ms at worst",
-                            result.num_frames, 1e3 * result.mean_frame_seconds, result.renderer,
-                            seconds.size(), 1e3 * mean, 1e3 * worst));
+    session.say(
+        fmt::format("{} frames, {:.1f} ms each ({}); {} drag events relit in {:.2f} ms on average, "
+                    "{:.2f} ms at worst",
+                    result.num_frames, 1e3 * result.mean_frame_seconds, result.renderer,
+                    seconds.size(), 1e3 * mean, 1e3 * worst));
     session.report({{"renderer", result.renderer},
                     {"frames", result.num_frames},
                     {"seconds_frame_mean", result.mean_frame_seconds},
@@ -90,11 +94,13 @@ void run(const Options& options, Session& session) {
     viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
     set_size(options.size, view);
     if (!options.screenshot.empty())
-        check_output(options.screenshot, {options.scene.path, options.environment.path, options.script});
+        check_output(options.screenshot,
+                     {options.scene.path, options.environment.path, options.script});
     if (!options.script.empty())
         view.script = viewer::load_script(options.script);
     else if (!options.screenshot.empty())
-        view.script = std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
+        view.script =
+            std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
 
     const LitScene lit(options.scene);
     require_vertices(lit.scene(), options.scene.path);
@@ -114,8 +120,9 @@ void run(const Options& options, Session& session) {
         .mesh = lit.scene().mesh, .rays = lit.rays(), .desk = desk, .load_environment = load};
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
-    state.scene_look.exposure_ev = options.exposure_ev ? static_cast<float>(*options.exposure_ev)
-                                                       : relight::suitable_exposure_ev(editor.radiance());
+    state.scene_look.exposure_ev = options.exposure_ev
+                                       ? static_cast<float>(*options.exposure_ev)
+                                       : relight::suitable_exposure_ev(editor.radiance());
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
     report(viewer::view(state, view), editor, session);
     session.poll();
@@ -132,13 +139,15 @@ void add_view(CLI::App& program, Session& session) {
     options->environment.add_to(command);
     command.get_option("ENV")->required(false);
     command.add_option("--layers", options->layers, "light layers to begin with, .json");
-    command.add_option("--exposure", options->exposure_ev, "stops; without it what suits the scene")
+    command
+        .add_option("--exposure", options->exposure_ev, "stops; without it what suits the scene")
         ->check(number_between(-100.0, 100.0));
     command.add_option("--size", options->size, "the window's size")->capture_default_str();
     command.add_option("--script", options->script,
                        "play a script instead of waiting for a person (docs/viewer.md)");
-    command.add_option("--screenshot", options->screenshot,
-                       "write the last frame of the script, or the first there is, as .png or .exr");
+    command.add_option(
+        "--screenshot", options->screenshot,
+        "write the last frame of the script, or the first there is, as .png or .exr");
     session.add_common_options(command);
     command.callback([options, &session] { run(*options, session); });
 }

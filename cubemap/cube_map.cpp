@@ -16,11 +16,12 @@ namespace {
 
 constexpr std::uint32_t MaxResolution = 16384; // 6 R^2 texels of 12 bytes are 19 GB there
 
-/// The texel of a neighbouring face (or of this one) that shares the border where column x or row y leaves the face.
-/// Exactly one of x and y lies outside, by one.
+/// The texel of a neighbouring face (or of this one) that shares the border where column x or row y
+/// leaves the face. Exactly one of x and y lies outside, by one.
 const glm::vec3& over_the_edge(const CubeMap& map, Face face, std::int64_t x, std::int64_t y) {
     const auto resolution = static_cast<std::int64_t>(map.resolution);
-    // A point just over the edge, level with the texel's centre, lies in the adjoining texel of the other face.
+    // A point just over the edge, level with the texel's centre, lies in the adjoining texel of the
+    // other face.
     constexpr double JustOver = 1e-9;
     const auto coordinate = [&](std::int64_t i) {
         if (i < 0)
@@ -30,8 +31,9 @@ const glm::vec3& over_the_edge(const CubeMap& map, Face face, std::int64_t x, st
     };
     const FacePoint point = face_point(cube_point(face, coordinate(x), coordinate(y)));
     const auto texel = [&](double s) {
-        return static_cast<std::uint32_t>(std::clamp(
-            static_cast<std::int64_t>(s * static_cast<double>(resolution)), std::int64_t{0}, resolution - 1));
+        return static_cast<std::uint32_t>(
+            std::clamp(static_cast<std::int64_t>(s * static_cast<double>(resolution)),
+                       std::int64_t{0}, resolution - 1));
     };
     return map.at(point.face, texel(point.s), texel(point.t));
 }
@@ -41,7 +43,8 @@ template<typename RowSum>
 glm::dvec3 sum_over_rows(std::uint32_t resolution, const RowSum& row_sum) {
     std::vector<glm::dvec3> sums(std::size_t{NumFaces} * resolution);
     tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t row) {
-        sums[row] = row_sum(AllFaces[row / resolution], static_cast<std::uint32_t>(row % resolution));
+        sums[row] =
+            row_sum(AllFaces[row / resolution], static_cast<std::uint32_t>(row % resolution));
     });
     glm::dvec3 total(0.0);
     for (const glm::dvec3& sum : sums)
@@ -51,10 +54,12 @@ glm::dvec3 sum_over_rows(std::uint32_t resolution, const RowSum& row_sum) {
 
 } // namespace
 
-CubeMap::CubeMap(std::uint32_t face_resolution, const glm::vec3& radiance) : resolution(face_resolution) {
+CubeMap::CubeMap(std::uint32_t face_resolution, const glm::vec3& radiance)
+    : resolution(face_resolution) {
     if (face_resolution < 1 || face_resolution > MaxResolution)
-        throw std::invalid_argument(fmt::format("cube map: expected a face resolution from 1 to {}, got {}",
-                                                MaxResolution, face_resolution));
+        throw std::invalid_argument(
+            fmt::format("cube map: expected a face resolution from 1 to {}, got {}", MaxResolution,
+                        face_resolution));
     texels.assign(std::size_t{NumFaces} * face_resolution * face_resolution, radiance);
 }
 
@@ -100,7 +105,8 @@ glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {
         const std::int64_t column = x0 + (i & 1), row = y0 + (i >> 1);
         glm::vec3& corner = corners[static_cast<std::size_t>(i)];
         if (inside(column) && inside(row))
-            corner = map.at(point.face, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
+            corner = map.at(point.face, static_cast<std::uint32_t>(column),
+                            static_cast<std::uint32_t>(row));
         else if (inside(column) || inside(row))
             corner = over_the_edge(map, point.face, column, row);
         else
@@ -132,7 +138,8 @@ glm::dvec3 total_power(const CubeMap& map) {
     return sum_over_rows(map.resolution, [&](Face face, std::uint32_t y) {
         glm::dvec3 sum(0.0);
         for (std::uint32_t x = 0; x < map.resolution; ++x)
-            sum += glm::dvec3(map.at(face, x, y)) * angles[static_cast<std::size_t>(y) * map.resolution + x];
+            sum += glm::dvec3(map.at(face, x, y)) *
+                   angles[static_cast<std::size_t>(y) * map.resolution + x];
         return sum;
     });
 }

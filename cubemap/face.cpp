@@ -14,8 +14,9 @@ double corner_term(double x, double y) {
     return std::atan2(x * y, std::sqrt(x * x + y * y + 1.0));
 }
 
-/// Gauss-Legendre, three points each way, of the density (1 + u^2 + v^2)^(-3/2). Unlike the four corner terms it has
-/// no cancellation; its relative error is below 8e-4 h^6 for a rectangle of side h.
+/// Gauss-Legendre, three points each way, of the density (1 + u^2 + v^2)^(-3/2). Unlike the four
+/// corner terms it has no cancellation; its relative error is below 8e-4 h^6 for a rectangle of
+/// side h.
 double gauss_solid_angle(double u0, double v0, double u1, double v1) {
     constexpr std::array<double, 3> Nodes = {-0.774596669241483377, 0.0, 0.774596669241483377};
     constexpr std::array<double, 3> Weights = {5.0 / 9.0, 8.0 / 9.0, 5.0 / 9.0};
@@ -62,7 +63,8 @@ glm::dvec3 direction(Face face, double s, double t) {
 FacePoint face_point(const glm::dvec3& w) {
     const glm::dvec3 size = glm::abs(w);
     const auto at = [](Face face, double u, double v) {
-        return FacePoint{face, std::clamp(0.5 * (u + 1.0), 0.0, 1.0), std::clamp(0.5 * (v + 1.0), 0.0, 1.0)};
+        return FacePoint{face, std::clamp(0.5 * (u + 1.0), 0.0, 1.0),
+                         std::clamp(0.5 * (v + 1.0), 0.0, 1.0)};
     };
     if (size.x >= size.y && size.x >= size.z)
         return w.x > 0.0 ? at(Face::PositiveX, w.z / size.x, -w.y / size.x)
@@ -77,7 +79,8 @@ FacePoint face_point(const glm::dvec3& w) {
 double solid_angle(double s0, double t0, double s1, double t1) {
     const double u0 = 2.0 * s0 - 1.0, u1 = 2.0 * s1 - 1.0;
     const double v0 = 2.0 * t0 - 1.0, v1 = 2.0 * t1 - 1.0;
-    // Below this size the corner terms would lose digits to cancellation and three Gauss points are exact to 1e-10.
+    // Below this size the corner terms would lose digits to cancellation and three Gauss points are
+    // exact to 1e-10.
     constexpr double LargestGauss = 1.0 / 16.0;
     if (std::abs(u1 - u0) <= LargestGauss && std::abs(v1 - v0) <= LargestGauss)
         return gauss_solid_angle(u0, v0, u1, v1);

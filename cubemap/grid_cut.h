@@ -1,7 +1,8 @@
 // Cuts a polygon of the plane along the lines of an axis-parallel grid.
 //
-// Polygons need not be convex: a piece may come out with seams of no area along a grid line, which integrals over it do
-// not see. Buffers are kept between calls, so that cutting millions of polygons allocates nothing.
+// Polygons need not be convex: a piece may come out with seams of no area along a grid line, which
+// integrals over it do not see. Buffers are kept between calls, so that cutting millions of
+// polygons allocates nothing.
 #pragma once
 
 #include <algorithm>
@@ -58,22 +59,26 @@ void split(const Polygon& polygon, double position, Polygon& below, Polygon& abo
     }
 }
 
-/// The lines of one direction of a grid: cell i lies between lines i and i + 1. Lines are any ascending positions; a
-/// periodic grid goes on to both sides, its lines repeating one unit further.
+/// The lines of one direction of a grid: cell i lies between lines i and i + 1. Lines are any
+/// ascending positions; a periodic grid goes on to both sides, its lines repeating one unit
+/// further.
 class GridLines {
 public:
     GridLines(const std::vector<double>& lines, bool periodic)
-        : lines_(&lines), num_cells_(static_cast<std::ptrdiff_t>(lines.size()) - 1), periodic_(periodic) {}
+        : lines_(&lines), num_cells_(static_cast<std::ptrdiff_t>(lines.size()) - 1),
+          periodic_(periodic) {}
 
     [[nodiscard]] double line(std::ptrdiff_t i) const {
         if (!periodic_ || (i >= 0 && i <= num_cells_))
             return (*lines_)[static_cast<std::size_t>(i)];
         const std::ptrdiff_t turn = (i < 0 ? i - num_cells_ + 1 : i) / num_cells_;
-        return (*lines_)[static_cast<std::size_t>(i - turn * num_cells_)] + static_cast<double>(turn);
+        return (*lines_)[static_cast<std::size_t>(i - turn * num_cells_)] +
+               static_cast<double>(turn);
     }
 
-    /// The cell that holds a position (the last one where it lies on a line; the outermost for positions outside a grid that is
-    /// not periodic). Walks from the cell found last, since neighbouring polygons follow each other.
+    /// The cell that holds a position (the last one where it lies on a line; the outermost for
+    /// positions outside a grid that is not periodic). Walks from the cell found last, since
+    /// neighbouring polygons follow each other.
     [[nodiscard]] std::ptrdiff_t cell(double position) {
         while ((periodic_ || last_ > 0) && position < line(last_))
             --last_;
@@ -98,12 +103,15 @@ private:
 /// Lines at the whole numbers 0 ... num_cells.
 class UnitLines {
 public:
-    explicit UnitLines(std::size_t num_cells) : last_cell_(static_cast<std::ptrdiff_t>(num_cells) - 1) {}
+    explicit UnitLines(std::size_t num_cells)
+        : last_cell_(static_cast<std::ptrdiff_t>(num_cells) - 1) {}
     [[nodiscard]] static double line(std::ptrdiff_t i) { return static_cast<double>(i); }
     [[nodiscard]] std::ptrdiff_t cell(double position) const {
         return std::clamp(static_cast<std::ptrdiff_t>(position), std::ptrdiff_t{0}, last_cell_);
     }
-    [[nodiscard]] static std::size_t wrapped(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
+    [[nodiscard]] static std::size_t wrapped(std::ptrdiff_t i) {
+        return static_cast<std::size_t>(i);
+    }
 
 private:
     std::ptrdiff_t last_cell_;
@@ -112,7 +120,8 @@ private:
 /// Cuts polygons along grid lines.
 class GridCutter {
 public:
-    /// Calls `visit(column, row, piece)` for every cell of the grid that the polygon meets. The polygon is used up.
+    /// Calls `visit(column, row, piece)` for every cell of the grid that the polygon meets. The
+    /// polygon is used up.
     template<typename Columns, typename Rows, typename Visit>
     void cut(Polygon& polygon, Columns& columns, Rows& rows, const Visit& visit) {
         if (polygon.empty())

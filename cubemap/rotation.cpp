@@ -27,8 +27,8 @@ CubeMap turned(const CubeMap& map, const glm::dmat3& turn) {
         for (const Face face : AllFaces) {
             for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
                 for (std::uint32_t x = 0; x < map.resolution; ++x) {
-                    const FacePoint source =
-                        face_point(source_from_destination * texel_direction(face, x, y, map.resolution));
+                    const FacePoint source = face_point(
+                        source_from_destination * texel_direction(face, x, y, map.resolution));
                     result.at(face, x, y) = map.at(source.face, texel(source.s), texel(source.t));
                 }
             }
@@ -42,7 +42,8 @@ glm::dmat3 turn_about_y(double degrees) {
     double cosine = 1.0, sine = 0.0;
     if (quarters == std::round(quarters)) {
         constexpr std::array<double, 4> Cosines = {1.0, 0.0, -1.0, 0.0};
-        const auto quarter = static_cast<std::size_t>(std::fmod(std::fmod(quarters, 4.0) + 4.0, 4.0));
+        const auto quarter =
+            static_cast<std::size_t>(std::fmod(std::fmod(quarters, 4.0) + 4.0, 4.0));
         cosine = Cosines[quarter];
         sine = Cosines[(quarter + 3) % 4];
     } else {
@@ -71,15 +72,15 @@ CubeMap rotated(const CubeMap& map, double degrees_about_y) {
                     const auto corner = [&](std::uint32_t i, std::uint32_t j) {
                         return source_from_destination * cube_point(face, i / n, j / n);
                     };
-                    const std::array<glm::dvec3, 4> corners = {corner(x, y), corner(x + 1, y),
-                                                               corner(x + 1, y + 1), corner(x, y + 1)};
+                    const std::array<glm::dvec3, 4> corners = {
+                        corner(x, y), corner(x + 1, y), corner(x + 1, y + 1), corner(x, y + 1)};
                     glm::dvec3 sum(0.0);
                     double weights = 0.0;
-                    overlaps.find(corners,
-                                  [&](Face from, std::uint32_t column, std::uint32_t row, double weight) {
-                                      sum += glm::dvec3(map.at(from, column, row)) * weight;
-                                      weights += weight;
-                                  });
+                    overlaps.find(corners, [&](Face from, std::uint32_t column, std::uint32_t row,
+                                               double weight) {
+                        sum += glm::dvec3(map.at(from, column, row)) * weight;
+                        weights += weight;
+                    });
                     result.at(face, x, y) = sum / weights;
                 }
             }

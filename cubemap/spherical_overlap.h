@@ -18,13 +18,15 @@
 
 namespace relumine::cubemap {
 
-/// Solid angle of a polygon on a face, given in coordinates [-1, 1]^2: the density (1 + u^2 + v^2)^(-3/2) to second order about
-/// `centre`. The expansion is additive: pieces of one cell add up to the cell if all use the cell's centre. Relative
-/// error below (distance from centre)^3 / 2 for a piece and far less for a whole cell.
+/// Solid angle of a polygon on a face, given in coordinates [-1, 1]^2: the density (1 + u^2 +
+/// v^2)^(-3/2) to second order about `centre`. The expansion is additive: pieces of one cell add up
+/// to the cell if all use the cell's centre. Relative error below (distance from centre)^3 / 2 for
+/// a piece and far less for a whole cell.
 [[nodiscard]] inline double solid_angle_about(const glm::dvec2& centre, const Polygon& polygon) {
     if (polygon.size() < 3)
         return 0.0;
-    double moment = 0.0, moment_x = 0.0, moment_y = 0.0, moment_xx = 0.0, moment_xy = 0.0, moment_yy = 0.0;
+    double moment = 0.0, moment_x = 0.0, moment_y = 0.0, moment_xx = 0.0, moment_xy = 0.0,
+           moment_yy = 0.0;
     glm::dvec2 a = polygon.back() - centre;
     for (const glm::dvec2& corner : polygon) {
         const glm::dvec2 b = corner - centre;
@@ -39,12 +41,13 @@ namespace relumine::cubemap {
     }
     const double inverse = 1.0 / (1.0 + glm::dot(centre, centre));
     const double density = inverse * std::sqrt(inverse);
-    const double slope = -3.0 * inverse, bend = 15.0 * inverse * inverse; // times u, v and their products
-    return density *
-           (moment / 2.0 + slope * (centre.x * moment_x + centre.y * moment_y) / 6.0 +
-            ((slope + bend * centre.x * centre.x) * moment_xx +
-             (slope + bend * centre.y * centre.y) * moment_yy + bend * centre.x * centre.y * moment_xy) /
-                24.0);
+    const double slope = -3.0 * inverse,
+                 bend = 15.0 * inverse * inverse; // times u, v and their products
+    return density * (moment / 2.0 + slope * (centre.x * moment_x + centre.y * moment_y) / 6.0 +
+                      ((slope + bend * centre.x * centre.x) * moment_xx +
+                       (slope + bend * centre.y * centre.y) * moment_yy +
+                       bend * centre.x * centre.y * moment_xy) /
+                          24.0);
 }
 
 /// Finds the texels under a spherical polygon. Keeps its buffers; one per thread.
@@ -54,8 +57,9 @@ public:
         : resolution_(resolution), cells_per_texel_((FinestCell + resolution - 1) / resolution),
           num_cells_(resolution * cells_per_texel_) {}
 
-    /// Calls `visit(face, x, y, solid_angle)` for the texels that the polygon overlaps, some of them more than once. Corners are directions
-    /// of any length, clockwise seen from the centre of the sphere and within a half-sphere; edges are great circles.
+    /// Calls `visit(face, x, y, solid_angle)` for the texels that the polygon overlaps, some of
+    /// them more than once. Corners are directions of any length, clockwise seen from the centre of
+    /// the sphere and within a half-sphere; edges are great circles.
     template<typename Visit>
     void find(std::span<const glm::dvec3> corners, const Visit& visit) {
         const Face first = face_point(corners.front()).face;
@@ -75,7 +79,8 @@ public:
     }
 
 private:
-    // Finer cells than 1/128 of a face are needed nowhere: the solid angles of pieces are good to 3e-7 there.
+    // Finer cells than 1/128 of a face are needed nowhere: the solid angles of pieces are good to
+    // 3e-7 there.
     static constexpr std::uint32_t FinestCell = 128;
 
     /// Axes of a face: to the right and down in its image, outwards.
@@ -100,9 +105,10 @@ private:
             double previous_height = glm::dot(plane, previous);
             for (const glm::dvec3& current : clipped_) {
                 const double height = glm::dot(plane, current);
-                if ((height < 0.0 && previous_height > 0.0) || (height > 0.0 && previous_height < 0.0))
-                    kept_.push_back(previous +
-                                    (current - previous) * (previous_height / (previous_height - height)));
+                if ((height < 0.0 && previous_height > 0.0) ||
+                    (height > 0.0 && previous_height < 0.0))
+                    kept_.push_back(previous + (current - previous) *
+                                                   (previous_height / (previous_height - height)));
                 if (height >= 0.0)
                     kept_.push_back(current);
                 previous = current;
@@ -125,16 +131,18 @@ private:
                                   (glm::dot(down, corner) / distance + 1.0) * 0.5 * n);
         }
         UnitLines columns(num_cells_), rows(num_cells_);
-        cutter_.cut(polygon_, columns, rows, [&](std::size_t column, std::size_t row, const Polygon& piece) {
-            to_face(piece);
-            const glm::dvec2 centre((2.0 * static_cast<double>(column) + 1.0) / n - 1.0,
-                                    (2.0 * static_cast<double>(row) + 1.0) / n - 1.0);
-            const double overlap = solid_angle_about(centre, scaled_);
-            // Slivers may come out negative by rounding, and a bright texel would make a dark pixel negative with them.
-            if (overlap > 0.0)
-                visit(face, static_cast<std::uint32_t>(column / cells_per_texel_),
-                      static_cast<std::uint32_t>(row / cells_per_texel_), overlap);
-        });
+        cutter_.cut(polygon_, columns, rows,
+                    [&](std::size_t column, std::size_t row, const Polygon& piece) {
+                        to_face(piece);
+                        const glm::dvec2 centre((2.0 * static_cast<double>(column) + 1.0) / n - 1.0,
+                                                (2.0 * static_cast<double>(row) + 1.0) / n - 1.0);
+                        const double overlap = solid_angle_about(centre, scaled_);
+                        // Slivers may come out negative by rounding, and a bright texel would make
+                        // a dark pixel negative with them.
+                        if (overlap > 0.0)
+                            visit(face, static_cast<std::uint32_t>(column / cells_per_texel_),
+                                  static_cast<std::uint32_t>(row / cells_per_texel_), overlap);
+                    });
     }
 
     /// From units of cells to [-1, 1]^2.

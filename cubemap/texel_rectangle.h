@@ -21,7 +21,8 @@ struct TexelRectangle {
     [[nodiscard]] std::uint64_t num_texels() const { return std::uint64_t{x1 - x0} * (y1 - y0); }
 };
 
-/// Adds a rectangle to a list, or makes one of the list's larger where that covers no more texels than both apart.
+/// Adds a rectangle to a list, or makes one of the list's larger where that covers no more texels
+/// than both apart.
 inline void add_merged(const TexelRectangle& rectangle, std::vector<TexelRectangle>& list) {
     for (TexelRectangle& other : list) {
         if (other.face != rectangle.face)

@@ -16,9 +16,12 @@ namespace relumine::data_gen {
 namespace {
 
 enum class Detail {
-    Plain,  ///< few columns without bases
-    Full,   ///< all mouldings
-    Fluted, ///< and grooves in the shafts, each at least VerticesPerFlute wide
+    /// Few columns without bases
+    Plain,
+    /// All mouldings
+    Full,
+    /// And grooves in the shafts, each at least VerticesPerFlute wide
+    Fluted,
 };
 
 // Measures in metres; heights of a column's parts are above the stylobate, the top of the steps.
@@ -37,7 +40,8 @@ std::uint32_t multiple_of(std::uint32_t factor, double value) {
     return factor * std::max(1u, static_cast<std::uint32_t>(std::lround(value / factor)));
 }
 
-// A shaft's outline with entasis: the taper starts slowly. Upwards it may be coarser than elsewhere.
+// A shaft's outline with entasis: the taper starts slowly. Upwards it may be coarser than
+// elsewhere.
 Curve shaft(double bottom, double top, double spacing) {
     Curve points = line({FootRadius, bottom}, {NeckRadius, top}, spacing);
     for (glm::dvec2& point : points) {
@@ -52,8 +56,10 @@ mesh::TriangleMesh column(double spacing, Detail detail) {
     std::uint32_t num_around = num_intervals(2.0 * std::numbers::pi * FootRadius, spacing, 8);
     if (detail == Detail::Plain) {
         append_disc(mesh, {.radius = FootRadius, .num_around = num_around, .facing = Facing::Down});
-        append_lathe(mesh, {shaft(0.0, 3.68, 1.5 * spacing), line({NeckRadius, 3.68}, {0.46, 3.86}, spacing)},
-                     num_around);
+        append_lathe(
+            mesh,
+            {shaft(0.0, 3.68, 1.5 * spacing), line({NeckRadius, 3.68}, {0.46, 3.86}, spacing)},
+            num_around);
         append_disc(mesh, {.radius = 0.46, .height = 3.86, .num_around = num_around});
         append_box(mesh, {-0.5, 3.86, -0.5}, {0.5, ColumnHeight, 0.5}, spacing);
         return mesh;
@@ -65,20 +71,23 @@ mesh::TriangleMesh column(double spacing, Detail detail) {
     }
     append_box(mesh, {-0.5, 0.0, -0.5}, {0.5, 0.14, 0.5}, spacing);
     // Attic base (torus, scotia, torus), shaft, astragal, neck and echinus.
-    append_disc(mesh, {.radius = 0.42, .height = 0.14, .num_around = num_around, .facing = Facing::Down});
-    append_lathe(
-        mesh,
-        {arc({{0.42, 0.21}, {0.07, 0.07}, -90.0, 90.0}, spacing), line({0.42, 0.28}, {0.40, 0.28}, spacing),
-         arc({{0.40, 0.33}, {0.04, 0.05}, -90.0, -270.0}, spacing), line({0.40, 0.38}, {0.38, 0.38}, spacing),
-         arc({{0.38, 0.42}, {0.04, 0.04}, -90.0, 90.0}, spacing),
-         line({0.38, 0.46}, {FootRadius, 0.46}, spacing), shaft(0.46, 3.46, 1.5 * spacing),
-         line({NeckRadius, 3.46}, {0.31, 3.46}, spacing),
-         arc({{0.31, 3.49}, {0.03, 0.03}, -90.0, 90.0}, spacing),
-         line({0.31, 3.52}, {NeckRadius, 3.52}, spacing),
-         line({NeckRadius, 3.52}, {NeckRadius, 3.66}, spacing),
-         line({NeckRadius, 3.66}, {0.33, 3.66}, spacing),
-         arc({{0.33, 3.81}, {0.14, 0.15}, -90.0, 0.0}, spacing), line({0.47, 3.81}, {0.47, 3.86}, spacing)},
-        num_around, flutes);
+    append_disc(mesh,
+                {.radius = 0.42, .height = 0.14, .num_around = num_around, .facing = Facing::Down});
+    append_lathe(mesh,
+                 {arc({{0.42, 0.21}, {0.07, 0.07}, -90.0, 90.0}, spacing),
+                  line({0.42, 0.28}, {0.40, 0.28}, spacing),
+                  arc({{0.40, 0.33}, {0.04, 0.05}, -90.0, -270.0}, spacing),
+                  line({0.40, 0.38}, {0.38, 0.38}, spacing),
+                  arc({{0.38, 0.42}, {0.04, 0.04}, -90.0, 90.0}, spacing),
+                  line({0.38, 0.46}, {FootRadius, 0.46}, spacing), shaft(0.46, 3.46, 1.5 * spacing),
+                  line({NeckRadius, 3.46}, {0.31, 3.46}, spacing),
+                  arc({{0.31, 3.49}, {0.03, 0.03}, -90.0, 90.0}, spacing),
+                  line({0.31, 3.52}, {NeckRadius, 3.52}, spacing),
+                  line({NeckRadius, 3.52}, {NeckRadius, 3.66}, spacing),
+                  line({NeckRadius, 3.66}, {0.33, 3.66}, spacing),
+                  arc({{0.33, 3.81}, {0.14, 0.15}, -90.0, 0.0}, spacing),
+                  line({0.47, 3.81}, {0.47, 3.86}, spacing)},
+                 num_around, flutes);
     append_disc(mesh, {.radius = 0.47, .height = 3.86, .num_around = num_around});
     append_box(mesh, {-0.5, 3.86, -0.5}, {0.5, ColumnHeight, 0.5}, spacing);
     return mesh;
@@ -115,22 +124,24 @@ mesh::TriangleMesh steps(double spacing, Detail detail) {
         }
     }
     append_lathe(mesh, profile, num_around);
-    append_disc(
-        mesh,
-        {.radius = radius(num - 1), .height = StylobateHeight, .num_around = num_around, .fill = Fill::Even});
+    append_disc(mesh, {.radius = radius(num - 1),
+                       .height = StylobateHeight,
+                       .num_around = num_around,
+                       .fill = Fill::Even});
     return mesh;
 }
 
-// The floor around the steps, from their foot outwards: a grid that ran on below them would smear the dark under them over
-// the nearest vertices outside. A ring k of the floor has 6 k vertices.
-void append_floor_around(mesh::TriangleMesh& mesh, double foot_radius, std::uint32_t foot_num_around,
-                         std::size_t num_vertices) {
+// The floor around the steps, from their foot outwards: a grid that ran on below them would smear
+// the dark under them over the nearest vertices outside. A ring k of the floor has 6 k vertices.
+void append_floor_around(mesh::TriangleMesh& mesh, double foot_radius,
+                         std::uint32_t foot_num_around, std::size_t num_vertices) {
     const double foot_ring = foot_num_around / 6.0;
     const double last_ring =
-        std::sqrt(static_cast<double>(num_vertices) / 3.0 + foot_ring * (foot_ring - 1.0) + 0.25) - 0.5;
+        std::sqrt(static_cast<double>(num_vertices) / 3.0 + foot_ring * (foot_ring - 1.0) + 0.25) -
+        0.5;
     append_disc(mesh, {.radius = FloorRadius,
-                       .num_around = std::max(foot_num_around + 6,
-                                              6 * static_cast<std::uint32_t>(std::lround(last_ring))),
+                       .num_around = std::max(foot_num_around + 6, 6 * static_cast<std::uint32_t>(
+                                                                           std::lround(last_ring))),
                        .fill = Fill::Even,
                        .inner_radius = foot_radius,
                        .inner_num_around = foot_num_around});
@@ -150,7 +161,8 @@ mesh::TriangleMesh entablature(double spacing, Detail detail) {
     std::vector<Curve> profile;
     for (std::size_t i = 0; i < outline.size(); ++i) {
         const glm::dvec2 axis(RingRadius, bottom);
-        profile.push_back(line(axis + outline[i], axis + outline[(i + 1) % outline.size()], spacing));
+        profile.push_back(
+            line(axis + outline[i], axis + outline[(i + 1) % outline.size()], spacing));
     }
     mesh::TriangleMesh mesh;
     append_lathe(mesh, profile, num_intervals(2.0 * std::numbers::pi * RingRadius, spacing, 18));
@@ -159,17 +171,21 @@ mesh::TriangleMesh entablature(double spacing, Detail detail) {
 
 // A globe on a round pedestal.
 mesh::TriangleMesh monument(double spacing) {
-    const std::uint32_t num_around = std::max(12u, multiple_of(6, 2.0 * std::numbers::pi * 0.66 / spacing));
+    const std::uint32_t num_around =
+        std::max(12u, multiple_of(6, 2.0 * std::numbers::pi * 0.66 / spacing));
     const double globe_radius = 0.62;
     mesh::TriangleMesh mesh;
     append_disc(mesh, {.radius = 0.75, .num_around = num_around, .facing = Facing::Down});
-    append_lathe(
-        mesh,
-        {line({0.75, 0.0}, {0.75, 0.16}, spacing), line({0.75, 0.16}, {0.66, 0.16}, spacing),
-         arc({{0.66, 0.26}, {0.10, 0.10}, -90.0, -180.0}, spacing), line({0.56, 0.26}, {0.56, 1.0}, spacing),
-         arc({{0.66, 1.0}, {0.10, 0.10}, 180.0, 90.0}, spacing), line({0.66, 1.1}, {0.66, 1.2}, spacing)},
-        num_around);
-    append_disc(mesh, {.radius = 0.66, .height = 1.2, .num_around = num_around, .fill = Fill::Even});
+    append_lathe(mesh,
+                 {line({0.75, 0.0}, {0.75, 0.16}, spacing),
+                  line({0.75, 0.16}, {0.66, 0.16}, spacing),
+                  arc({{0.66, 0.26}, {0.10, 0.10}, -90.0, -180.0}, spacing),
+                  line({0.56, 0.26}, {0.56, 1.0}, spacing),
+                  arc({{0.66, 1.0}, {0.10, 0.10}, 180.0, 90.0}, spacing),
+                  line({0.66, 1.1}, {0.66, 1.2}, spacing)},
+                 num_around);
+    append_disc(mesh,
+                {.radius = 0.66, .height = 1.2, .num_around = num_around, .fill = Fill::Even});
     mesh::TriangleMesh globe = icosphere(num_intervals(1.12 * globe_radius, spacing));
     for (glm::vec3& p : globe.positions) {
         p *= static_cast<float>(globe_radius);
@@ -184,14 +200,15 @@ struct Parts {
 
     Parts(double spacing, Detail detail)
         : column(data_gen::column(spacing, detail)), steps(data_gen::steps(spacing, detail)),
-          entablature(data_gen::entablature(spacing, detail)), num_columns(detail == Detail::Plain ? 6 : 12) {
+          entablature(data_gen::entablature(spacing, detail)),
+          num_columns(detail == Detail::Plain ? 6 : 12) {
         if (detail != Detail::Plain) {
             monument = data_gen::monument(spacing);
         }
     }
     [[nodiscard]] std::size_t num_vertices() const {
-        return num_columns * column.num_vertices() + steps.num_vertices() + entablature.num_vertices() +
-               monument.num_vertices();
+        return num_columns * column.num_vertices() + steps.num_vertices() +
+               entablature.num_vertices() + monument.num_vertices();
     }
 };
 
@@ -215,8 +232,9 @@ mesh::TriangleMesh colonnade(std::size_t num_vertices) {
     append_copy(mesh, parts.monument, 0.0, {0.0, StylobateHeight, 0.0});
     for (std::uint32_t i = 0; i < parts.num_columns; ++i) {
         const double azimuth = 2.0 * std::numbers::pi * (i + 0.5) / parts.num_columns;
-        append_copy(mesh, parts.column, azimuth,
-                    {RingRadius * std::sin(azimuth), StylobateHeight, RingRadius * std::cos(azimuth)});
+        append_copy(
+            mesh, parts.column, azimuth,
+            {RingRadius * std::sin(azimuth), StylobateHeight, RingRadius * std::cos(azimuth)});
     }
     append_copy(mesh, parts.entablature, 0.0, glm::dvec3(0.0));
     append_floor_around(mesh, foot_radius(detail), num_around_steps(coarse),

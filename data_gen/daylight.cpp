@@ -15,13 +15,17 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-// One wavelength: the sun's radiance above the atmosphere and ozone's absorption ([P99] Table 2), and the CIE 1931 2-degree
-// observer.
+// One wavelength: the sun's radiance above the atmosphere and ozone's absorption ([P99] Table 2),
+// and the CIE 1931 2-degree observer.
 struct SpectralRow {
-    double wavelength; ///< micrometres
-    double sun;        ///< W / (m^2 sr nm)
-    double ozone;      ///< 1/cm
-    double water;      ///< 1/cm
+    /// micrometres
+    double wavelength;
+    /// W / (m^2 sr nm)
+    double sun;
+    /// 1/cm
+    double ozone;
+    /// 1/cm
+    double water;
     double x, y, z;
 };
 constexpr double RowWidth = 20.0; // nm
@@ -51,7 +55,8 @@ glm::dvec3 rgb_from_xyz(const glm::dvec3& c) {
                                                 0.0557 * c.x - 0.2040 * c.y + 1.0570 * c.z));
 }
 
-// Part of the light of one wavelength that comes through the air straight [P99, A.1]. Mixed gases absorb beyond 759 nm only.
+// Part of the light of one wavelength that comes through the air straight [P99, A.1]. Mixed gases
+// absorb beyond 759 nm only.
 double transmittance(const SpectralRow& row, double turbidity, double air_mass) {
     const double m = air_mass;
     const double rayleigh = std::exp(-0.008735 * m * std::pow(row.wavelength, -4.08));
@@ -60,15 +65,16 @@ double transmittance(const SpectralRow& row, double turbidity, double air_mass) 
     constexpr double OzoneCm = 0.35;
     constexpr double WaterCm = 2.0;
     const double ozone = std::exp(-row.ozone * OzoneCm * m);
-    const double water =
-        std::exp(-0.2385 * row.water * WaterCm * m / std::pow(1.0 + 20.07 * row.water * WaterCm * m, 0.45));
+    const double water = std::exp(-0.2385 * row.water * WaterCm * m /
+                                  std::pow(1.0 + 20.07 * row.water * WaterCm * m, 0.45));
     return rayleigh * aerosol * ozone * water;
 }
 
 // kcd/m^2 as linear RGB.
 glm::dvec3 sun_radiance(double turbidity, double zenith_angle) {
     const double zenith_degrees = zenith_angle * 180.0 / Pi;
-    const double air_mass = 1.0 / (std::cos(zenith_angle) + 0.15 * std::pow(93.885 - zenith_degrees, -1.253));
+    const double air_mass =
+        1.0 / (std::cos(zenith_angle) + 0.15 * std::pow(93.885 - zenith_degrees, -1.253));
     glm::dvec3 xyz(0.0);
     for (const SpectralRow& row : Spectrum) {
         xyz += row.sun * transmittance(row, turbidity, air_mass) * glm::dvec3(row.x, row.y, row.z);
@@ -97,18 +103,20 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
     check(T >= 1.7 && T <= 10.0, "a turbidity of 1.7 to 10", T);
     check(options.sun_elevation_degrees >= 0.0 && options.sun_elevation_degrees <= 90.0,
           "a sun 0 to 90 degrees above the horizon", options.sun_elevation_degrees);
-    check(std::isfinite(options.sun_azimuth_degrees), "a finite azimuth", options.sun_azimuth_degrees);
+    check(std::isfinite(options.sun_azimuth_degrees), "a finite azimuth",
+          options.sun_azimuth_degrees);
     check(options.scale > 0.0 && std::isfinite(options.scale), "a positive scale", options.scale);
     for (int channel = 0; channel < 3; ++channel) {
         const double albedo = options.ground_albedo[channel];
         check(albedo >= 0.0 && albedo <= 1.0, "a ground albedo of 0 to 1", albedo);
     }
-    sun_direction_ = direction_from_angles(options.sun_elevation_degrees, options.sun_azimuth_degrees);
+    sun_direction_ =
+        direction_from_angles(options.sun_elevation_degrees, options.sun_azimuth_degrees);
     const double theta = glm::radians(90.0 - options.sun_elevation_degrees);
 
     // [P99, A.2]: coefficients of the distributions and values at the zenith.
-    distributions_ = {{{0.1787 * T - 1.4630, -0.3554 * T + 0.4275, -0.0227 * T + 5.3251, 0.1206 * T - 2.5771,
-                        -0.0670 * T + 0.3703},
+    distributions_ = {{{0.1787 * T - 1.4630, -0.3554 * T + 0.4275, -0.0227 * T + 5.3251,
+                        0.1206 * T - 2.5771, -0.0670 * T + 0.3703},
                        {-0.0193 * T - 0.2592, -0.0665 * T + 0.0008, -0.0004 * T + 0.2125,
                         -0.0641 * T - 0.8989, -0.0033 * T + 0.0452},
                        {-0.0167 * T - 0.2608, -0.0950 * T + 0.0092, -0.0079 * T + 0.2102,
@@ -117,22 +125,26 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
     const auto cubic = [&](double a, double b, double c, double d) {
         return ((a * theta + b) * theta + c) * theta + d;
     };
-    const std::array<double, 3> zenith = {
-        (4.0453 * T - 4.9710) * std::tan(chi) - 0.2155 * T + 2.4192,
-        T * T * cubic(0.00166, -0.00375, 0.00209, 0.0) + T * cubic(-0.02903, 0.06377, -0.03202, 0.00394) +
-            cubic(0.11693, -0.21196, 0.06052, 0.25886),
-        T * T * cubic(0.00275, -0.00610, 0.00317, 0.0) + T * cubic(-0.04214, 0.08970, -0.04153, 0.00516) +
-            cubic(0.15346, -0.26756, 0.06670, 0.26688)};
+    const std::array<double, 3> zenith = {(4.0453 * T - 4.9710) * std::tan(chi) - 0.2155 * T +
+                                              2.4192,
+                                          T * T * cubic(0.00166, -0.00375, 0.00209, 0.0) +
+                                              T * cubic(-0.02903, 0.06377, -0.03202, 0.00394) +
+                                              cubic(0.11693, -0.21196, 0.06052, 0.25886),
+                                          T * T * cubic(0.00275, -0.00610, 0.00317, 0.0) +
+                                              T * cubic(-0.04214, 0.08970, -0.04153, 0.00516) +
+                                              cubic(0.15346, -0.26756, 0.06670, 0.26688)};
     for (std::size_t i = 0; i < 3; ++i) {
         Distribution& d = distributions_[i];
         const double cos_theta = std::cos(theta);
-        d.zenith_over_F = zenith[i] / ((1.0 + d.A * std::exp(d.B)) *
-                                       (1.0 + d.C * std::exp(d.D * theta) + d.E * cos_theta * cos_theta));
+        d.zenith_over_F =
+            zenith[i] / ((1.0 + d.A * std::exp(d.B)) *
+                         (1.0 + d.C * std::exp(d.D * theta) + d.E * cos_theta * cos_theta));
     }
 
     sun_ = scale_ * sun_radiance(T, theta);
 
-    // Irradiance of level ground: the midpoint rule in azimuth and in the squared sine of the angle from the zenith.
+    // Irradiance of level ground: the midpoint rule in azimuth and in the squared sine of the angle
+    // from the zenith.
     constexpr int NumRings = 128;
     constexpr int NumSectors = 256;
     glm::dvec3 sum(0.0);
@@ -141,7 +153,8 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
         for (int sector = 0; sector < NumSectors; ++sector) {
             const double azimuth = 2.0 * Pi * (sector + 0.5) / NumSectors;
             const double sine = std::sqrt(sin_squared);
-            sum += sky({sine * std::sin(azimuth), std::sqrt(1.0 - sin_squared), sine * std::cos(azimuth)});
+            sum += sky(
+                {sine * std::sin(azimuth), std::sqrt(1.0 - sin_squared), sine * std::cos(azimuth)});
         }
     }
     const glm::dvec3 from_sky = sum * (Pi / (NumRings * NumSectors));

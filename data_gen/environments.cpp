@@ -25,8 +25,8 @@ public:
         }
         const double smaller = std::min(box.half_width, box.half_height);
         if (!(box.edge > 0.0 && box.edge <= smaller)) {
-            throw std::invalid_argument(
-                fmt::format("soft box: expected an edge above 0 and up to {}, got {}", smaller, box.edge));
+            throw std::invalid_argument(fmt::format(
+                "soft box: expected an edge above 0 and up to {}, got {}", smaller, box.edge));
         }
         const glm::dvec3 up =
             std::abs(forward_.y) < 0.999 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
@@ -92,7 +92,8 @@ cubemap::CubeMap sun_and_sky(std::uint32_t resolution, const DaylightOptions& op
     const int num_samples = num_smooth_samples(resolution);
     constexpr int NumHorizonSamples = 16;
     cubemap::CubeMap map = sampled(
-        resolution, [&](const glm::dvec3& w) { return w.y >= 0.0 ? daylight.sky(w) : daylight.ground(); },
+        resolution,
+        [&](const glm::dvec3& w) { return w.y >= 0.0 ? daylight.sky(w) : daylight.ground(); },
         [&](cubemap::Face face, double s, double t, double texel) {
             // The horizon runs along rows of the side faces.
             const double top = cubemap::cube_point(face, s, t).y;
@@ -106,15 +107,19 @@ cubemap::CubeMap sun_and_sky(std::uint32_t resolution, const DaylightOptions& op
 
 std::span<const Environment> environments() {
     static constexpr std::array<Environment, 4> Environments = {{
-        {"sun_sky", "a clear afternoon (Preetham): sun of true size, sky, ground; radiance 1 = 20 kcd/m^2",
+        {"sun_sky",
+         "a clear afternoon (Preetham): sun of true size, sky, ground; radiance 1 = 20 kcd/m^2",
          [](std::uint32_t resolution) {
-             return sun_and_sky(resolution, {.ground_albedo = {0.24, 0.20, 0.15}, .scale = 1.0 / 20.0});
+             return sun_and_sky(resolution,
+                                {.ground_albedo = {0.24, 0.20, 0.15}, .scale = 1.0 / 20.0});
          }},
-        {"soft_boxes", "a studio: warm key from the front left, cool fill from the right, dim background",
+        {"soft_boxes",
+         "a studio: warm key from the front left, cool fill from the right, dim background",
          two_soft_boxes},
         {"small_light", "one round light of 3 degrees radius in the dark, from the front left",
          [](std::uint32_t resolution) {
-             return disc_light(resolution, direction_from_angles(45.0, -50.0), 3.0, glm::vec3(500.0f));
+             return disc_light(resolution, direction_from_angles(45.0, -50.0), 3.0,
+                               glm::vec3(500.0f));
          }},
         {"constant", "radiance 1 from everywhere: the white furnace",
          [](std::uint32_t resolution) {

@@ -44,7 +44,8 @@ public:
         for (const mesh::Triangle& face : Faces) {
             for (std::size_t k = 0; k < 3; ++k) {
                 const auto edge = std::minmax({face[k], face[(k + 1) % 3]});
-                if (std::find(edges_.begin(), edges_.begin() + count_, edge) == edges_.begin() + count_) {
+                if (std::find(edges_.begin(), edges_.begin() + count_, edge) ==
+                    edges_.begin() + count_) {
                     edges_[static_cast<std::size_t>(count_++)] = edge;
                 }
             }
@@ -52,7 +53,8 @@ public:
     }
     [[nodiscard]] std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const {
         const std::pair<std::uint32_t, std::uint32_t> edge = std::minmax(a, b);
-        return static_cast<std::uint32_t>(std::find(edges_.begin(), edges_.end(), edge) - edges_.begin());
+        return static_cast<std::uint32_t>(std::find(edges_.begin(), edges_.end(), edge) -
+                                          edges_.begin());
     }
     [[nodiscard]] const auto& edges() const { return edges_; }
 
@@ -77,7 +79,8 @@ mesh::TriangleMesh icosphere(std::uint32_t frequency) {
         sphere.positions.emplace_back(glm::normalize(point));
     };
 
-    // Vertices: the corners, then the inner points of each edge (from its lower corner), then those of each face, row by row.
+    // Vertices: the corners, then the inner points of each edge (from its lower corner), then those
+    // of each face, row by row.
     for (const glm::dvec3& point : corner) {
         add(point);
     }
@@ -131,8 +134,8 @@ mesh::TriangleMesh icosphere(std::uint32_t frequency) {
                 sphere.triangles.push_back(
                     {vertex(face, i, j), vertex(face, i + 1, j), vertex(face, i, j + 1)});
                 if (i + j + 1 < f) {
-                    sphere.triangles.push_back(
-                        {vertex(face, i + 1, j), vertex(face, i + 1, j + 1), vertex(face, i, j + 1)});
+                    sphere.triangles.push_back({vertex(face, i + 1, j), vertex(face, i + 1, j + 1),
+                                                vertex(face, i, j + 1)});
                 }
             }
         }

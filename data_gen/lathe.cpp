@@ -29,7 +29,8 @@ double groove(const Flutes& flutes, double height, std::uint32_t i, std::uint32_
     const std::uint32_t per_flute = num_around / flutes.count;
     const double across = double(i % per_flute) / per_flute;
     // The ends are round, about as long as the groove is deep and wide.
-    const double to_end = std::min(height - flutes.bottom, flutes.top - height) / (3.0 * flutes.depth);
+    const double to_end =
+        std::min(height - flutes.bottom, flutes.top - height) / (3.0 * flutes.depth);
     const double end = to_end >= 1.0 ? 1.0 : std::sqrt(1.0 - (1.0 - to_end) * (1.0 - to_end));
     return flutes.depth * end * 4.0 * across * (1.0 - across);
 }
@@ -58,8 +59,8 @@ Curve arc(const Arc& shape, double spacing) {
     return points;
 }
 
-void append_lathe(mesh::TriangleMesh& mesh, const std::vector<Curve>& profile, std::uint32_t num_around,
-                  const Flutes& flutes) {
+void append_lathe(mesh::TriangleMesh& mesh, const std::vector<Curve>& profile,
+                  std::uint32_t num_around, const Flutes& flutes) {
     assert(num_around >= 3 && "a ring needs three vertices");
     for (const Curve& curve : profile) {
         const auto first = static_cast<std::uint32_t>(mesh.positions.size());
@@ -94,7 +95,8 @@ void append_disc(mesh::TriangleMesh& mesh, const Disc& disc) {
         }
         return;
     }
-    // Ring k has 6 k vertices, ring 0 is the centre; the strip between two rings is six sectors of k inner and k + 1 outer edges.
+    // Ring k has 6 k vertices, ring 0 is the centre; the strip between two rings is six sectors of
+    // k inner and k + 1 outer edges.
     assert(disc.num_around % 6 == 0 && disc.inner_num_around % 6 == 0 &&
            "an even disc needs rims of six equal parts");
     const std::uint32_t first_ring = disc.inner_num_around / 6;
@@ -119,7 +121,8 @@ void append_disc(mesh::TriangleMesh& mesh, const Disc& disc) {
             for (std::uint32_t j = 0; j < ring; ++j) {
                 const std::uint32_t outer_index = sector * ring + j;
                 const std::uint32_t inner_index = sector * inner + j;
-                append(index(inner, inner_index), index(ring, outer_index), index(ring, outer_index + 1));
+                append(index(inner, inner_index), index(ring, outer_index),
+                       index(ring, outer_index + 1));
                 if (j < inner) {
                     append(index(inner, inner_index), index(ring, outer_index + 1),
                            index(inner, inner_index + 1));

@@ -8,7 +8,8 @@
 namespace relumine::data_gen {
 namespace {
 
-// Integer finaliser in the manner of MurmurHash3: every input bit changes about half of the output bits.
+// Integer finaliser in the manner of MurmurHash3: every input bit changes about half of the output
+// bits.
 std::uint32_t mixed(std::uint32_t value) {
     value ^= value >> 16;
     value *= 0x85ebca6bU;
@@ -25,7 +26,8 @@ std::uint32_t lattice_hash(const glm::ivec3& point, std::uint32_t seed) {
     return hash;
 }
 
-// Dot product with one of the twelve directions to the middle of a cube's edges (four of them twice).
+// Dot product with one of the twelve directions to the middle of a cube's edges (four of them
+// twice).
 double gradient_dot(std::uint32_t hash, const glm::dvec3& offset) {
     static constexpr std::array<std::array<int, 3>, 16> Gradients = {{{1, 1, 0},
                                                                       {-1, 1, 0},

@@ -12,10 +12,12 @@
 
 namespace relumine::data_gen {
 
-/// A cube map whose texels are means over num_sub(texel)^2 evenly spread directions, weighted with their solid angles.
-/// Rows are written by one thread each, so the result does not depend on their number.
+/// A cube map whose texels are means over num_sub(texel)^2 evenly spread directions, weighted with
+/// their solid angles. Rows are written by one thread each, so the result does not depend on their
+/// number.
 template<typename Radiance, typename NumSub>
-cubemap::CubeMap sampled(std::uint32_t resolution, const Radiance& radiance, const NumSub& num_sub) {
+cubemap::CubeMap sampled(std::uint32_t resolution, const Radiance& radiance,
+                         const NumSub& num_sub) {
     cubemap::CubeMap map(resolution);
     const double texel = 1.0 / resolution;
     tbb::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {

@@ -35,13 +35,15 @@ glm::dvec3 knot_line(double t) {
     const double around = 2.0 * FullTurn * t;
     const double across = 3.0 * FullTurn * t;
     const double radius = Ring + Tube * std::cos(across);
-    const glm::dvec3 flat(radius * std::sin(around), radius * std::cos(around), Tube * std::sin(across));
+    const glm::dvec3 flat(radius * std::sin(around), radius * std::cos(around),
+                          Tube * std::sin(across));
     return leaning(flat);
 }
 
 // Parameters at equal distances along the closed line, [num].
 std::vector<double> even_parameters(std::uint32_t num) {
-    constexpr int NumChords = 20'000; // the chords' length differs from the line's by less than 1e-7 of it
+    constexpr int NumChords =
+        20'000; // the chords' length differs from the line's by less than 1e-7 of it
     std::vector<double> length_to = {0.0};
     for (int i = 0; i < NumChords; ++i) {
         const double chord =
@@ -58,7 +60,8 @@ std::vector<double> even_parameters(std::uint32_t num) {
     return parameters;
 }
 
-// Two axes square on the line that close up after a turn: the first points away from the ring around which the knot winds.
+// Two axes square on the line that close up after a turn: the first points away from the ring
+// around which the knot winds.
 std::array<glm::dvec3, 2> knot_axes(double t) {
     constexpr double Step = 1e-5;
     const glm::dvec3 along = glm::normalize(knot_line(t + Step) - knot_line(t - Step));
@@ -73,13 +76,15 @@ std::array<glm::dvec3, 2> knot_axes(double t) {
 
 void check_num_vertices(std::size_t num_vertices) {
     if (num_vertices < MinSceneVertices || num_vertices > MaxSceneVertices) {
-        throw std::invalid_argument(fmt::format("scene: expected {} to {} vertices, got {}", MinSceneVertices,
-                                                MaxSceneVertices, num_vertices));
+        throw std::invalid_argument(fmt::format("scene: expected {} to {} vertices, got {}",
+                                                MinSceneVertices, MaxSceneVertices, num_vertices));
     }
 }
 
-mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side, std::size_t num_vertices) {
-    append_ground(objects, floor_side, num_vertices - std::min(num_vertices, objects.num_vertices()));
+mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,
+                             std::size_t num_vertices) {
+    append_ground(objects, floor_side,
+                  num_vertices - std::min(num_vertices, objects.num_vertices()));
     objects.normals = mesh::smooth_normals(objects);
     return objects;
 }
@@ -89,8 +94,8 @@ mesh::TriangleMesh knot(std::size_t num_vertices) {
     constexpr double LineLength = 15.0; // of knot_line; sets how even the spacing is, nothing else
     constexpr double TubeRadius = 0.27;
     const double wish = 0.5 * static_cast<double>(num_vertices);
-    const auto num_across =
-        static_cast<std::uint32_t>(std::lround(std::sqrt(wish * FullTurn * TubeRadius / LineLength)));
+    const auto num_across = static_cast<std::uint32_t>(
+        std::lround(std::sqrt(wish * FullTurn * TubeRadius / LineLength)));
     const auto num_along = static_cast<std::uint32_t>(std::lround(wish / num_across));
 
     mesh::TriangleMesh mesh;
@@ -102,7 +107,8 @@ mesh::TriangleMesh knot(std::size_t num_vertices) {
     }
     append_wrapped_grid(mesh, num_across, num_along, [&](std::uint32_t i, std::uint32_t j) {
         const double angle = FullTurn * i / num_across;
-        return centers[j] + TubeRadius * (std::cos(angle) * axes[j][0] + std::sin(angle) * axes[j][1]);
+        return centers[j] +
+               TubeRadius * (std::cos(angle) * axes[j][0] + std::sin(angle) * axes[j][1]);
     });
     constexpr float Gap = 0.05f;
     const float lift = Gap - mesh::bounds(mesh).min.y;
@@ -119,12 +125,14 @@ mesh::TriangleMesh blob(std::size_t num_vertices) {
     for (glm::vec3& p : mesh.positions) {
         const glm::dvec3 direction(p);
         // Broad lumps, bent by a second noise, worn ridges between them and a fine grain.
-        const glm::dvec3 bend(gradient_noise(1.3 * direction, 11), gradient_noise(1.3 * direction, 12),
+        const glm::dvec3 bend(gradient_noise(1.3 * direction, 11),
+                              gradient_noise(1.3 * direction, 12),
                               gradient_noise(1.3 * direction, 13));
-        const double lumps =
-            fractal_noise(1.15 * direction + 0.35 * bend, {.num_octaves = 9, .gain = 0.42, .seed = 1});
-        const double ridges = 1.0 - std::abs(fractal_noise(1.6 * direction + 0.3 * bend,
-                                                           {.num_octaves = 3, .gain = 0.35, .seed = 21}));
+        const double lumps = fractal_noise(1.15 * direction + 0.35 * bend,
+                                           {.num_octaves = 9, .gain = 0.42, .seed = 1});
+        const double ridges =
+            1.0 - std::abs(fractal_noise(1.6 * direction + 0.3 * bend,
+                                         {.num_octaves = 3, .gain = 0.35, .seed = 21}));
         const double radius = 1.0 + 0.42 * lumps + 0.30 * (ridges * ridges - 0.6);
         const glm::dvec3 rough = radius * direction;
         // It lies on a side: heights below `bed` are pressed together, smoothly and one to one.
@@ -152,7 +160,8 @@ mesh::TriangleMesh sphere(std::size_t num_vertices) {
 std::span<const Scene> scenes() {
     static constexpr std::array<Scene, 4> Scenes = {{
         {"colonnade", "a round temple of fluted columns: long hard and soft shadows", colonnade},
-        {"knot", "a torus knot just above the floor: soft shadows on itself and on the floor", knot},
+        {"knot", "a torus knot just above the floor: soft shadows on itself and on the floor",
+         knot},
         {"blob", "a weathered boulder of fractal noise: small shadows everywhere", blob},
         {"sphere", "a sphere hovering over the floor, whose shadow has a closed form", sphere},
     }};

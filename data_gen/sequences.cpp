@@ -32,8 +32,9 @@ void check(const SequenceOptions& options) {
     if (options.num_frames == 0)
         throw std::invalid_argument("sequence: expected at least one frame, got 0");
     if (options.face_resolution < 1 || options.face_resolution > 16384)
-        throw std::invalid_argument(fmt::format(
-            "sequence: expected a face resolution from 1 to 16384, got {}", options.face_resolution));
+        throw std::invalid_argument(
+            fmt::format("sequence: expected a face resolution from 1 to 16384, got {}",
+                        options.face_resolution));
 }
 
 FrameMaker sun(const SequenceOptions& options) {
@@ -70,8 +71,8 @@ FrameMaker clouds(const SequenceOptions& options) {
     check(options);
     const Daylight daylight(daylight_options(CloudySun));
     const glm::dvec3 albedo = daylight_options(CloudySun).ground_albedo;
-    // What the sun and the clear sky send to level ground. Clouds take the sun's part away; what they take of the sky's part they give
-    // back themselves, about.
+    // What the sun and the clear sky send to level ground. Clouds take the sun's part away; what
+    // they take of the sky's part they give back themselves, about.
     const glm::dvec3 both = std::numbers::pi * daylight.ground() / albedo;
     const double sun_sine = std::sin(glm::radians(Daylight::SunRadiusDegrees));
     const glm::dvec3 from_sun =
@@ -81,7 +82,8 @@ FrameMaker clouds(const SequenceOptions& options) {
     return [=, r = options.face_resolution](std::size_t frame) {
         const auto time = static_cast<double>(frame);
         const double transmission = cloud_transmission(time);
-        const glm::dvec3 ground = albedo / std::numbers::pi * (both - (1.0 - transmission) * from_sun);
+        const glm::dvec3 ground =
+            albedo / std::numbers::pi * (both - (1.0 - transmission) * from_sun);
         const int num_samples = std::min(4, num_smooth_samples(r));
         cubemap::CubeMap map = sampled(
             r,
@@ -111,7 +113,8 @@ FrameMaker tunnel(const SequenceOptions& options) {
 } // namespace
 
 cubemap::SkyAngles sun_angles(std::size_t frame, std::size_t num_frames) {
-    const double t = num_frames < 2 ? 0.5 : static_cast<double>(frame) / static_cast<double>(num_frames - 1);
+    const double t =
+        num_frames < 2 ? 0.5 : static_cast<double>(frame) / static_cast<double>(num_frames - 1);
     return {.elevation_degrees = 8.0 + 54.0 * std::sin(std::numbers::pi * t),
             .azimuth_degrees = 100.0 - 200.0 * t};
 }
@@ -119,7 +122,8 @@ cubemap::SkyAngles sun_angles(std::size_t frame, std::size_t num_frames) {
 double cloud_cover(const glm::dvec3& direction, double frame) {
     if (direction.y <= 0.0)
         return 0.0;
-    // Clouds of the size of their height, less of them the lower they stand: far away they are finer than any texel.
+    // Clouds of the size of their height, less of them the lower they stand: far away they are
+    // finer than any texel.
     constexpr double Frequency = 0.9, Threshold = 0.0, Softness = 0.35, Haze = 0.15;
     const glm::dvec3 place = direction / direction.y - CloudWind * frame;
     const double noise = fractal_noise({Frequency * place.x, 0.37, Frequency * place.z},
@@ -134,26 +138,30 @@ double cloud_transmission(double frame) {
 
 std::vector<TunnelLamp> tunnel_lamps(std::size_t frame) {
     // Metres. Lamps fade in and out far away, where each is a thousandth of one overhead.
-    constexpr double Spacing = 8.0, Height = 2.2, Aside = 1.6, Radius = 0.3, Far = 80.0, Visible = 60.0;
+    constexpr double Spacing = 8.0, Height = 2.2, Aside = 1.6, Radius = 0.3, Far = 80.0,
+                     Visible = 60.0;
     const double driven =
         Spacing * static_cast<double>(frame % TunnelPeriod) / static_cast<double>(TunnelPeriod);
     std::vector<TunnelLamp> lamps;
-    for (int pair = -static_cast<int>(Far / Spacing); pair <= static_cast<int>(Far / Spacing) + 1; ++pair)
+    for (int pair = -static_cast<int>(Far / Spacing); pair <= static_cast<int>(Far / Spacing) + 1;
+         ++pair)
         for (const double side : {-1.0, 1.0}) {
             const glm::dvec3 place(pair * Spacing - driven, Height, side * Aside);
             const double distance = glm::length(place);
             const double seen = 1.0 - smooth_step((distance - Visible) / (Far - Visible));
             if (seen > 0.0)
-                lamps.push_back({.direction = place / distance,
-                                 .radius_degrees = glm::degrees(std::asin(Radius / distance)),
-                                 .radiance = static_cast<float>(seen) * glm::vec3(60.0f, 42.0f, 20.0f)});
+                lamps.push_back(
+                    {.direction = place / distance,
+                     .radius_degrees = glm::degrees(std::asin(Radius / distance)),
+                     .radiance = static_cast<float>(seen) * glm::vec3(60.0f, 42.0f, 20.0f)});
         }
     return lamps;
 }
 
 std::span<const Sequence> sequences() {
     static constexpr std::array<Sequence, 5> Sequences = {{
-        {"sun", "the sun's way through a clear sky, from the right to the left of the viewer", false, sun},
+        {"sun", "the sun's way through a clear sky, from the right to the left of the viewer",
+         false, sun},
         {"turn", "an environment (--env) that turns once about +Y", true, turn},
         {"switch", "a dim room in which a light is switched on half-way", false, switched},
         {"clouds", "clouds that the wind blows over a clear sky and the sun", false, clouds},

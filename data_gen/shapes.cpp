@@ -11,7 +11,8 @@ std::uint32_t next_index(const mesh::TriangleMesh& mesh) {
     return static_cast<std::uint32_t>(mesh.positions.size());
 }
 
-// Two triangles of the quad a b c d, counter-clockwise. Alternating diagonals keep shadow edges from looking combed.
+// Two triangles of the quad a b c d, counter-clockwise. Alternating diagonals keep shadow edges
+// from looking combed.
 void append_quad(mesh::TriangleMesh& mesh, const std::array<std::uint32_t, 4>& q, bool flip) {
     if (flip) {
         mesh.triangles.push_back({q[0], q[1], q[3]});
@@ -47,7 +48,8 @@ std::uint32_t num_intervals(double length, double spacing, std::uint32_t minimum
     return std::max(minimum, static_cast<std::uint32_t>(std::lround(length / spacing)));
 }
 
-void append_box(mesh::TriangleMesh& mesh, const glm::dvec3& min, const glm::dvec3& max, double spacing) {
+void append_box(mesh::TriangleMesh& mesh, const glm::dvec3& min, const glm::dvec3& max,
+                double spacing) {
     // Each coordinate depends on its own index alone, so that neighbouring faces meet to the bit.
     std::array<std::uint32_t, 3> num = {};
     for (int axis = 0; axis < 3; ++axis) {
@@ -98,7 +100,8 @@ void append_wrapped_grid(mesh::TriangleMesh& mesh, std::uint32_t num_u, std::uin
     };
     for (std::uint32_t i = 0; i < num_u; ++i) {
         for (std::uint32_t j = 0; j < num_v; ++j) {
-            append_quad(mesh, {index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)}, false);
+            append_quad(mesh, {index(i, j), index(i + 1, j), index(i + 1, j + 1), index(i, j + 1)},
+                        false);
         }
     }
 }

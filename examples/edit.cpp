@@ -1,4 +1,5 @@
-// Lighting design in code: light layers over an environment, dragged, undone, read by another thread, and asked who lights what.
+// Lighting design in code: light layers over an environment, dragged, undone, read by another
+// thread, and asked who lights what.
 #include <cstdio>
 #include <vector>
 
@@ -20,7 +21,8 @@ int main() {
     const prt::Transfer transfer =
         prt::precompute(prt::vertex_receivers(mesh), rays, {.tolerance = 0.03f, .bias = bias});
     relight::LightEditor editor(
-        transfer, {.blockers = &rays, .positions = mesh.positions, .bias = bias, .tolerance = 0.03f});
+        transfer,
+        {.blockers = &rays, .positions = mesh.positions, .bias = bias, .tolerance = 0.03f});
     editor.set_base(data_gen::sun_and_sky(128));
 
     // Any number of layers is one update; mark() makes a step that undo() comes back to.
@@ -28,7 +30,8 @@ int main() {
                             .region = cubemap::Disc{.direction = {1, 1, 1}, .radius_degrees = 8},
                             .effect = cubemap::Emit{.radiance = {40, 38, 35}}};
     const cubemap::LightLayer dim{.name = "less ground",
-                                  .region = cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90},
+                                  .region =
+                                      cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90},
                                   .effect = cubemap::Gain{.factor = 0.25f}};
     editor.set_layers({dim, key});
     editor.mark();
@@ -50,7 +53,8 @@ int main() {
     // Which directions light receiver 0? Its integral over the sphere is the receiver's radiance.
     const std::uint32_t receiver = 0;
     const cubemap::CubeMap who = relight::contribution_map(editor.relighter(), {&receiver, 1});
-    cubemap::save_layers("layers.json", {.layers = {editor.layers().begin(), editor.layers().end()}});
+    cubemap::save_layers("layers.json",
+                         {.layers = {editor.layers().begin(), editor.layers().end()}});
     std::printf("20 events, %.2f ms each; receiver 0: %.4f, by direction %.4f\n", 50.0 * seconds,
                 static_cast<double>(seen[0].g), cubemap::total_power(who).y);
     return seen == dragged ? 0 : 1;

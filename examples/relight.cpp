@@ -1,4 +1,5 @@
-// The smallest complete use of the library: a mesh, its light transfer, two environments, an edit, a picture.
+// The smallest complete use of the library: a mesh, its light transfer, two environments, an edit,
+// a picture.
 #include <cstdio>
 #include <vector>
 
@@ -21,9 +22,11 @@ int main() {
     const prt::Transfer transfer =
         prt::precompute(prt::vertex_receivers(mesh), rays, {.tolerance = tolerance, .bias = bias});
 
-    // Then any environment, in milliseconds. cubemap::load_environment() and resample() read your own.
+    // Then any environment, in milliseconds. cubemap::load_environment() and resample() read your
+    // own.
     relight::Relighter relighter(
-        transfer, {.blockers = &rays, .positions = mesh.positions, .bias = bias, .tolerance = tolerance});
+        transfer,
+        {.blockers = &rays, .positions = mesh.positions, .bias = bias, .tolerance = tolerance});
     relighter.set_environment(data_gen::two_soft_boxes(64));
     const relight::RelightTimes times = relighter.set_environment(data_gen::sun_and_sky(64));
 
@@ -34,8 +37,9 @@ int main() {
 
     relight::save_picture("relight.png",
                           relight::draw(mesh, rays, relighter.radiance(), relighter.environment(),
-                                        relight::automatic_camera(mesh), {.width = 320, .height = 240}));
+                                        relight::automatic_camera(mesh),
+                                        {.width = 320, .height = 240}));
     std::printf("%zu clusters, relit in %.2f ms, edit touched %zu clusters in %.2f ms\n",
-                transfer.num_clusters(), 1e3 * (times.seconds_bin + times.seconds_relight), edit.num_clusters,
-                1e3 * edit.seconds);
+                transfer.num_clusters(), 1e3 * (times.seconds_bin + times.seconds_relight),
+                edit.num_clusters, 1e3 * edit.seconds);
 }

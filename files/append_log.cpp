@@ -33,7 +33,8 @@ std::vector<std::vector<std::byte>> AppendLog::read(std::optional<std::uint64_t>
     if (!std::filesystem::exists(path_))
         return records;
     const std::vector<std::byte> bytes = files::read(path_);
-    const std::uint64_t end = std::min<std::uint64_t>(bytes.size(), max_bytes.value_or(bytes.size()));
+    const std::uint64_t end =
+        std::min<std::uint64_t>(bytes.size(), max_bytes.value_or(bytes.size()));
     Head head;
     while (end - size_ >= sizeof head) {
         std::memcpy(&head, bytes.data() + size_, sizeof head);

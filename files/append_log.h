@@ -12,16 +12,19 @@
 
 namespace relumine::files {
 
-/// Each record is 24 bytes of head (a mark, its size, xxHash64 of its bytes) and its bytes. append() syncs before it returns, so a record is
-/// either whole on the disk or torn and known as torn.
+/// Each record is 24 bytes of head (a mark, its size, xxHash64 of its bytes) and its bytes.
+/// append() syncs before it returns, so a record is either whole on the disk or torn and known as
+/// torn.
 class AppendLog {
 public:
     /// Nothing is touched yet.
     explicit AppendLog(std::filesystem::path path);
 
-    /// The whole records of the first `max_bytes` of the file, none where there is no file; later records follow the last of them and what was behind it
-    /// goes. A torn or damaged record ends the list. Throws std::runtime_error when the file cannot be read.
-    [[nodiscard]] std::vector<std::vector<std::byte>> read(std::optional<std::uint64_t> max_bytes = {});
+    /// The whole records of the first `max_bytes` of the file, none where there is no file; later
+    /// records follow the last of them and what was behind it goes. A torn or damaged record ends
+    /// the list. Throws std::runtime_error when the file cannot be read.
+    [[nodiscard]] std::vector<std::vector<std::byte>>
+    read(std::optional<std::uint64_t> max_bytes = {});
 
     /// Throws std::runtime_error naming the file; the log is then as before.
     void append(std::span<const std::byte> record);

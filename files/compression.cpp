@@ -9,7 +9,8 @@ namespace relumine::files {
 
 std::vector<std::byte> compressed(std::span<const std::byte> bytes, int level) {
     std::vector<std::byte> result(ZSTD_compressBound(bytes.size()));
-    const std::size_t size = ZSTD_compress(result.data(), result.size(), bytes.data(), bytes.size(), level);
+    const std::size_t size =
+        ZSTD_compress(result.data(), result.size(), bytes.data(), bytes.size(), level);
     if (ZSTD_isError(size) != 0)
         throw std::runtime_error(fmt::format("zstd: {}", ZSTD_getErrorName(size)));
     result.resize(size);

@@ -8,7 +8,8 @@
 
 namespace relumine::files {
 
-/// What says that it is larger than this for its bytes was not made here (zstd reaches some 30,000 : 1).
+/// What says that it is larger than this for its bytes was not made here (zstd reaches some 30,000
+/// : 1).
 inline constexpr std::uint64_t MaxCompressionRatio = 1 << 17;
 
 /// One frame, which says its own size. Throws std::runtime_error when zstd fails.

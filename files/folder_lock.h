@@ -12,8 +12,8 @@ namespace relumine::files {
 /// Held as long as this lives or the process does, however that ends.
 class FolderLock {
 public:
-    /// None while another process (or another lock of this one) has the folder. A file system without locks gives them to all. Throws
-    /// std::runtime_error for what is no folder.
+    /// None while another process (or another lock of this one) has the folder. A file system
+    /// without locks gives them to all. Throws std::runtime_error for what is no folder.
     [[nodiscard]] static std::unique_ptr<FolderLock> acquire(const std::filesystem::path& folder);
 
 private:

@@ -15,7 +15,8 @@ namespace {
 /// Deeper nesting is no layer file, and would overflow the stack when it is destroyed.
 constexpr std::size_t MaxDepth = 32;
 
-/// The line of the last character read that is not white space: the parser reads one character past a number.
+/// The line of the last character read that is not white space: the parser reads one character past
+/// a number.
 struct Place {
     int line = 1;
     int last_line = 1;
@@ -76,7 +77,8 @@ public:
         return true;
     }
     bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
-        // "[json.exception...] parse error at line 1, column 2: syntax error while parsing value - unexpected X; expected Y"
+        // "[json.exception...] parse error at line 1, column 2: syntax error while parsing value -
+        // unexpected X; expected Y"
         const std::string_view text = error.what();
         const std::size_t dash = text.find(" - ");
         std::string_view reason = dash == std::string_view::npos ? text : text.substr(dash + 3);
@@ -101,7 +103,8 @@ private:
     }
     bool open(decltype(JsonValue::value) value) {
         if (open_.size() == MaxDepth)
-            reader_.refuse(place_.last_line, fmt::format("at most {} levels of nesting", MaxDepth), "more");
+            reader_.refuse(place_.last_line, fmt::format("at most {} levels of nesting", MaxDepth),
+                           "more");
         open_.push_back(JsonValue{place_.last_line, std::move(value)});
         keys_.emplace_back();
         return true;
@@ -119,7 +122,8 @@ private:
         else if (auto* array = std::get_if<JsonValue::Array>(&open_.back().value))
             array->push_back(std::move(value));
         else
-            std::get<JsonValue::Object>(open_.back().value).emplace_back(keys_.back(), std::move(value));
+            std::get<JsonValue::Object>(open_.back().value)
+                .emplace_back(keys_.back(), std::move(value));
     }
 
     const JsonReader& reader_;
@@ -133,7 +137,9 @@ std::string description(const JsonValue& value) {
         std::string operator()(std::nullptr_t) const { return "null"; }
         std::string operator()(bool is) const { return is ? "true" : "false"; }
         std::string operator()(double number) const { return fmt::format("{}", number); }
-        std::string operator()(const std::string& text) const { return fmt::format("\"{}\"", text); }
+        std::string operator()(const std::string& text) const {
+            return fmt::format("\"{}\"", text);
+        }
         std::string operator()(const JsonValue::Array&) const { return "an array"; }
         std::string operator()(const JsonValue::Object&) const { return "an object"; }
     };
@@ -162,9 +168,11 @@ JsonValue JsonReader::parse(std::span<const std::byte> text) const {
 
 void JsonReader::refuse(int line, std::string_view expected, std::string_view got) const {
     // Both may quote the file: a name, a text, or all that the parser read since.
-    std::string message = fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got);
+    std::string message =
+        fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got);
     std::replace_if(
-        message.begin(), message.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; }, '?');
+        message.begin(), message.end(), [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; },
+        '?');
     throw std::runtime_error(message);
 }
 
@@ -189,8 +197,8 @@ const JsonValue::Object& JsonReader::object(const JsonValue& value, std::string_
 }
 
 const JsonValue* JsonReader::find(const JsonValue::Object& object, std::string_view field) {
-    const auto found =
-        std::find_if(object.begin(), object.end(), [&](const auto& member) { return member.first == field; });
+    const auto found = std::find_if(object.begin(), object.end(),
+                                    [&](const auto& member) { return member.first == field; });
     return found == object.end() ? nullptr : &found->second;
 }
 

@@ -43,13 +43,14 @@ std::filesystem::path followed(const std::filesystem::path& path) {
     fail(path, "write", ELOOP);
 }
 
-/// Whether an open and locked file is this process's alone to write: still there under its name, and no one else's.
+/// Whether an open and locked file is this process's alone to write: still there under its name,
+/// and no one else's.
 bool is_own(int file, const std::filesystem::path& name) {
     struct stat opened {};
     struct stat named {};
-    return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 && S_ISREG(opened.st_mode) &&
-           opened.st_nlink == 1 && opened.st_uid == ::geteuid() && opened.st_ino == named.st_ino &&
-           opened.st_dev == named.st_dev;
+    return ::fstat(file, &opened) == 0 && ::lstat(name.c_str(), &named) == 0 &&
+           S_ISREG(opened.st_mode) && opened.st_nlink == 1 && opened.st_uid == ::geteuid() &&
+           opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
 } // namespace
@@ -60,24 +61,29 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
         if (S_ISDIR(status.st_mode))
             fail(target_, "write", EISDIR);
-        throw std::runtime_error(fmt::format("{}: cannot write: not a regular file", target_.string()));
+        throw std::runtime_error(
+            fmt::format("{}: cannot write: not a regular file", target_.string()));
     }
     place_ = followed(target_);
     open_temporary();
 }
 
-// A name has a number, and is taken by the process that has locked it. What a killed process left is not locked: it is taken over, so that
-// nothing piles up. The extension is kept for writers that look at it.
+// A name has a number, and is taken by the process that has locked it. What a killed process left
+// is not locked: it is taken over, so that nothing piles up. The extension is kept for writers that
+// look at it.
 void OutputFile::open_temporary() {
     constexpr int MaxWriters = 1000; // of one target at the same time
     const std::string extension = place_.extension().string();
     for (int i = 0; i < MaxWriters; ++i) {
         const std::filesystem::path name =
-            place_.parent_path() / fmt::format(".{}.writing-{}{}", place_.stem().string(), i, extension);
-        Descriptor file(::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
+            place_.parent_path() /
+            fmt::format(".{}.writing-{}{}", place_.stem().string(), i, extension);
+        Descriptor file(
+            ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
         if (!file.is_open()) {
             const int error = errno; // access() changes it
-            if (error == ELOOP || error == EISDIR || (error == EACCES && ::access(name.c_str(), F_OK) == 0))
+            if (error == ELOOP || error == EISDIR ||
+                (error == EACCES && ::access(name.c_str(), F_OK) == 0))
                 continue; // someone else's
             fail(target_, "write", error);
         }
@@ -100,7 +106,8 @@ void OutputFile::open_temporary() {
     }
     // Names that no other process has.
     std::string name =
-        (place_.parent_path() / fmt::format(".{}.XXXXXX{}", place_.stem().string(), extension)).string();
+        (place_.parent_path() / fmt::format(".{}.XXXXXX{}", place_.stem().string(), extension))
+            .string();
     file_ = Descriptor(::mkstemps(name.data(), static_cast<int>(extension.size())));
     if (!file_.is_open())
         fail(target_, "write", errno);

@@ -13,10 +13,11 @@
 
 namespace relumine::files {
 
-/// A file being written under a temporary name beside its target. commit() syncs it to the disk and renames it over
-/// the target; without commit() the destructor removes it and the target stays as it was. A target that is a symbolic link stays
-/// one: what it points to is replaced. Of several writers of one target the last to commit wins, whole. The temporary file of a killed
-/// process is taken over by the next one that writes the target.
+/// A file being written under a temporary name beside its target. commit() syncs it to the disk and
+/// renames it over the target; without commit() the destructor removes it and the target stays as
+/// it was. A target that is a symbolic link stays one: what it points to is replaced. Of several
+/// writers of one target the last to commit wins, whole. The temporary file of a killed process is
+/// taken over by the next one that writes the target.
 class OutputFile {
 public:
     /// Creates the temporary file, so that an unwritable folder is found before any work is done.
@@ -30,8 +31,8 @@ public:
     [[nodiscard]] const std::filesystem::path& temporary() const { return temporary_; }
     [[nodiscard]] const std::filesystem::path& target() const { return target_; }
 
-    /// Replaces the content of the temporary file. Throws std::runtime_error naming the target; for a full disk, a quota or a limit
-    /// also the bytes needed.
+    /// Replaces the content of the temporary file. Throws std::runtime_error naming the target; for
+    /// a full disk, a quota or a limit also the bytes needed.
     void write(std::span<const std::byte> bytes);
 
     /// Adds to it. Throws as write() does.
@@ -46,9 +47,11 @@ private:
     void open_temporary();
 
     std::filesystem::path target_;
-    std::filesystem::path place_; ///< the target, links followed
+    /// The target, links followed
+    std::filesystem::path place_;
     std::filesystem::path temporary_;
-    Descriptor file_; ///< of the temporary file, locked
+    /// Of the temporary file, locked
+    Descriptor file_;
     std::uint64_t size_ = 0;
     std::uint64_t expected_size_ = 0;
     bool committed_ = false;
@@ -57,10 +60,12 @@ private:
 /// Writes a text file. Whole or not at all; throws as OutputFile does.
 void save_text(const std::filesystem::path& path, std::string_view text);
 
-/// Adds text to a file's end; all of it or nothing, but for a crash. Throws as OutputFile does. For records, not for results.
+/// Adds text to a file's end; all of it or nothing, but for a crash. Throws as OutputFile does. For
+/// records, not for results.
 void append_text(const std::filesystem::path& path, std::string_view text);
 
-/// The whole file. Throws std::runtime_error "path: cannot read: reason" for what is missing, unreadable or a folder.
+/// The whole file. Throws std::runtime_error "path: cannot read: reason" for what is missing,
+/// unreadable or a folder.
 [[nodiscard]] std::vector<std::byte> read(const std::filesystem::path& path);
 
 /// The file's size in bytes, with the errors of read().

@@ -1,4 +1,5 @@
-// Parts of bytes, each compressed on its own and in parallel, in one array. For checkpoints: fast before small.
+// Parts of bytes, each compressed on its own and in parallel, in one array. For checkpoints: fast
+// before small.
 #pragma once
 
 #include <cstddef>
@@ -14,10 +15,11 @@
 namespace relumine::files {
 
 /// `part(i)` makes part i; called in parallel, in any order.
-[[nodiscard]] std::vector<std::byte> pack(std::size_t num_parts,
-                                          const std::function<std::vector<std::byte>(std::size_t)>& part);
+[[nodiscard]] std::vector<std::byte>
+pack(std::size_t num_parts, const std::function<std::vector<std::byte>(std::size_t)>& part);
 
-/// Gives the parts back one after the other. Throws std::runtime_error for what pack() did not make.
+/// Gives the parts back one after the other. Throws std::runtime_error for what pack() did not
+/// make.
 void unpack(std::span<const std::byte> packed,
             const std::function<void(std::span<const std::byte>)>& on_part);
 
@@ -40,7 +42,8 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Reads them back. Throws std::runtime_error at the end of the bytes, before anything is allocated.
+/// Reads them back. Throws std::runtime_error at the end of the bytes, before anything is
+/// allocated.
 class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}

@@ -28,10 +28,12 @@ Descriptor& Descriptor::operator=(Descriptor&& other) noexcept {
 }
 
 void fail(const std::filesystem::path& path, const char* action, int error) {
-    throw std::runtime_error(fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error)));
+    throw std::runtime_error(
+        fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(error)));
 }
 
-void fail_to_write(const std::filesystem::path& path, int error, std::uint64_t bytes_needed, int file) {
+void fail_to_write(const std::filesystem::path& path, int error, std::uint64_t bytes_needed,
+                   int file) {
     std::string figures;
     if (error == ENOSPC || error == EDQUOT || error == EFBIG)
         figures = fmt::format(": {} bytes needed", bytes_needed);
@@ -39,17 +41,21 @@ void fail_to_write(const std::filesystem::path& path, int error, std::uint64_t b
     struct rlimit limit {};
     // What a quota leaves cannot be asked for portably.
     if (error == ENOSPC && ::fstatvfs(file, &disk) == 0)
-        figures += fmt::format(", {} free", static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize);
-    else if (error == EFBIG && ::getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        figures +=
+            fmt::format(", {} free", static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize);
+    else if (error == EFBIG && ::getrlimit(RLIMIT_FSIZE, &limit) == 0 &&
+             limit.rlim_cur != RLIM_INFINITY)
         figures += fmt::format(", {} allowed", limit.rlim_cur);
     throw std::runtime_error(
         fmt::format("{}: cannot write: {}{}", path.string(), std::strerror(error), figures));
 }
 
 void write_at(const std::filesystem::path& path, int file, std::uint64_t offset,
-              std::span<const std::byte> bytes, std::uint64_t bytes_needed, std::uint64_t size_after_error) {
+              std::span<const std::byte> bytes, std::uint64_t bytes_needed,
+              std::uint64_t size_after_error) {
     while (!bytes.empty()) {
-        const ssize_t written = ::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        const ssize_t written =
+            ::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(offset));
         if (written < 0 && errno == EINTR)
             continue;
         if (written <= 0) {

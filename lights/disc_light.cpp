@@ -1,5 +1,6 @@
-// Based on: Snyder, "Area light sources for real-time graphics", 1996, the integral of the cosine over a spherical cap that the
-// horizon cuts; also known from the view factors of spheres in heat transfer.
+// Based on: Snyder, "Area light sources for real-time graphics", 1996, the integral of the cosine
+// over a spherical cap that the horizon cuts; also known from the view factors of spheres in heat
+// transfer.
 #include "lights/disc_light.h"
 
 #include <algorithm>
@@ -14,8 +15,8 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// Integral of max(n.w, 0) over a cap of angular radius `radius` (at most pi / 2) at the angle `angle` to n, over pi sin^2(radius): the cosine as
-/// long as the horizon does not cut the cap.
+/// Integral of max(n.w, 0) over a cap of angular radius `radius` (at most pi / 2) at the angle
+/// `angle` to n, over pi sin^2(radius): the cosine as long as the horizon does not cut the cap.
 double cap_cosine(double angle, double radius) {
     if (angle <= 0.5 * Pi - radius)
         return std::cos(angle);
@@ -25,11 +26,12 @@ double cap_cosine(double angle, double radius) {
     const double sine_radius = std::sin(radius), cosine_radius = std::cos(radius);
     const double gamma = std::asin(std::clamp(cosine_radius / sine, -1.0, 1.0));
     const double cosine_gamma = std::cos(gamma);
-    const double G =
-        -2.0 * sine * cosine_radius * cosine_gamma + 0.5 * Pi - gamma + std::sin(gamma) * cosine_gamma;
+    const double G = -2.0 * sine * cosine_radius * cosine_gamma + 0.5 * Pi - gamma +
+                     std::sin(gamma) * cosine_gamma;
     const double H =
         cosine *
-        (cosine_gamma * std::sqrt(std::max(0.0, sine_radius * sine_radius - cosine_gamma * cosine_gamma)) +
+        (cosine_gamma *
+             std::sqrt(std::max(0.0, sine_radius * sine_radius - cosine_gamma * cosine_gamma)) +
          sine_radius * sine_radius * std::asin(std::clamp(cosine_gamma / sine_radius, -1.0, 1.0)));
     const double whole = Pi * sine_radius * sine_radius;
     const double integral = angle < 0.5 * Pi ? whole * cosine + G - H : G + H;
@@ -40,7 +42,8 @@ double cap_cosine(double angle, double radius) {
 
 glm::dvec3 irradiance(const DistantLight& light, const glm::dvec3& normal) {
     const double cosine = std::clamp(glm::dot(light.direction, normal), -1.0, 1.0);
-    // Below a ten-thousandth of a degree the closed form loses its digits, and nobody can tell the disc from a point.
+    // Below a ten-thousandth of a degree the closed form loses its digits, and nobody can tell the
+    // disc from a point.
     constexpr double Point = 1e-11;
     if (light.solid_angle < Point)
         return light.irradiance * std::max(cosine, 0.0);

@@ -9,13 +9,17 @@
 
 namespace relumine::lights {
 
-/// Distant lights for every frame of a sequence. A light that lives over several frames stands in each of them.
+/// Distant lights for every frame of a sequence. A light that lives over several frames stands in
+/// each of them.
 struct FrameLights {
-    std::vector<std::vector<DistantLight>> frames; ///< [num_frames]
+    /// [num_frames]
+    std::vector<std::vector<DistantLight>> frames;
 
     [[nodiscard]] std::size_t num_frames() const { return frames.size(); }
     /// The lights of a frame, 0 <= frame < num_frames().
-    [[nodiscard]] std::span<const DistantLight> at(std::size_t frame) const { return frames[frame]; }
+    [[nodiscard]] std::span<const DistantLight> at(std::size_t frame) const {
+        return frames[frame];
+    }
 };
 
 } // namespace relumine::lights

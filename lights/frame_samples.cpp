@@ -17,16 +17,16 @@ void add_frame(const cubemap::EnvironmentImage& image, std::uint32_t frame,
                const FrameSamplesOptions& options, std::vector<FrameSample>& samples) {
     const LatLongGrid grid(image);
     if (options.samples_per_frame > grid.num_pixels())
-        throw std::invalid_argument(fmt::format("expected at most {} samples for {} x {} pixels, got {}",
-                                                grid.num_pixels(), grid.width(), grid.height(),
-                                                options.samples_per_frame));
+        throw std::invalid_argument(
+            fmt::format("expected at most {} samples for {} x {} pixels, got {}", grid.num_pixels(),
+                        grid.width(), grid.height(), options.samples_per_frame));
     // splitmix64's constant: seeds of neighbouring frames have nothing in common
     const std::uint64_t seed = options.seed_per_frame
                                    ? options.seed + (std::uint64_t{frame} + 1) * 0x9e3779b97f4a7c15u
                                    : options.seed;
-    for (const ImportanceSample& sample : options.stratified
-                                              ? importance_samples(grid, options.samples_per_frame, seed)
-                                              : independent_samples(grid, options.samples_per_frame, seed))
+    for (const ImportanceSample& sample :
+         options.stratified ? importance_samples(grid, options.samples_per_frame, seed)
+                            : independent_samples(grid, options.samples_per_frame, seed))
         if (sample.light.irradiance != glm::dvec3(0.0))
             samples.push_back({.direction = sample.light.direction,
                                .irradiance = sample.light.irradiance,

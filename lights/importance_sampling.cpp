@@ -10,7 +10,8 @@ namespace relumine::lights {
 
 namespace {
 
-/// A number in [0, 1) that depends on its arguments only (the mixing steps of splitmix64), the same on every machine.
+/// A number in [0, 1) that depends on its arguments only (the mixing steps of splitmix64), the same
+/// on every machine.
 double random(std::uint64_t seed, std::uint64_t index) {
     std::uint64_t bits = seed * 0x9e3779b97f4a7c15u + index;
     for (int round = 0; round < 2; ++round) {
@@ -25,7 +26,8 @@ double random(std::uint64_t seed, std::uint64_t index) {
 /// What the directions are distributed by: energy, or solid angle for a map without light.
 class Distribution {
 public:
-    explicit Distribution(const LatLongGrid& grid) : grid_(grid), marginal_(grid.height() + 1, 0.0) {
+    explicit Distribution(const LatLongGrid& grid)
+        : grid_(grid), marginal_(grid.height() + 1, 0.0) {
         sum_rows();
         if (marginal_.back() <= 0.0) {
             is_black_ = true;
@@ -49,7 +51,8 @@ public:
 
     struct Place {
         glm::dvec3 direction{0.0};
-        glm::dvec3 radiance{0.0}; ///< of the pixel
+        /// Of the pixel
+        glm::dvec3 radiance{0.0};
     };
 
     /// The place at a share of the marginal sum and of the conditional one.
@@ -82,7 +85,8 @@ public:
 private:
     void sum_rows() {
         std::vector<double> rows(grid_.height());
-        tbb::parallel_for(std::uint32_t{0}, grid_.height(), [&](std::uint32_t y) { rows[y] = row_sum(y); });
+        tbb::parallel_for(std::uint32_t{0}, grid_.height(),
+                          [&](std::uint32_t y) { rows[y] = row_sum(y); });
         for (std::size_t y = 0; y < rows.size(); ++y)
             marginal_[y + 1] = marginal_[y] + rows[y];
     }
@@ -92,9 +96,10 @@ private:
     std::vector<double> marginal_;
 };
 
-/// Adds the share `down` of an image row to the strata of a row of strata, each getting as much of the conditional sum.
-void share_row(const LatLongGrid& grid, const Distribution& distribution, std::uint32_t y, double down,
-               std::span<ImportanceSample> strata) {
+/// Adds the share `down` of an image row to the strata of a row of strata, each getting as much of
+/// the conditional sum.
+void share_row(const LatLongGrid& grid, const Distribution& distribution, std::uint32_t y,
+               double down, std::span<ImportanceSample> strata) {
     const double sum = distribution.row_sum(y);
     const std::size_t num_strata = strata.size();
     const auto border = [&](std::size_t stratum) {
@@ -109,7 +114,8 @@ void share_row(const LatLongGrid& grid, const Distribution& distribution, std::u
         const glm::dvec3 irradiance = grid.radiance(x, y) * grid.solid_angle(x, y);
         const double after = before + weight;
         double from = before;
-        // The parts of the pixel's share of the sum that end at a border of strata; the last stratum has none.
+        // The parts of the pixel's share of the sum that end at a border of strata; the last
+        // stratum has none.
         while (stratum + 1 < num_strata && border(stratum + 1) < after) {
             const double part = down * (std::max(border(stratum + 1), from) - from) / weight;
             strata[stratum].light.irradiance += part * irradiance;
@@ -131,9 +137,9 @@ std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid, std::s
     const Distribution distribution(grid);
     const std::vector<double>& marginal = distribution.marginal();
     // The image is twice as wide as high: strata are about square where the distribution is even.
-    const auto num_rows =
-        std::clamp(static_cast<std::size_t>(std::lround(std::sqrt(0.5 * static_cast<double>(num_lights)))),
-                   std::size_t{1}, num_lights);
+    const auto num_rows = std::clamp(
+        static_cast<std::size_t>(std::lround(std::sqrt(0.5 * static_cast<double>(num_lights)))),
+        std::size_t{1}, num_lights);
     const auto first_of_row = [&](std::size_t row) {
         return row * num_lights / num_rows;
     };
@@ -142,11 +148,13 @@ std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid, std::s
         const std::size_t first = first_of_row(row);
         const std::size_t num_strata = first_of_row(row + 1) - first;
         const double top = static_cast<double>(first) / static_cast<double>(num_lights);
-        const double bottom = static_cast<double>(first + num_strata) / static_cast<double>(num_lights);
+        const double bottom =
+            static_cast<double>(first + num_strata) / static_cast<double>(num_lights);
         const double top_sum = top * marginal.back();
         const double bottom_sum = row + 1 < num_rows ? bottom * marginal.back() : marginal.back();
         for (std::uint32_t y = 0; y < grid.height(); ++y) {
-            const double part = std::min(marginal[y + 1], bottom_sum) - std::max(marginal[y], top_sum);
+            const double part =
+                std::min(marginal[y + 1], bottom_sum) - std::max(marginal[y], top_sum);
             if (part > 0.0)
                 share_row(grid, distribution, y, part / (marginal[y + 1] - marginal[y]),
                           std::span(samples).subspan(first, num_strata));
@@ -169,7 +177,8 @@ std::vector<ImportanceSample> independent_samples(const LatLongGrid& grid, std::
     const double share = distribution.marginal().back() / static_cast<double>(num_lights);
     std::vector<ImportanceSample> samples(num_lights);
     tbb::parallel_for(std::size_t{0}, num_lights, [&](std::size_t i) {
-        const Distribution::Place place = distribution.place(random(seed, 2 * i), random(seed, 2 * i + 1));
+        const Distribution::Place place =
+            distribution.place(random(seed, 2 * i), random(seed, 2 * i + 1));
         ImportanceSample& sample = samples[i];
         sample.light.direction = place.direction;
         sample.luminance = luminance(place.radiance);

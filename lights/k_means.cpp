@@ -50,15 +50,17 @@ class Iteration {
 public:
     Iteration(std::span<const ClusterPoint> points, std::vector<ClusterPoint> centres,
               const ClusterWeights& weights, KMeans& result)
-        : points_(points), weights_(weights), slack_(NearestCentre::slack(weights)), result_(result),
-          distance_(points.size()), others_(points.size(), 0.0), moves_(centres.size(), 0.0) {
+        : points_(points), weights_(weights), slack_(NearestCentre::slack(weights)),
+          result_(result), distance_(points.size()), others_(points.size(), 0.0),
+          moves_(centres.size(), 0.0) {
         result_.centres = std::move(centres);
         result_.cluster_of.assign(points.size(), 0);
     }
 
     /// Gives every point to its nearest centre. Returns how many changed.
     std::size_t assign() {
-        // [H10]: a point that is nearer to its centre than any other centre can have come stays without a search.
+        // [H10]: a point that is nearer to its centre than any other centre can have come stays
+        // without a search.
         const auto farthest = std::max_element(moves_.begin(), moves_.end());
         const auto most_moved = static_cast<std::uint32_t>(farthest - moves_.begin());
         const double first = *farthest;
@@ -119,7 +121,8 @@ public:
     }
 
 private:
-    /// Each cluster without points takes the point farthest from its centre, the first of equally far ones, from a cluster that has others.
+    /// Each cluster without points takes the point farthest from its centre, the first of equally
+    /// far ones, from a cluster that has others.
     void reseed() {
         std::vector<std::size_t> sizes(result_.centres.size(), 0);
         for (const std::uint32_t cluster : result_.cluster_of)
@@ -178,7 +181,8 @@ private:
         double time = 0.0;
         for (const std::uint32_t i : members) {
             position += position_distance(points_[i], centre) - position_distance(points_[i], mean);
-            luminance += luminance_distance(points_[i], centre) - luminance_distance(points_[i], mean);
+            luminance +=
+                luminance_distance(points_[i], centre) - luminance_distance(points_[i], mean);
             time += time_distance(points_[i], centre) - time_distance(points_[i], mean);
         }
         // Beyond rounding: equal points must not walk about in the last bits.
@@ -192,15 +196,21 @@ private:
     ClusterWeights weights_;
     double slack_;
     KMeans& result_;
-    std::vector<double> distance_;       ///< [points] to the own centre
-    std::vector<double> others_;         ///< [points] no other centre is nearer
-    std::vector<double> moves_;          ///< [clusters] how far the centre moved since the last assignment
-    std::vector<std::size_t> begin_;     ///< [clusters + 1] of each cluster in members_
-    std::vector<std::uint32_t> members_; ///< [points]
+    /// [points] to the own centre
+    std::vector<double> distance_;
+    /// [points] no other centre is nearer
+    std::vector<double> others_;
+    /// [clusters] how far the centre moved since the last assignment
+    std::vector<double> moves_;
+    /// [clusters + 1] of each cluster in members_
+    std::vector<std::size_t> begin_;
+    /// [points]
+    std::vector<std::uint32_t> members_;
 };
 
 void check(const KMeansOptions& options) {
-    for (const double weight : {options.weights.position, options.weights.luminance, options.weights.time})
+    for (const double weight :
+         {options.weights.position, options.weights.luminance, options.weights.time})
         if (!std::isfinite(weight) || weight < 0.0)
             throw std::invalid_argument(
                 fmt::format("expected weights that are finite and not negative, got {}", weight));
@@ -222,7 +232,8 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
     const std::size_t num_clusters = std::min(options.num_clusters, points.size());
     Iteration iteration(points, forgy(points, num_clusters, random), options.weights, result);
     iteration.assign();
-    for (std::size_t step = 0; step < options.max_iterations && !options.stop.stop_requested(); ++step) {
+    for (std::size_t step = 0; step < options.max_iterations && !options.stop.stop_requested();
+         ++step) {
         if (options.on_iteration)
             options.on_iteration(step, result.objective.back());
         if (!iteration.move_centres() || iteration.assign() == 0) {
@@ -231,7 +242,8 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
         }
     }
     result.num_empty = iteration.num_empty();
-    result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
+    result.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_time).count();
     return result;
 }
 

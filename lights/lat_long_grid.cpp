@@ -17,8 +17,8 @@ namespace {
 constexpr double Pi = std::numbers::pi;
 
 bool is_radiance(const glm::vec3& value) {
-    return std::isfinite(value.r) && std::isfinite(value.g) && std::isfinite(value.b) && value.r >= 0.0f &&
-           value.g >= 0.0f && value.b >= 0.0f;
+    return std::isfinite(value.r) && std::isfinite(value.g) && std::isfinite(value.b) &&
+           value.r >= 0.0f && value.g >= 0.0f && value.b >= 0.0f;
 }
 
 void check_radiance(std::span<const glm::vec3> pixels, std::size_t width) {
@@ -28,14 +28,15 @@ void check_radiance(std::span<const glm::vec3> pixels, std::size_t width) {
         const auto row = pixels.subspan(y * width, width);
         good[y] = std::all_of(row.begin(), row.end(), is_radiance) ? 1 : 0;
     });
-    const auto bad_row = static_cast<std::size_t>(std::find(good.begin(), good.end(), 0) - good.begin());
+    const auto bad_row =
+        static_cast<std::size_t>(std::find(good.begin(), good.end(), 0) - good.begin());
     if (bad_row == height)
         return;
     const auto row = pixels.subspan(bad_row * width, width);
     const auto bad = std::find_if_not(row.begin(), row.end(), is_radiance);
-    throw std::invalid_argument(
-        fmt::format("expected radiance that is finite and not negative, got ({}, {}, {}) in pixel ({}, {})",
-                    bad->r, bad->g, bad->b, bad - row.begin(), bad_row));
+    throw std::invalid_argument(fmt::format(
+        "expected radiance that is finite and not negative, got ({}, {}, {}) in pixel ({}, {})",
+        bad->r, bad->g, bad->b, bad - row.begin(), bad_row));
 }
 
 } // namespace
@@ -57,7 +58,8 @@ LatLongGrid::LatLongGrid(const cubemap::EnvironmentImage& image) : pixels_(image
         const double bottom = Pi * down[y + 1];
         const double height = 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
         // integral of sin^2 = (bottom - top) / 2 - (sin 2 bottom - sin 2 top) / 4
-        const double across = 0.5 * (bottom - top) - 0.5 * std::cos(top + bottom) * std::sin(bottom - top);
+        const double across =
+            0.5 * (bottom - top) - 0.5 * std::cos(top + bottom) * std::sin(bottom - top);
         // integral of sin cos = (sin^2 bottom - sin^2 top) / 2
         const double upwards = 0.5 * std::sin(top + bottom) * std::sin(bottom - top);
         rows_.push_back({top, bottom, height, across, upwards});
@@ -76,8 +78,8 @@ LatLongGrid::LatLongGrid(const cubemap::EnvironmentImage& image) : pixels_(image
 double LatLongGrid::solid_angle(const PixelRectangle& region) const {
     const double top = rows_[region.y0].top;
     const double bottom = rows_[region.y1 - 1].bottom;
-    return (columns_[region.x0].left - columns_[region.x1 - 1].right) * 2.0 * std::sin(0.5 * (top + bottom)) *
-           std::sin(0.5 * (bottom - top));
+    return (columns_[region.x0].left - columns_[region.x1 - 1].right) * 2.0 *
+           std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
 }
 
 double LatLongGrid::angular_width(const PixelRectangle& region) const {
@@ -93,10 +95,12 @@ double LatLongGrid::angular_height(const PixelRectangle& region) const {
 glm::dvec3 LatLongGrid::centre(const PixelRectangle& region) const {
     const double polar = 0.5 * (rows_[region.y0].top + rows_[region.y1 - 1].bottom);
     const double longitude = 0.5 * (columns_[region.x0].left + columns_[region.x1 - 1].right);
-    return {std::sin(polar) * std::sin(longitude), std::cos(polar), std::sin(polar) * std::cos(longitude)};
+    return {std::sin(polar) * std::sin(longitude), std::cos(polar),
+            std::sin(polar) * std::cos(longitude)};
 }
 
-glm::dvec3 LatLongGrid::direction(std::uint32_t x, std::uint32_t y, double across, double down) const {
+glm::dvec3 LatLongGrid::direction(std::uint32_t x, std::uint32_t y, double across,
+                                  double down) const {
     const double longitude = columns_[x].left - across * columns_[x].width;
     const double up = std::clamp(std::cos(rows_[y].top) - down * rows_[y].height, -1.0, 1.0);
     const double level = std::sqrt((1.0 - up) * (1.0 + up));

@@ -1,4 +1,5 @@
-// A lat-long environment as patches of constant radiance on the sphere: what all placing of lights works on.
+// A lat-long environment as patches of constant radiance on the sphere: what all placing of lights
+// works on.
 #pragma once
 
 #include <cstddef>
@@ -26,13 +27,17 @@ struct PixelRectangle {
     return 0.2125 * rgb.r + 0.7154 * rgb.g + 0.0721 * rgb.b;
 }
 
-/// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must outlive it.
+/// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must
+/// outlive it.
 class LatLongGrid {
 public:
-    /// Throws std::invalid_argument for another layout, a wrong number of pixels, or radiance that is negative or not finite.
+    /// Throws std::invalid_argument for another layout, a wrong number of pixels, or radiance that
+    /// is negative or not finite.
     explicit LatLongGrid(const cubemap::EnvironmentImage& image);
 
-    [[nodiscard]] std::uint32_t width() const { return static_cast<std::uint32_t>(columns_.size()); }
+    [[nodiscard]] std::uint32_t width() const {
+        return static_cast<std::uint32_t>(columns_.size());
+    }
     [[nodiscard]] std::uint32_t height() const { return static_cast<std::uint32_t>(rows_.size()); }
     [[nodiscard]] std::size_t num_pixels() const { return pixels_.size(); }
     [[nodiscard]] PixelRectangle whole() const { return {0, 0, width(), height()}; }
@@ -56,21 +61,25 @@ public:
     }
 
     [[nodiscard]] double solid_angle(const PixelRectangle& region) const;
-    /// [D05]: width of a region in radians, weighted by the cosine of the inclination at its centre.
+    /// [D05]: width of a region in radians, weighted by the cosine of the inclination at its
+    /// centre.
     [[nodiscard]] double angular_width(const PixelRectangle& region) const;
     [[nodiscard]] double angular_height(const PixelRectangle& region) const;
     /// Unit direction of a region's centre in the image.
     [[nodiscard]] glm::dvec3 centre(const PixelRectangle& region) const;
-    /// Unit direction inside a pixel: at a fraction of its width from the left and of its solid angle from the top.
-    [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y, double across, double down) const;
+    /// Unit direction inside a pixel: at a fraction of its width from the left and of its solid
+    /// angle from the top.
+    [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y, double across,
+                                       double down) const;
 
 private:
-    /// Polar angles of a row's borders and the integrals over it per unit of longitude: solid angle, of sine and cosine of the
-    /// polar angle over solid angle.
+    /// Polar angles of a row's borders and the integrals over it per unit of longitude: solid
+    /// angle, of sine and cosine of the polar angle over solid angle.
     struct Row {
         double top, bottom, height, across, upwards;
     };
-    /// Longitudes of a column's borders and the integrals over it of 1, sine and cosine of the longitude.
+    /// Longitudes of a column's borders and the integrals over it of 1, sine and cosine of the
+    /// longitude.
     struct Column {
         double left, right, width, sine, cosine;
     };

@@ -14,9 +14,11 @@ namespace relumine::lights {
 namespace {
 
 bool same_light(std::span<const FrameSample> a, std::span<const FrameSample> b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const FrameSample& u, const FrameSample& v) {
-        return u.direction == v.direction && u.irradiance == v.irradiance && u.luminance == v.luminance;
-    });
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                      [](const FrameSample& u, const FrameSample& v) {
+                          return u.direction == v.direction && u.irradiance == v.irradiance &&
+                                 u.luminance == v.luminance;
+                      });
 }
 
 /// The samples as points of [S, Eq. 4-6]; repeated frames share their time.
@@ -61,8 +63,10 @@ std::vector<double> fade_kernel(std::size_t reach) {
     return kernel;
 }
 
-/// The strengths, smoothed. What would leave the sequence at an end is reflected there, so that the total stays and what is constant stays so.
-std::vector<glm::dvec3> faded(const std::vector<glm::dvec3>& strengths, const std::vector<double>& kernel) {
+/// The strengths, smoothed. What would leave the sequence at an end is reflected there, so that the
+/// total stays and what is constant stays so.
+std::vector<glm::dvec3> faded(const std::vector<glm::dvec3>& strengths,
+                              const std::vector<double>& kernel) {
     const auto last = static_cast<std::ptrdiff_t>(strengths.size()) - 1;
     const auto reach = static_cast<std::ptrdiff_t>(kernel.size() / 2);
     std::vector<glm::dvec3> result(strengths.size(), glm::dvec3(0.0));
@@ -74,14 +78,16 @@ std::vector<glm::dvec3> faded(const std::vector<glm::dvec3>& strengths, const st
             std::ptrdiff_t to = frame + k;
             while (to < 0 || to > last)
                 to = to < 0 ? -1 - to : 2 * last + 1 - to;
-            result[static_cast<std::size_t>(to)] += kernel[static_cast<std::size_t>(k + reach)] * strength;
+            result[static_cast<std::size_t>(to)] +=
+                kernel[static_cast<std::size_t>(k + reach)] * strength;
         }
     }
     return result;
 }
 
 /// The light's irradiance in every frame of the sequence.
-std::vector<glm::dvec3> strengths(const LightCluster& cluster, std::size_t num_frames, Strength strength) {
+std::vector<glm::dvec3> strengths(const LightCluster& cluster, std::size_t num_frames,
+                                  Strength strength) {
     std::vector<glm::dvec3> result(num_frames, glm::dvec3(0.0));
     for (std::size_t i = 0; i < cluster.num_frames(); ++i)
         result[cluster.first_frame + i] =
@@ -142,7 +148,8 @@ FrameLights frame_lights(const LightClusters& clusters, const StrengthOptions& o
     FrameLights lights{.frames = std::vector<std::vector<DistantLight>>(clusters.num_frames)};
     const std::vector<double> kernel = fade_kernel(options.fade);
     for (const LightCluster& cluster : clusters.clusters) {
-        std::vector<glm::dvec3> irradiance = strengths(cluster, clusters.num_frames, options.strength);
+        std::vector<glm::dvec3> irradiance =
+            strengths(cluster, clusters.num_frames, options.strength);
         if (options.fade > 0)
             irradiance = faded(irradiance, kernel);
         const double mean = luminance(cluster.light.irradiance);
@@ -157,8 +164,8 @@ FrameLights frame_lights(const LightClusters& clusters, const StrengthOptions& o
     return lights;
 }
 
-FrameLights importance_lights(const FrameImages& images, std::size_t num_frames, std::size_t lights_per_frame,
-                              const FrameSamplesOptions& options) {
+FrameLights importance_lights(const FrameImages& images, std::size_t num_frames,
+                              std::size_t lights_per_frame, const FrameSamplesOptions& options) {
     FrameSamplesOptions sampling = options;
     sampling.samples_per_frame = lights_per_frame;
     const FrameSamples samples = sample_frames(images, num_frames, sampling);

@@ -63,9 +63,10 @@ std::string title(const LightList& list) {
     return result + ", made by relumine.";
 }
 
-constexpr std::string_view Unit = "Irradiance is that on a surface facing the light, linear RGB (Rec. 709): "
-                                  "the environment's radiance times steradians, "
-                                  "W/m^2 if its radiance is W/(m^2 sr).";
+constexpr std::string_view Unit =
+    "Irradiance is that on a surface facing the light, linear RGB (Rec. 709): "
+    "the environment's radiance times steradians, "
+    "W/m^2 if its radiance is W/(m^2 sr).";
 constexpr std::string_view Axes =
     "Axes: right-handed, +Y up, as the environment's: the centre of a lat-long is +Z.";
 
@@ -84,12 +85,14 @@ ColourAndIntensity split(const glm::dvec3& irradiance) {
     return largest > 0.0 ? ColourAndIntensity{irradiance / largest, largest} : ColourAndIntensity{};
 }
 
-/// Right, up and back axes of a light whose back axis, local +Z, points at it: it shines along local -Z.
+/// Right, up and back axes of a light whose back axis, local +Z, points at it: it shines along
+/// local -Z.
 struct LightFrame {
     glm::dvec3 right, up, back;
 };
 LightFrame frame_of(const glm::dvec3& direction) {
-    const glm::dvec3 helper = std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
+    const glm::dvec3 helper =
+        std::abs(direction.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, 1);
     const glm::dvec3 right = glm::normalize(glm::cross(helper, direction));
     return {right, glm::cross(direction, right), direction};
 }
@@ -101,47 +104,54 @@ std::string csv_text(const LightList& list) {
         "direction_x,direction_y,direction_z,irradiance_r,irradiance_g,irradiance_b,solid_angle\n",
         title(list), Unit, Axes);
     for (const auto& [d, e, solid_angle] : list.lights)
-        fmt::format_to(Out(text), "{},{},{},{},{},{},{}\n", d.x, d.y, d.z, e.r, e.g, e.b, solid_angle);
+        fmt::format_to(Out(text), "{},{},{},{},{},{},{}\n", d.x, d.y, d.z, e.r, e.g, e.b,
+                       solid_angle);
     return text;
 }
 
 std::string pbrt_text(const LightList& list) {
     std::string text = fmt::format(
         "# {}\n# {}\n# {}\n"
-        "# pbrt-v4: paste after WorldBegin, under no transformation but that of the meshes. \"from\" \"to\" "
+        "# pbrt-v4: paste after WorldBegin, under no transformation but that of the meshes. "
+        "\"from\" \"to\" "
         "say where the light goes: from\n"
-        "# the light's direction to the scene. \"L\" of a distant light is its irradiance on a surface "
+        "# the light's direction to the scene. \"L\" of a distant light is its irradiance on a "
+        "surface "
         "facing it; a white diffuse\n"
         "# surface shows L / pi. No \"illuminance\": it would replace the strengths given here.\n",
         title(list), Unit, Axes);
     for (const auto& [d, e, solid_angle] : list.lights)
-        fmt::format_to(Out(text),
-                       "LightSource \"distant\" \"point3 from\" [ {} {} {} ] \"point3 to\" [ 0 0 0 ] \"rgb "
-                       "L\" [ {} {} {} ]\n",
-                       d.x, d.y, d.z, e.r, e.g, e.b);
+        fmt::format_to(
+            Out(text),
+            "LightSource \"distant\" \"point3 from\" [ {} {} {} ] \"point3 to\" [ 0 0 0 ] \"rgb "
+            "L\" [ {} {} {} ]\n",
+            d.x, d.y, d.z, e.r, e.g, e.b);
     return text;
 }
 
 std::string mitsuba_text(const LightList& list) {
-    std::string text = fmt::format(
-        "<!-- {}\n     {}\n     {}\n"
-        "     Mitsuba 3: a scene to <include>, or paste its emitters. \"direction\" is where the light goes: "
-        "away from the light, towards\n"
-        "     the scene. \"irradiance\" is that on a surface normal to it. -->\n<scene version=\"3.0.0\">\n",
-        title(list), Unit, Axes);
+    std::string text = fmt::format("<!-- {}\n     {}\n     {}\n"
+                                   "     Mitsuba 3: a scene to <include>, or paste its emitters. "
+                                   "\"direction\" is where the light goes: "
+                                   "away from the light, towards\n"
+                                   "     the scene. \"irradiance\" is that on a surface normal to "
+                                   "it. -->\n<scene version=\"3.0.0\">\n",
+                                   title(list), Unit, Axes);
     for (const auto& [d, e, solid_angle] : list.lights)
-        fmt::format_to(
-            Out(text),
-            "    <emitter type=\"directional\"><vector name=\"direction\" x=\"{}\" y=\"{}\" z=\"{}\"/>"
-            "<rgb name=\"irradiance\" value=\"{}, {}, {}\"/></emitter>\n",
-            0.0 - d.x, 0.0 - d.y, 0.0 - d.z, e.r, e.g, e.b);
+        fmt::format_to(Out(text),
+                       "    <emitter type=\"directional\"><vector name=\"direction\" x=\"{}\" "
+                       "y=\"{}\" z=\"{}\"/>"
+                       "<rgb name=\"irradiance\" value=\"{}, {}, {}\"/></emitter>\n",
+                       0.0 - d.x, 0.0 - d.y, 0.0 - d.z, e.r, e.g, e.b);
     return text + "</scene>\n";
 }
 
 std::string usd_text(const LightList& list, const ExportOptions& options) {
     std::string text = fmt::format(
-        "#usda 1.0\n(\n    defaultPrim = \"Lights\"\n    upAxis = \"Y\"\n    doc = \"\"\"{}\n{}\n{}\n"
-        "A DistantLight shines along its local -Z. With inputs:normalize = 1, intensity times color is the "
+        "#usda 1.0\n(\n    defaultPrim = \"Lights\"\n    upAxis = \"Y\"\n    doc = "
+        "\"\"\"{}\n{}\n{}\n"
+        "A DistantLight shines along its local -Z. With inputs:normalize = 1, intensity times "
+        "color is the "
         "irradiance on a surface\n"
         "facing the light, whatever inputs:angle (degrees across; 0: all light from one "
         "direction).\"\"\"\n)\n\n"
@@ -153,34 +163,36 @@ std::string usd_text(const LightList& list, const ExportOptions& options) {
         const auto [right, up, back] = frame_of(light.direction);
         const double degrees =
             options.soft ? angular_diameter(light.solid_angle) * 180.0 / std::numbers::pi : 0.0;
-        fmt::format_to(Out(text),
-                       "    def DistantLight \"Light_{}\"\n    {{\n"
-                       "        float inputs:angle = {}\n        color3f inputs:color = ({}, {}, {})\n"
-                       "        float inputs:intensity = {}\n        bool inputs:normalize = 1\n"
-                       "        matrix4d xformOp:transform = ( ({}, {}, {}, 0), ({}, {}, {}, 0), ({}, {}, "
-                       "{}, 0), (0, 0, 0, 1) )\n"
-                       "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }}\n",
-                       index++, degrees, colour.r, colour.g, colour.b, intensity, right.x, right.y, right.z,
-                       up.x, up.y, up.z, back.x, back.y, back.z);
+        fmt::format_to(
+            Out(text),
+            "    def DistantLight \"Light_{}\"\n    {{\n"
+            "        float inputs:angle = {}\n        color3f inputs:color = ({}, {}, {})\n"
+            "        float inputs:intensity = {}\n        bool inputs:normalize = 1\n"
+            "        matrix4d xformOp:transform = ( ({}, {}, {}, 0), ({}, {}, {}, 0), ({}, {}, "
+            "{}, 0), (0, 0, 0, 1) )\n"
+            "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }}\n",
+            index++, degrees, colour.r, colour.g, colour.b, intensity, right.x, right.y, right.z,
+            up.x, up.y, up.z, back.x, back.y, back.z);
     }
     return text + "}\n";
 }
 
 std::string blender_text(const LightList& list, const ExportOptions& options) {
-    std::string text =
-        fmt::format("# {}\n# {}\n# {}\n"
-                    "# Blender 2.8 or newer: run in the text editor, or blender SCENE.blend --python "
-                    "THIS_FILE. Blender's world is +Z up: the script\n"
-                    "# takes (x, y, z) to (x, -z, y), as Blender's importers take meshes with +Y up. A sun "
-                    "lamp shines along its local -Z; its\n"
-                    "# strength, \"energy\", is irradiance in W/m^2 on a surface facing it, times its "
-                    "colour; \"angle\" is its diameter in radians.\n"
-                    "import bpy\nfrom mathutils import Vector\n\n"
-                    "# direction to the light x, y, z; irradiance r, g, b; angle\nLIGHTS = [\n",
-                    title(list), Unit, Axes);
+    std::string text = fmt::format(
+        "# {}\n# {}\n# {}\n"
+        "# Blender 2.8 or newer: run in the text editor, or blender SCENE.blend --python "
+        "THIS_FILE. Blender's world is +Z up: the script\n"
+        "# takes (x, y, z) to (x, -z, y), as Blender's importers take meshes with +Y up. A sun "
+        "lamp shines along its local -Z; its\n"
+        "# strength, \"energy\", is irradiance in W/m^2 on a surface facing it, times its "
+        "colour; \"angle\" is its diameter in radians.\n"
+        "import bpy\nfrom mathutils import Vector\n\n"
+        "# direction to the light x, y, z; irradiance r, g, b; angle\nLIGHTS = [\n",
+        title(list), Unit, Axes);
     for (const DistantLight& light : list.lights)
-        fmt::format_to(Out(text), "    ({}, {}, {}, {}, {}, {}, {}),\n", light.direction.x, light.direction.y,
-                       light.direction.z, light.irradiance.r, light.irradiance.g, light.irradiance.b,
+        fmt::format_to(Out(text), "    ({}, {}, {}, {}, {}, {}, {}),\n", light.direction.x,
+                       light.direction.y, light.direction.z, light.irradiance.r, light.irradiance.g,
+                       light.irradiance.b,
                        options.soft ? angular_diameter(light.solid_angle) : 0.0);
     text += "]\n\n"
             "collection = bpy.data.collections.new(\"Relumine lights\")\n"
@@ -189,7 +201,8 @@ std::string blender_text(const LightList& list, const ExportOptions& options) {
             "    strength = max(r, g, b)\n"
             "    lamp = bpy.data.lights.new(\"Light %d\" % index, 'SUN')\n"
             "    lamp.energy = strength\n"
-            "    lamp.color = (r / strength, g / strength, b / strength) if strength > 0 else (1, 1, 1)\n"
+            "    lamp.color = (r / strength, g / strength, b / strength) if strength > 0 else (1, "
+            "1, 1)\n"
             "    lamp.angle = min(angle, 3.14159)\n"
             "    thing = bpy.data.objects.new(lamp.name, lamp)\n"
             "    thing.rotation_mode = 'QUATERNION'\n"
@@ -200,12 +213,12 @@ std::string blender_text(const LightList& list, const ExportOptions& options) {
 
 std::string gltf_text(const LightList& list, const ExportOptions& options) {
     using Json = nlohmann::ordered_json;
-    const std::string comment =
-        fmt::format("{} {} {} A directional light shines along its node's local -Z. glTF's intensity is "
-                    "illuminance in lux: here irradiance times {} "
-                    "lm/W; 1 keeps the environment's own unit, as viewers without photometric units expect "
-                    "it, 683 makes lux of W/m^2.",
-                    title(list), Unit, Axes, options.lumens_per_watt);
+    const std::string comment = fmt::format(
+        "{} {} {} A directional light shines along its node's local -Z. glTF's intensity is "
+        "illuminance in lux: here irradiance times {} "
+        "lm/W; 1 keeps the environment's own unit, as viewers without photometric units expect "
+        "it, 683 makes lux of W/m^2.",
+        title(list), Unit, Axes, options.lumens_per_watt);
     Json lights = Json::array();
     Json nodes = Json::array();
     Json indices = Json::array();
@@ -224,7 +237,8 @@ std::string gltf_text(const LightList& list, const ExportOptions& options) {
                           {"intensity", intensity * options.lumens_per_watt}});
     }
     const Json root = {
-        {"asset", {{"version", "2.0"}, {"generator", "relumine"}, {"extras", {{"comment", comment}}}}},
+        {"asset",
+         {{"version", "2.0"}, {"generator", "relumine"}, {"extras", {{"comment", comment}}}}},
         {"extensionsUsed", {"KHR_lights_punctual"}},
         {"extensions", {{"KHR_lights_punctual", {{"lights", lights}}}}},
         {"scene", 0},

@@ -40,22 +40,26 @@ std::optional<Fault> fault(const DistantLight& light) {
     for (int channel = 0; channel < 3; ++channel) {
         const double value = light.irradiance[channel];
         if (!(value >= 0.0 && std::isfinite(value)))
-            return Fault{"irradiance", "irradiance that is finite and not negative", text(light.irradiance)};
+            return Fault{"irradiance", "irradiance that is finite and not negative",
+                         text(light.irradiance)};
     }
     // Rounding of sums may leave a whole sphere a little larger.
     if (!(light.solid_angle >= 0.0 && light.solid_angle <= FullSphere * (1.0 + 1e-9)))
-        return Fault{"solid_angle", "a solid angle from 0 to 4 pi", fmt::format("{}", light.solid_angle)};
+        return Fault{"solid_angle", "a solid angle from 0 to 4 pi",
+                     fmt::format("{}", light.solid_angle)};
     return std::nullopt;
 }
 
 class LightFileReader {
 public:
-    explicit LightFileReader(const std::filesystem::path& path) : path_(path), json_(path.string()) {}
+    explicit LightFileReader(const std::filesystem::path& path)
+        : path_(path), json_(path.string()) {}
 
     LightList read() const {
         const files::JsonValue root = json_.parse(files::read(path_));
         const auto& members = json_.object(root, "a light list");
-        known(members, std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
+        known(members,
+              std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
               "a light list");
         const files::JsonValue& version = required(root, members, "version");
         if (const double got = json_.number(version, "\"version\""); got != Version)
@@ -76,7 +80,8 @@ public:
     }
 
 private:
-    const files::JsonValue& required(const files::JsonValue& owner, const files::JsonValue::Object& members,
+    const files::JsonValue& required(const files::JsonValue& owner,
+                                     const files::JsonValue::Object& members,
                                      std::string_view field) const {
         const files::JsonValue* found = files::JsonReader::find(members, field);
         if (found == nullptr)
@@ -96,8 +101,10 @@ private:
     glm::dvec3 vector3(const files::JsonValue& value, std::string_view what) const {
         const auto& array = json_.array(value, what);
         if (array.size() != 3)
-            json_.refuse(value.line, fmt::format("{} of 3 numbers", what), fmt::format("{}", array.size()));
-        return {json_.number(array[0], what), json_.number(array[1], what), json_.number(array[2], what)};
+            json_.refuse(value.line, fmt::format("{} of 3 numbers", what),
+                         fmt::format("{}", array.size()));
+        return {json_.number(array[0], what), json_.number(array[1], what),
+                json_.number(array[2], what)};
     }
 
     /// Numbers beyond 2^53 are not whole in JSON.
@@ -111,14 +118,16 @@ private:
 
     DistantLight light(const files::JsonValue& value) const {
         const auto& members = json_.object(value, "a light");
-        known(members, std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"}, "a light");
+        known(members, std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"},
+              "a light");
         DistantLight result;
         result.direction = vector3(required(value, members, "direction"), "\"direction\"");
         result.irradiance = vector3(required(value, members, "irradiance"), "\"irradiance\"");
         if (const auto* solid_angle = files::JsonReader::find(members, "solid_angle"))
             result.solid_angle = json_.number(*solid_angle, "\"solid_angle\"");
         if (const auto wrong = fault(result))
-            json_.refuse(files::JsonReader::find(members, wrong->field)->line, wrong->expected, wrong->got);
+            json_.refuse(files::JsonReader::find(members, wrong->field)->line, wrong->expected,
+                         wrong->got);
         // What was written by hand or with few digits; our own files stay as they are, bit by bit.
         if (std::abs(glm::length(result.direction) - 1.0) > 1e-12)
             result.direction = glm::normalize(result.direction);
@@ -162,7 +171,8 @@ std::string json_text(const LightList& list) {
     if (list.seed)
         head["seed"] = *list.seed;
     try {
-        // One light per line: a list of hundreds stays readable, and an error's line is the light's.
+        // One light per line: a list of hundreds stays readable, and an error's line is the
+        // light's.
         std::string result = head.dump(2);
         result.resize(result.size() - 2); // "\n}"
         result += ",\n  \"lights\": [";

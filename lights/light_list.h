@@ -10,12 +10,16 @@ namespace relumine::lights {
 
 /// A light so far away that its direction is the same for the whole scene.
 struct DistantLight {
-    glm::dvec3 direction{0.0, 1.0, 0.0}; ///< unit, from the scene to the light
-    glm::dvec3 irradiance{0.0}; ///< RGB, on a surface that faces the light: radiance times solid angle
-    double solid_angle = 0.0;   ///< steradians of the part of the sphere that it stands for; 0: a point
+    /// Unit, from the scene to the light
+    glm::dvec3 direction{0.0, 1.0, 0.0};
+    /// RGB, on a surface that faces the light: radiance times solid angle
+    glm::dvec3 irradiance{0.0};
+    /// Steradians of the part of the sphere that it stands for; 0: a point
+    double solid_angle = 0.0;
 };
 
-/// The irradiance of all lights together, each on a surface that faces it: the power of the map they stand for.
+/// The irradiance of all lights together, each on a surface that faces it: the power of the map
+/// they stand for.
 [[nodiscard]] glm::dvec3 total_irradiance(const std::vector<DistantLight>& lights);
 
 } // namespace relumine::lights

@@ -32,7 +32,8 @@ public:
         const auto halves = [&](std::uint32_t at) {
             return at_column ? cut_at_column(region, at) : cut_at_row(region, at);
         };
-        // The first cut that leaves half of the energy or more before it: the energy before a cut grows with it.
+        // The first cut that leaves half of the energy or more before it: the energy before a cut
+        // grows with it.
         std::uint32_t first = (at_column ? region.x0 : region.y0) + 1;
         std::uint32_t last = (at_column ? region.x1 : region.y1) - 1;
         const std::uint32_t lowest = first;
@@ -81,7 +82,8 @@ std::vector<PixelRectangle> median_cut(const LatLongGrid& grid, std::size_t num_
         }
     }
     cut_heaviest(
-        grid, regions, num_regions, [&](const PixelRectangle& region) { return table.energy(region); }, cut);
+        grid, regions, num_regions,
+        [&](const PixelRectangle& region) { return table.energy(region); }, cut);
     return regions;
 }
 

@@ -7,8 +7,8 @@
 namespace relumine::lights {
 
 NearestCentre::NearestCentre(std::span<const ClusterPoint> centres, const ClusterWeights& weights)
-    : centres_(centres), weights_(weights), x_(centres.size()), y_(centres.size()), z_(centres.size()),
-      luminance_(centres.size()), time_(centres.size()) {
+    : centres_(centres), weights_(weights), x_(centres.size()), y_(centres.size()),
+      z_(centres.size()), luminance_(centres.size()), time_(centres.size()) {
     const double scale = weights.position * std::numbers::inv_pi;
     for (std::size_t i = 0; i < centres.size(); ++i) {
         x_[i] = static_cast<float>(scale * centres[i].direction.x);

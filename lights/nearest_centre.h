@@ -10,8 +10,8 @@
 
 namespace relumine::lights {
 
-/// Finds the nearest centre as a loop over all of them would, the first of equally near ones, but works out the arc sine of a few only: a chord
-/// is never longer than its arc, so
+/// Finds the nearest centre as a loop over all of them would, the first of equally near ones, but
+/// works out the arc sine of a few only: a chord is never longer than its arc, so
 ///     D >= alpha |u - v| / pi + beta L + gamma T,
 /// in float and for many centres at once, leaves those that could be the nearest.
 class NearestCentre {
@@ -22,9 +22,11 @@ public:
     struct Found {
         std::uint32_t centre = 0;
         double distance = 0.0;
-        double others = 0.0; ///< no other centre is nearer than this; infinite where there is none
+        /// No other centre is nearer than this; infinite where there is none
+        double others = 0.0;
     };
-    /// `guess`: a centre that is likely to be near. The result does not depend on it. `bounds` is room for work, resized.
+    /// `guess`: a centre that is likely to be near. The result does not depend on it. `bounds` is
+    /// room for work, resized.
     [[nodiscard]] Found find(const ClusterPoint& point, std::uint32_t guess,
                              std::vector<float>& bounds) const;
 
@@ -36,7 +38,8 @@ public:
 private:
     std::span<const ClusterPoint> centres_;
     ClusterWeights weights_;
-    std::vector<float> x_, y_, z_, luminance_, time_; ///< times their weight, x, y and z over pi
+    /// Times their weight, x, y and z over pi
+    std::vector<float> x_, y_, z_, luminance_, time_;
 };
 
 } // namespace relumine::lights

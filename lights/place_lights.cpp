@@ -36,8 +36,9 @@ Placement place(Method method, const cubemap::EnvironmentImage& lat_long, std::s
                 std::uint64_t seed) {
     const LatLongGrid grid(lat_long);
     if (num_lights < 1 || num_lights > grid.num_pixels())
-        throw std::invalid_argument(fmt::format("expected 1 to {} lights for {} x {} pixels, got {}",
-                                                grid.num_pixels(), grid.width(), grid.height(), num_lights));
+        throw std::invalid_argument(
+            fmt::format("expected 1 to {} lights for {} x {} pixels, got {}", grid.num_pixels(),
+                        grid.width(), grid.height(), num_lights));
     Placement result;
     if (method == Method::Importance) {
         result.lights = importance_sample(grid, num_lights, seed);
@@ -73,8 +74,8 @@ cubemap::EnvironmentImage lat_long_of(const cubemap::CubeMap& map) {
     };
     if (image.pixels.empty() || !std::all_of(map.texels.begin(), map.texels.end(), is_positive))
         return image;
-    // The mean over overlaps of patches may leave -1e-28 beside a bright texel, and of a single bright texel up to 1e-6 is lost: lights have
-    // to keep the power better than that.
+    // The mean over overlaps of patches may leave -1e-28 beside a bright texel, and of a single
+    // bright texel up to 1e-6 is lost: lights have to keep the power better than that.
     for (glm::vec3& pixel : image.pixels)
         pixel = glm::max(pixel, glm::vec3(0.0f));
     const glm::dvec3 wanted = cubemap::total_power(map);
@@ -88,8 +89,8 @@ cubemap::EnvironmentImage lat_long_of(const cubemap::CubeMap& map) {
     return image;
 }
 
-std::vector<DistantLight> place_lights(Method method, const cubemap::CubeMap& map, std::size_t num_lights,
-                                       std::uint64_t seed) {
+std::vector<DistantLight> place_lights(Method method, const cubemap::CubeMap& map,
+                                       std::size_t num_lights, std::uint64_t seed) {
     return place(method, lat_long_of(map), num_lights, seed).lights;
 }
 

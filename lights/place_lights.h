@@ -17,11 +17,15 @@ namespace relumine::lights {
 
 /// How lights are chosen.
 enum class Method {
-    MedianCut,   ///< regions of equal energy [D05]: lights/median_cut.h
-    VarianceCut, ///< regions whose energy lies close together [VD09]: lights/variance_cut.h
-    Importance,  ///< stratified random directions, likely where it is bright: lights/importance_sampling.h
+    /// Regions of equal energy [D05]: lights/median_cut.h
+    MedianCut,
+    /// Regions whose energy lies close together [VD09]: lights/variance_cut.h
+    VarianceCut,
+    /// Stratified random directions, likely where it is bright: lights/importance_sampling.h
+    Importance,
 };
-inline constexpr std::array AllMethods = {Method::MedianCut, Method::VarianceCut, Method::Importance};
+inline constexpr std::array AllMethods = {Method::MedianCut, Method::VarianceCut,
+                                          Method::Importance};
 
 /// "median-cut", "variance", "importance".
 [[nodiscard]] std::string_view name(Method method);
@@ -31,13 +35,15 @@ inline constexpr std::array AllMethods = {Method::MedianCut, Method::VarianceCut
 /// The lights and, for the methods that cut the image into rectangles, the rectangle of each light.
 struct Placement {
     std::vector<DistantLight> lights;
-    std::vector<PixelRectangle> regions; ///< [lights], or none
+    /// [lights], or none
+    std::vector<PixelRectangle> regions;
 };
 
-/// Exactly `num_lights` lights for a lat-long image. Whatever the method, their total irradiance is the map's power per channel (to rounding)
-/// and their solid angles are those of the pixels they stand for; a map without light gets lights of irradiance 0. Bitwise the same for the
-/// same seed (only Importance draws numbers) and for any number of threads.
-/// Throws std::invalid_argument unless 1 <= num_lights <= pixels, and for images that LatLongGrid refuses.
+/// Exactly `num_lights` lights for a lat-long image. Whatever the method, their total irradiance is
+/// the map's power per channel (to rounding) and their solid angles are those of the pixels they
+/// stand for; a map without light gets lights of irradiance 0. Bitwise the same for the same seed
+/// (only Importance draws numbers) and for any number of threads. Throws std::invalid_argument
+/// unless 1 <= num_lights <= pixels, and for images that LatLongGrid refuses.
 [[nodiscard]] Placement place(Method method, const cubemap::EnvironmentImage& lat_long,
                               std::size_t num_lights, std::uint64_t seed = 1);
 
@@ -46,6 +52,7 @@ struct Placement {
 
 /// The lights of place() for a cube map.
 [[nodiscard]] std::vector<DistantLight> place_lights(Method method, const cubemap::CubeMap& map,
-                                                     std::size_t num_lights, std::uint64_t seed = 1);
+                                                     std::size_t num_lights,
+                                                     std::uint64_t seed = 1);
 
 } // namespace relumine::lights

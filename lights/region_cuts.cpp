@@ -52,13 +52,15 @@ DistantLight light_of(const LatLongGrid& grid, const PixelRectangle& region) {
     // Shorter than this, what is left is rounding (1e-16 per pixel) and says nothing.
     constexpr double Shortest = 1e-9;
     const double length = glm::length(moment);
-    light.direction = energy > 0.0 && length > Shortest * energy ? moment / length : grid.centre(region);
+    light.direction =
+        energy > 0.0 && length > Shortest * energy ? moment / length : grid.centre(region);
     return light;
 }
 
 } // namespace
 
-std::vector<DistantLight> lights_of(const LatLongGrid& grid, const std::vector<PixelRectangle>& regions) {
+std::vector<DistantLight> lights_of(const LatLongGrid& grid,
+                                    const std::vector<PixelRectangle>& regions) {
     std::vector<DistantLight> result(regions.size());
     tbb::parallel_for(std::size_t{0}, regions.size(),
                       [&](std::size_t i) { result[i] = light_of(grid, regions[i]); });

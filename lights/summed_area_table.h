@@ -14,12 +14,14 @@
 
 namespace relumine::lights {
 
-/// Prefix sums of values of type T (double, or a vector of doubles) over the columns and rows of an image. A sum is off by rounding of
-/// the whole image's sum, about 1e-16 of it, so that of a rectangle of zeros need not be 0 exactly.
+/// Prefix sums of values of type T (double, or a vector of doubles) over the columns and rows of an
+/// image. A sum is off by rounding of the whole image's sum, about 1e-16 of it, so that of a
+/// rectangle of zeros need not be 0 exactly.
 template<typename T>
 class SummedAreaTable {
 public:
-    /// `row_values(y, T* row)` writes the values of a row. O(pixels), in parallel; bitwise the same for any number of threads.
+    /// `row_values(y, T* row)` writes the values of a row. O(pixels), in parallel; bitwise the same
+    /// for any number of threads.
     template<typename RowValues>
     SummedAreaTable(std::uint32_t width, std::uint32_t height, const RowValues& row_values);
 
@@ -30,15 +32,19 @@ public:
     }
 
 private:
-    [[nodiscard]] const T& at(std::uint32_t x, std::uint32_t y) const { return table_[y * stride_ + x]; }
+    [[nodiscard]] const T& at(std::uint32_t x, std::uint32_t y) const {
+        return table_[y * stride_ + x];
+    }
 
     std::size_t stride_;
-    std::unique_ptr<T[]> table_; ///< [(height + 1) * (width + 1)]: sums over the pixels left of and above
+    /// [(height + 1) * (width + 1)]: sums over the pixels left of and above
+    std::unique_ptr<T[]> table_;
 };
 
 template<typename T>
 template<typename RowValues>
-SummedAreaTable<T>::SummedAreaTable(std::uint32_t width, std::uint32_t height, const RowValues& row_values)
+SummedAreaTable<T>::SummedAreaTable(std::uint32_t width, std::uint32_t height,
+                                    const RowValues& row_values)
     : stride_(std::size_t{width} + 1),
       table_(std::make_unique_for_overwrite<T[]>(stride_ * (std::size_t{height} + 1))) {
     std::fill_n(table_.get(), stride_, T(0.0));

@@ -27,7 +27,8 @@ std::optional<SunSplit<Map>> split(const Map& map) {
 } // namespace
 
 DistantLight sun_light(const cubemap::Sun& sun) {
-    return {.direction = sun.direction, .irradiance = sun.irradiance, .solid_angle = sun.solid_angle};
+    return {
+        .direction = sun.direction, .irradiance = sun.irradiance, .solid_angle = sun.solid_angle};
 }
 
 void remove_sun(cubemap::EnvironmentImage& image, const cubemap::Sun& sun) {
@@ -38,7 +39,8 @@ void remove_sun(cubemap::CubeMap& map, const cubemap::Sun& sun) {
     fill(map.texels, sun);
 }
 
-std::optional<SunSplit<cubemap::EnvironmentImage>> split_sun(const cubemap::EnvironmentImage& image) {
+std::optional<SunSplit<cubemap::EnvironmentImage>>
+split_sun(const cubemap::EnvironmentImage& image) {
     return split(image);
 }
 

@@ -10,7 +10,8 @@
 
 namespace relumine::lights {
 
-/// The sun as a light. Light and map together light a surface like the original (irradiance() of disc_light.h).
+/// The sun as a light. Light and map together light a surface like the original (irradiance() of
+/// disc_light.h).
 [[nodiscard]] DistantLight sun_light(const cubemap::Sun& sun);
 
 /// Puts the sky around the sun in its place. `sun` must have been found in this image or map.

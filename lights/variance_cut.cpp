@@ -65,7 +65,8 @@ std::vector<PixelRectangle> variance_cut(const LatLongGrid& grid, std::size_t nu
     const MomentTable table(grid);
     std::vector<PixelRectangle> regions = {grid.whole()};
     cut_heaviest(
-        grid, regions, num_regions, [&](const PixelRectangle& region) { return table.weight(region); },
+        grid, regions, num_regions,
+        [&](const PixelRectangle& region) { return table.weight(region); },
         [&](const PixelRectangle& region) { return table.cut(region); });
     return regions;
 }

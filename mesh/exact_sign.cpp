@@ -1,4 +1,5 @@
-// Based on: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates", 1997.
+// Based on: J. R. Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric
+// Predicates", 1997.
 #include "mesh/exact_sign.h"
 
 #include <array>
@@ -11,7 +12,8 @@ namespace relumine::mesh {
 
 namespace {
 
-/// An exact sum of doubles: components that do not overlap, from small to large (Shewchuk, GROW-EXPANSION).
+/// An exact sum of doubles: components that do not overlap, from small to large (Shewchuk,
+/// GROW-EXPANSION).
 class ExactSum {
 public:
     void add(double term) {
@@ -30,7 +32,9 @@ public:
         size_ = kept;
     }
     /// The largest component outweighs all others.
-    [[nodiscard]] int sign() const { return size_ == 0 ? 0 : components_[size_ - 1] > 0.0 ? 1 : -1; }
+    [[nodiscard]] int sign() const {
+        return size_ == 0 ? 0 : components_[size_ - 1] > 0.0 ? 1 : -1;
+    }
 
 private:
     std::array<double, 64> components_{};
@@ -59,18 +63,22 @@ bool coplanar(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const 
     for (int axis = 0; axis < 3; ++axis)
         if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == d[axis])
             return true;
-    // In double the differences are off by 2^-53, their triple products by less than 16 times that: most points are clearly apart.
+    // In double the differences are off by 2^-53, their triple products by less than 16 times that:
+    // most points are clearly apart.
     const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a);
     const glm::dvec3 ac = glm::dvec3(c) - glm::dvec3(a);
     const glm::dvec3 ad = glm::dvec3(d) - glm::dvec3(a);
-    const auto volume = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r, double sign) {
+    const auto volume = [](const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& r,
+                           double sign) {
         return p.x * (q.y * r.z + sign * q.z * r.y) + p.y * (q.z * r.x + sign * q.x * r.z) +
                p.z * (q.x * r.y + sign * q.y * r.x);
     };
-    if (std::abs(volume(ab, ac, ad, -1.0)) > 1e-14 * volume(glm::abs(ab), glm::abs(ac), glm::abs(ad), 1.0))
+    if (std::abs(volume(ab, ac, ad, -1.0)) >
+        1e-14 * volume(glm::abs(ab), glm::abs(ac), glm::abs(ad), 1.0))
         return false;
 
-    // The determinant of the points with a column of ones: the signed triple products of all threes.
+    // The determinant of the points with a column of ones: the signed triple products of all
+    // threes.
     ExactSum sum;
     const auto add_product = [&](float p, float q, float r, double sign) {
         const double pq = product(p, q);

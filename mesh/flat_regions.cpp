@@ -19,13 +19,17 @@ struct HalfEdge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
     std::uint32_t triangle = 0;
-    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> ends() const { return std::minmax(from, to); }
+    [[nodiscard]] std::pair<std::uint32_t, std::uint32_t> ends() const {
+        return std::minmax(from, to);
+    }
 };
 
 /// Sets that grow together.
 class Regions {
 public:
-    explicit Regions(std::size_t n) : parents_(n) { std::iota(parents_.begin(), parents_.end(), 0u); }
+    explicit Regions(std::size_t n) : parents_(n) {
+        std::iota(parents_.begin(), parents_.end(), 0u);
+    }
     std::uint32_t root(std::uint32_t i) {
         while (parents_[i] != i)
             i = parents_[i] = parents_[parents_[i]];
@@ -39,29 +43,33 @@ private:
     std::vector<std::uint32_t> parents_;
 };
 
-/// A point's two coordinates other than `axis`: points of one plane keep their order of turns under that, or all reverse it.
+/// A point's two coordinates other than `axis`: points of one plane keep their order of turns under
+/// that, or all reverse it.
 glm::vec2 without(int axis, const glm::vec3& point) {
     return {point[(axis + 1) % 3], point[(axis + 2) % 3]};
 }
 
-/// How a triangle turns, seen along each axis. Triangles of one plane that turn the same way on every axis lie on the same side up.
+/// How a triangle turns, seen along each axis. Triangles of one plane that turn the same way on
+/// every axis lie on the same side up.
 std::array<int, 3> turns(const TriangleMesh& mesh, const Triangle& triangle) {
     std::array<int, 3> result{};
     for (int axis = 0; axis < 3; ++axis)
-        result[static_cast<std::size_t>(axis)] =
-            turn(without(axis, mesh.positions[triangle[0]]), without(axis, mesh.positions[triangle[1]]),
-                 without(axis, mesh.positions[triangle[2]]));
+        result[static_cast<std::size_t>(axis)] = turn(without(axis, mesh.positions[triangle[0]]),
+                                                      without(axis, mesh.positions[triangle[1]]),
+                                                      without(axis, mesh.positions[triangle[2]]));
     return result;
 }
 
-/// The corners of the convex polygon that half-edges enclose: one loop, that turns one way, once around. Nothing where they do not.
+/// The corners of the convex polygon that half-edges enclose: one loop, that turns one way, once
+/// around. Nothing where they do not.
 ///
-/// All triangles of the region turn the same way, so each point off their edges is covered as often as the outline winds around it: once inside
-/// of such a loop, never outside.
+/// All triangles of the region turn the same way, so each point off their edges is covered as often
+/// as the outline winds around it: once inside of such a loop, never outside.
 std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mesh,
                                                          std::vector<HalfEdge> outline,
                                                          const std::array<int, 3>& orientation) {
-    const auto seen = std::find_if(orientation.begin(), orientation.end(), [](int t) { return t != 0; });
+    const auto seen =
+        std::find_if(orientation.begin(), orientation.end(), [](int t) { return t != 0; });
     if (seen == orientation.end())
         return std::nullopt;
     const auto axis = static_cast<int>(seen - orientation.begin());
@@ -72,8 +80,9 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
     std::sort(outline.begin(), outline.end(),
               [](const HalfEdge& a, const HalfEdge& b) { return a.from < b.from; });
     const auto leaving = [&](std::uint32_t vertex) {
-        return std::lower_bound(outline.begin(), outline.end(), vertex,
-                                [](const HalfEdge& edge, std::uint32_t v) { return edge.from < v; });
+        return std::lower_bound(
+            outline.begin(), outline.end(), vertex,
+            [](const HalfEdge& edge, std::uint32_t v) { return edge.from < v; });
     };
     std::vector<std::uint32_t> loop;
     std::uint32_t vertex = outline.front().from;
@@ -89,7 +98,8 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
     if (loop.size() != outline.size())
         return std::nullopt; // there are holes
 
-    // Corners turn with the triangles; a vertex between two sides of one line must lie between their ends.
+    // Corners turn with the triangles; a vertex between two sides of one line must lie between
+    // their ends.
     std::vector<std::uint32_t> corners;
     int num_reversals = 0; // of the direction along the first coordinate: two for one time around
     int last_direction = 0;
@@ -103,11 +113,15 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
             return std::nullopt;
         if (t != 0)
             corners.push_back(loop[i]);
-        else if ((before.x < here.x) != (here.x < after.x) || (before.y < here.y) != (here.y < after.y) ||
-                 (before.x > here.x) != (here.x > after.x) || (before.y > here.y) != (here.y > after.y))
+        else if ((before.x < here.x) != (here.x < after.x) ||
+                 (before.y < here.y) != (here.y < after.y) ||
+                 (before.x > here.x) != (here.x > after.x) ||
+                 (before.y > here.y) != (here.y > after.y))
             return std::nullopt; // turns back on itself
-        // A side that goes straight up or down counts as going right, or left, by its second coordinate.
-        const int direction = here.x != after.x ? (here.x < after.x ? 1 : -1) : (here.y < after.y ? 1 : -1);
+        // A side that goes straight up or down counts as going right, or left, by its second
+        // coordinate.
+        const int direction =
+            here.x != after.x ? (here.x < after.x ? 1 : -1) : (here.y < after.y ? 1 : -1);
         num_reversals += static_cast<int>(last_direction != 0 && direction != last_direction);
         last_direction = direction;
         if (first_direction == 0)
@@ -132,7 +146,8 @@ std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
         return a.ends() != b.ends() ? a.ends() < b.ends() : a.triangle < b.triangle;
     });
 
-    // Join the two triangles of an edge that lie in one plane, the same side up. Edges with one or many triangles stay outlines.
+    // Join the two triangles of an edge that lie in one plane, the same side up. Edges with one or
+    // many triangles stay outlines.
     Regions regions(num_triangles);
     std::vector<bool> is_inner(edges.size(), false);
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
@@ -144,8 +159,9 @@ std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
         const HalfEdge& b = edges[begin + 1];
         const auto opposite = [&](const HalfEdge& edge) {
             const Triangle& t = mesh.triangles[edge.triangle];
-            return mesh.positions[*std::find_if(
-                t.begin(), t.end(), [&](std::uint32_t v) { return v != edge.from && v != edge.to; })];
+            return mesh.positions[*std::find_if(t.begin(), t.end(), [&](std::uint32_t v) {
+                return v != edge.from && v != edge.to;
+            })];
         };
         const auto has_three_corners = [&](const HalfEdge& edge) {
             const auto& [i, j, k] = mesh.triangles[edge.triangle];
@@ -155,7 +171,8 @@ std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
             !coplanar(mesh.positions[a.from], mesh.positions[a.to], opposite(a), opposite(b)))
             continue;
         const std::array<int, 3> orientation = turns(mesh, mesh.triangles[a.triangle]);
-        if (orientation == std::array<int, 3>{} || orientation != turns(mesh, mesh.triangles[b.triangle]))
+        if (orientation == std::array<int, 3>{} ||
+            orientation != turns(mesh, mesh.triangles[b.triangle]))
             continue; // no area, or folded over
         regions.join(a.triangle, b.triangle);
         is_inner[begin] = is_inner[begin + 1] = true;
@@ -167,7 +184,8 @@ std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
         ++sizes[regions.root(i)];
     std::vector<std::pair<std::uint32_t, HalfEdge>> outlines;
     for (std::size_t i = 0; i < edges.size(); ++i)
-        if (const std::uint32_t region = regions.root(edges[i].triangle); !is_inner[i] && sizes[region] > 2)
+        if (const std::uint32_t region = regions.root(edges[i].triangle);
+            !is_inner[i] && sizes[region] > 2)
             outlines.emplace_back(region, edges[i]);
     std::sort(outlines.begin(), outlines.end(), [](const auto& a, const auto& b) {
         return std::pair(a.first, a.second.from) < std::pair(b.first, b.second.from);
@@ -180,7 +198,8 @@ std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
         while (end < outlines.size() && outlines[end].first == outlines[begin].first)
             outline.push_back(outlines[end++].second);
         const std::uint32_t region = outlines[begin].first;
-        const auto corners = convex_outline(mesh, std::move(outline), turns(mesh, mesh.triangles[region]));
+        const auto corners =
+            convex_outline(mesh, std::move(outline), turns(mesh, mesh.triangles[region]));
         if (!corners || corners->size() - 2 >= sizes[region])
             continue;
         is_merged[region] = true;

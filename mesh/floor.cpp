@@ -28,17 +28,19 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
         throw std::invalid_argument(
             fmt::format("floor: expected at least 2 x 2 vertices, got {} x {}", n, n));
     if (num_vertices + first > MaxVertices)
-        throw std::invalid_argument(fmt::format("floor: expected at most {} vertices in all, got {}",
-                                                MaxVertices, num_vertices + first));
+        throw std::invalid_argument(
+            fmt::format("floor: expected at most {} vertices in all, got {}", MaxVertices,
+                        num_vertices + first));
 
     const Bounds box = bounds(mesh);
-    const double horizontal = std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
+    const double horizontal =
+        std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
     const double side = scale * (horizontal > 0.0 ? horizontal : double{box.diagonal()});
     const glm::dvec3 center = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
     const double farthest = std::max(std::abs(center.x), std::abs(center.z)) + 0.5 * side;
     if (!(side > 0.0) || !(farthest <= double{std::numeric_limits<float>::max()}))
-        throw std::invalid_argument(
-            fmt::format("floor: expected a positive, finite side, got {} times the mesh's size", scale));
+        throw std::invalid_argument(fmt::format(
+            "floor: expected a positive, finite side, got {} times the mesh's size", scale));
 
     mesh.positions.reserve(first + num_vertices);
     for (std::uint32_t row = 0; row < n; ++row)
@@ -73,7 +75,8 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
         mesh.groups = {"mesh"};
         mesh.triangle_groups.assign(first_triangle, 0);
     }
-    const auto group = std::find(mesh.groups.begin(), mesh.groups.end(), "floor") - mesh.groups.begin();
+    const auto group =
+        std::find(mesh.groups.begin(), mesh.groups.end(), "floor") - mesh.groups.begin();
     if (static_cast<std::size_t>(group) == mesh.groups.size())
         mesh.groups.emplace_back("floor");
     mesh.triangle_groups.resize(mesh.num_triangles(), static_cast<std::uint32_t>(group));

@@ -17,10 +17,11 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 static_assert(sizeof(glm::vec3) == 12 && sizeof(Triangle) == 12, "arrays are written as they are");
 
-/// Appends an array to the model's one buffer, with a view and an accessor of its own. Returns the accessor's index.
+/// Appends an array to the model's one buffer, with a view and an accessor of its own. Returns the
+/// accessor's index.
 template<class Value>
-int append(tinygltf::Model& model, std::span<const Value> values, int target, int component_type, int type,
-           std::size_t count) {
+int append(tinygltf::Model& model, std::span<const Value> values, int target, int component_type,
+           int type, std::size_t count) {
     std::vector<unsigned char>& data = model.buffers[0].data;
     tinygltf::BufferView view;
     view.buffer = 0;
@@ -96,9 +97,9 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     set_bounds(model.accessors.back(), mesh.positions);
     primitive.attributes["NORMAL"] = append(model, normals);
     primitive.attributes["COLOR_0"] = append(model, colors);
-    primitive.indices =
-        append(model, std::span(mesh.triangles), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
-               TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, 3 * mesh.num_triangles());
+    primitive.indices = append(
+        model, std::span(mesh.triangles), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
+        TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, 3 * mesh.num_triangles());
 
     model.meshes.resize(1);
     model.meshes[0].primitives.push_back(std::move(primitive));
@@ -110,7 +111,8 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
 
     std::ostringstream stream;
     if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true) || !stream)
-        throw std::runtime_error("expected a glTF model that can be written, got an error of the writer");
+        throw std::runtime_error(
+            "expected a glTF model that can be written, got an error of the writer");
     return std::move(stream).str();
 }
 

@@ -8,9 +8,10 @@
 
 namespace relumine::mesh {
 
-/// The mesh as one .glb file: POSITION, NORMAL, COLOR_0 (linear RGB, float) and 32-bit indices, with an unlit material.
-/// glTF has no zero normals: (0, 1, 0) stands for them. The mesh must have triangles, `colors` be [num_vertices], all numbers
-/// finite. Throws std::runtime_error "expected X, got Y" for a mesh that is too large for the format (4 GiB).
+/// The mesh as one .glb file: POSITION, NORMAL, COLOR_0 (linear RGB, float) and 32-bit indices,
+/// with an unlit material. glTF has no zero normals: (0, 1, 0) stands for them. The mesh must have
+/// triangles, `colors` be [num_vertices], all numbers finite. Throws std::runtime_error "expected
+/// X, got Y" for a mesh that is too large for the format (4 GiB).
 [[nodiscard]] std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors);
 
 } // namespace relumine::mesh

@@ -44,24 +44,25 @@ std::uint32_t num_components_of(const std::string& type) {
     constexpr std::array<const char*, 4> Names = {"SCALAR", "VEC2", "VEC3", "VEC4"};
     const auto found = std::find(Names.begin(), Names.end(), type);
     if (found == Names.end())
-        throw std::runtime_error(
-            fmt::format("expected SCALAR, VEC2, VEC3 or VEC4 as an accessor's type, got {}", excerpt(type)));
+        throw std::runtime_error(fmt::format(
+            "expected SCALAR, VEC2, VEC3 or VEC4 as an accessor's type, got {}", excerpt(type)));
     return static_cast<std::uint32_t>(found - Names.begin()) + 1;
 }
 
 Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_components) {
     const Json& accessor = document.element("accessors", index);
     if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-        throw std::runtime_error(fmt::format("expected accessor {} in a buffer view of its own, got a {} one",
-                                             index, accessor.contains("sparse") ? "sparse" : "zero"));
+        throw std::runtime_error(
+            fmt::format("expected accessor {} in a buffer view of its own, got a {} one", index,
+                        accessor.contains("sparse") ? "sparse" : "zero"));
     Elements elements;
     elements.component_type = whole(accessor, "componentType");
     if (const auto normalized = accessor.find("normalized"); normalized != accessor.end())
         elements.normalized = normalized->is_boolean() && normalized->get<bool>();
     const std::uint32_t has = num_components_of(text(accessor, "type"));
     if (has < num_components || (num_components == 1 && has != 1))
-        throw std::runtime_error(
-            fmt::format("expected {} components of accessor {}, got {}", num_components, index, has));
+        throw std::runtime_error(fmt::format("expected {} components of accessor {}, got {}",
+                                             num_components, index, has));
     const std::uint64_t view = whole(accessor, "bufferView");
     const std::uint64_t size = component_size(elements.component_type) * has;
     const std::uint64_t stride = whole(document.element("bufferViews", view), "byteStride", size);
@@ -69,13 +70,13 @@ Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_
     const std::uint64_t count = whole(accessor, "count");
     elements.bytes = document.view(view);
     if (stride < size || stride > 252 + size)
-        throw std::runtime_error(
-            fmt::format("expected a byteStride of {} or more for accessor {}, got {}", size, index, stride));
+        throw std::runtime_error(fmt::format(
+            "expected a byteStride of {} or more for accessor {}, got {}", size, index, stride));
     if (count == 0 || offset > elements.bytes.size() || size > elements.bytes.size() - offset ||
         count - 1 > (elements.bytes.size() - offset - size) / stride)
-        throw std::runtime_error(
-            fmt::format("expected accessor {} inside its buffer view of {} bytes, got {} elements at {}",
-                        index, elements.bytes.size(), count, offset));
+        throw std::runtime_error(fmt::format(
+            "expected accessor {} inside its buffer view of {} bytes, got {} elements at {}", index,
+            elements.bytes.size(), count, offset));
     elements.bytes = elements.bytes.subspan(offset);
     elements.count = count;
     elements.stride = stride;
@@ -99,8 +100,8 @@ std::vector<float> floats(const Elements& elements, std::uint32_t num_components
             auto value = static_cast<float>(component<Component>(elements, i, j));
             if constexpr (std::is_integral_v<Component>)
                 if (elements.normalized)
-                    value =
-                        std::max(value / static_cast<float>(std::numeric_limits<Component>::max()), -1.0f);
+                    value = std::max(
+                        value / static_cast<float>(std::numeric_limits<Component>::max()), -1.0f);
             values.push_back(value);
         }
     return values;
@@ -144,8 +145,9 @@ std::vector<std::uint32_t> read_indices(Document& document, std::uint64_t access
         else if (elements.component_type == 5125)
             indices[i] = component<std::uint32_t>(elements, i, 0);
         else
-            throw std::runtime_error(fmt::format(
-                "expected unsigned integers as indices, got componentType {}", elements.component_type));
+            throw std::runtime_error(
+                fmt::format("expected unsigned integers as indices, got componentType {}",
+                            elements.component_type));
     }
     return indices;
 }

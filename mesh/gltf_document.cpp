@@ -22,8 +22,9 @@ namespace {
 
 /// For an error message. Not of arrays and objects: they may be nested as deep as the file is long.
 std::string described(const Json& value) {
-    return value.is_structured() ? std::string(value.type_name())
-                                 : excerpt(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+    return value.is_structured()
+               ? std::string(value.type_name())
+               : excerpt(value.dump(-1, ' ', true, Json::error_handler_t::replace));
 }
 
 [[noreturn]] void fail(const char* key, std::string_view expected, const Json& got) {
@@ -59,7 +60,8 @@ std::vector<std::byte> base64(std::string_view text) {
     int num_bits = 0;
     while (text.ends_with('='))
         text.remove_suffix(1);
-    constexpr std::string_view Alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    constexpr std::string_view Alphabet =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::array<int, 256> values{};
     values.fill(-1);
     for (std::size_t i = 0; i < Alphabet.size(); ++i)
@@ -72,7 +74,8 @@ std::vector<std::byte> base64(std::string_view text) {
         num_bits += 6;
         if (num_bits >= 8) {
             num_bits -= 8;
-            bytes.push_back(static_cast<std::byte>(bits >> static_cast<unsigned>(num_bits) & 0xffu));
+            bytes.push_back(
+                static_cast<std::byte>(bits >> static_cast<unsigned>(num_bits) & 0xffu));
         }
     }
     return bytes;
@@ -88,7 +91,8 @@ std::string percent_decoded(std::string_view uri) {
     };
     std::string result;
     for (std::size_t i = 0; i < uri.size(); ++i) {
-        if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0) {
+        if (uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 &&
+            digit(uri[i + 2]) >= 0) {
             result += static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2]));
             i += 2;
         } else {
@@ -146,8 +150,9 @@ std::vector<double> numbers(const Json& object, const char* key, std::vector<dou
     if (value == nullptr)
         return fallback;
     if (!value->is_array() || value->size() != fallback.size() ||
-        !std::all_of(value->begin(), value->end(),
-                     [](const Json& item) { return item.is_number() && std::isfinite(item.get<double>()); }))
+        !std::all_of(value->begin(), value->end(), [](const Json& item) {
+            return item.is_number() && std::isfinite(item.get<double>());
+        }))
         fail(key, fmt::format("{} numbers", fallback.size()), *value);
     return value->get<std::vector<double>>();
 }
@@ -206,17 +211,18 @@ void Document::split_glb(std::span<const std::byte> file) {
     if (file.size() < 8 || word(file, 4) != BinaryChunk)
         return;
     if (word(file, 0) > file.size() - 8)
-        fail(fmt::format("a binary chunk of {} bytes", word(file, 0)), fmt::format("{}", file.size() - 8));
+        fail(fmt::format("a binary chunk of {} bytes", word(file, 0)),
+             fmt::format("{}", file.size() - 8));
     chunk_ = file.subspan(8, word(file, 0));
 }
 
 void Document::check_extensions() const {
-    constexpr std::array<std::string_view, 5> Understood = {"KHR_materials_unlit", "KHR_texture_transform",
-                                                            "KHR_mesh_quantization", "KHR_lights_punctual",
-                                                            "KHR_materials_variants"};
+    constexpr std::array<std::string_view, 5> Understood = {
+        "KHR_materials_unlit", "KHR_texture_transform", "KHR_mesh_quantization",
+        "KHR_lights_punctual", "KHR_materials_variants"};
     for (const Json& name : child(root_, "extensionsRequired"))
-        if (!name.is_string() ||
-            std::find(Understood.begin(), Understood.end(), name.get<std::string>()) == Understood.end())
+        if (!name.is_string() || std::find(Understood.begin(), Understood.end(),
+                                           name.get<std::string>()) == Understood.end())
             fail("extensions that are understood", described(name));
 }
 
@@ -225,7 +231,8 @@ const Json& Document::element(const char* array, std::uint64_t index) const {
     if (!elements.empty() && !elements.is_array())
         fail(fmt::format("\"{}\" as an array", array), "an object");
     if (index >= elements.size())
-        fail(fmt::format("indices of \"{}\" below {}", array, elements.size()), fmt::format("{}", index));
+        fail(fmt::format("indices of \"{}\" below {}", array, elements.size()),
+             fmt::format("{}", index));
     return elements[index];
 }
 
@@ -247,7 +254,8 @@ std::span<const std::byte> Document::buffer(std::uint64_t index) {
         bytes = *loaded;
     }
     if (bytes.size() < num_bytes)
-        fail(fmt::format("a buffer {} of {} bytes", index, num_bytes), fmt::format("{}", bytes.size()));
+        fail(fmt::format("a buffer {} of {} bytes", index, num_bytes),
+             fmt::format("{}", bytes.size()));
     return bytes.first(num_bytes);
 }
 
@@ -265,7 +273,8 @@ std::span<const std::byte> Document::view(std::uint64_t index) {
 std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) const {
     if (uri.starts_with("data:")) {
         const std::size_t comma = uri.find(',');
-        if (comma == std::string::npos || !std::string_view(uri).substr(0, comma).ends_with(";base64"))
+        if (comma == std::string::npos ||
+            !std::string_view(uri).substr(0, comma).ends_with(";base64"))
             fail("base64 in a data URI", excerpt(uri));
         return base64(std::string_view(uri).substr(comma + 1));
     }

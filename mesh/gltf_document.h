@@ -1,7 +1,7 @@
 // A glTF 2.0 file: its JSON, read strictly, and its bytes.
 //
-// Our own reader: tinygltf, which writes our .glb files, takes properties of a wrong type for absent ones, decodes all images of a
-// file, and leaves checking what lies where to its callers.
+// Our own reader: tinygltf, which writes our .glb files, takes properties of a wrong type for
+// absent ones, decodes all images of a file, and leaves checking what lies where to its callers.
 #pragma once
 
 #include <cstddef>
@@ -22,23 +22,26 @@ using Json = nlohmann::json;
 /// A number of an array called `name`.
 [[nodiscard]] std::uint64_t whole_value(const Json& value, const char* name);
 
-/// Properties of an object with their defaults. All throw std::runtime_error "expected X, got Y" for another type or range.
-/// Where there is no default the property must exist.
+/// Properties of an object with their defaults. All throw std::runtime_error "expected X, got Y"
+/// for another type or range. Where there is no default the property must exist.
 [[nodiscard]] std::uint64_t whole(const Json& object, const char* key,
                                   std::optional<std::uint64_t> fallback = {});
-[[nodiscard]] double number(const Json& object, const char* key, std::optional<double> fallback = {});
+[[nodiscard]] double number(const Json& object, const char* key,
+                            std::optional<double> fallback = {});
 /// A number of 0 to 1.
 [[nodiscard]] float fraction(const Json& object, const char* key, float fallback);
-[[nodiscard]] std::string text(const Json& object, const char* key, const std::string& fallback = {});
+[[nodiscard]] std::string text(const Json& object, const char* key,
+                               const std::string& fallback = {});
 /// An array of finite numbers, `fallback` where it is absent; of that one's size.
-[[nodiscard]] std::vector<double> numbers(const Json& object, const char* key, std::vector<double> fallback);
+[[nodiscard]] std::vector<double> numbers(const Json& object, const char* key,
+                                          std::vector<double> fallback);
 /// The object or array of that name; an empty one where it is absent.
 [[nodiscard]] const Json& child(const Json& object, const char* key);
 
 class Document {
 public:
-    /// `file`: the whole of a .gltf or .glb, which must outlive the document. Refuses versions other than 2, and required
-    /// extensions that are not understood.
+    /// `file`: the whole of a .gltf or .glb, which must outlive the document. Refuses versions
+    /// other than 2, and required extensions that are not understood.
     Document(std::span<const std::byte> file, std::filesystem::path folder);
 
     [[nodiscard]] const Json& root() const { return root_; }
@@ -62,9 +65,11 @@ private:
     std::filesystem::path folder_;
     std::uint64_t file_bytes_;
     std::string_view json_text_;
-    std::optional<std::span<const std::byte>> chunk_; ///< the binary one of a .glb
+    /// The binary one of a .glb
+    std::optional<std::span<const std::byte>> chunk_;
     Json root_;
-    std::vector<std::optional<std::vector<std::byte>>> buffers_; ///< those of URIs, once they were needed
+    /// Those of URIs, once they were needed
+    std::vector<std::optional<std::vector<std::byte>>> buffers_;
 };
 
 } // namespace relumine::mesh::gltf

@@ -17,15 +17,18 @@ public:
 
 private:
     [[nodiscard]] Material material(const Json& description, std::size_t index);
-    [[nodiscard]] std::optional<TextureSlot> slot(const Json& parent, const char* key, bool is_srgb);
+    [[nodiscard]] std::optional<TextureSlot> slot(const Json& parent, const char* key,
+                                                  bool is_srgb);
     [[nodiscard]] std::optional<std::uint32_t> image(std::uint64_t index);
     [[nodiscard]] Texture decode(const Json& description, std::uint64_t index,
                                  std::span<const std::byte> bytes) const;
 
     Document& document_;
     Materials result_;
-    std::map<std::uint64_t, std::optional<std::uint32_t>> images_; ///< image -> texture, or missing
-    std::optional<std::uint64_t> uv_set_;                          ///< of the current material
+    /// Image -> texture, or missing
+    std::map<std::uint64_t, std::optional<std::uint32_t>> images_;
+    /// Of the current material
+    std::optional<std::uint64_t> uv_set_;
 };
 
 Texture MaterialReader::decode(const Json& description, std::uint64_t index,
@@ -72,7 +75,8 @@ Wrap wrap_mode(const Json& sampler, const char* key) {
     case 33648:
         return Wrap::Mirror;
     default:
-        throw std::runtime_error(fmt::format("expected 10497, 33071 or 33648 as \"{}\", got {}", key, mode));
+        throw std::runtime_error(
+            fmt::format("expected 10497, 33071 or 33648 as \"{}\", got {}", key, mode));
     }
 }
 
@@ -94,7 +98,8 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
     std::uint64_t uv_set = whole(info, "texCoord", 0);
     if (const Json& transform = child(child(info, "extensions"), "KHR_texture_transform");
         !transform.empty()) {
-        // uv' = translation * rotation * scale * uv, as the extension has it: a rotation from v to u.
+        // uv' = translation * rotation * scale * uv, as the extension has it: a rotation from v to
+        // u.
         const std::vector<double> scale = numbers(transform, "scale", {1.0, 1.0});
         const std::vector<double> offset = numbers(transform, "offset", {0.0, 0.0});
         const double angle = number(transform, "rotation", 0.0);
@@ -104,8 +109,9 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
         uv_set = whole(transform, "texCoord", uv_set);
     }
     if (uv_set_ && *uv_set_ != uv_set)
-        throw std::runtime_error(fmt::format(
-            "expected one texCoord for the textures of a material, got {} and {}", *uv_set_, uv_set));
+        throw std::runtime_error(
+            fmt::format("expected one texCoord for the textures of a material, got {} and {}",
+                        *uv_set_, uv_set));
     uv_set_ = uv_set;
     return slot;
 }

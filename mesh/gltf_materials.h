@@ -12,15 +12,17 @@
 namespace relumine::mesh::gltf {
 
 struct Materials {
-    std::vector<Material> materials; ///< the file's, in its order
-    std::vector<std::optional<std::uint64_t>>
-        uv_sets; ///< [materials], the TEXCOORD that its textures use, if any
+    /// The file's, in its order
+    std::vector<Material> materials;
+    /// [materials], the TEXCOORD that its textures use, if any
+    std::vector<std::optional<std::uint64_t>> uv_sets;
     std::vector<Texture> textures;
     std::vector<std::string> missing;
 };
 
-/// Throws std::runtime_error "expected X, got Y". Factors, textures, samplers, KHR_texture_transform; KHR_materials_unlit is a
-/// Lambert material. Alpha, emission, normal maps and the other extensions are skipped.
+/// Throws std::runtime_error "expected X, got Y". Factors, textures, samplers,
+/// KHR_texture_transform; KHR_materials_unlit is a Lambert material. Alpha, emission, normal maps
+/// and the other extensions are skipped.
 [[nodiscard]] Materials read_materials(Document& document);
 
 } // namespace relumine::mesh::gltf

@@ -1,7 +1,9 @@
-// glTF 2.0: all triangle primitives of the nodes of the default scene, in world space, with their materials.
+// glTF 2.0: all triangle primitives of the nodes of the default scene, in world space, with their
+// materials.
 //
-// A vertex stays a vertex for each node that shows it; points and lines are skipped; skins and morph targets are as the file
-// stores them, at rest (a skinned mesh ignores its node's place, as the format has it).
+// A vertex stays a vertex for each node that shows it; points and lines are skipped; skins and
+// morph targets are as the file stores them, at rest (a skinned mesh ignores its node's place, as
+// the format has it).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,8 +81,8 @@ private:
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
     std::optional<std::uint32_t> default_material_;
     std::map<std::string, std::uint32_t> group_indices_;
-    std::uint64_t num_elements_ =
-        0; ///< vertices and triangles that primitives and nodes made of the file's bytes
+    /// Vertices and triangles that primitives and nodes made of the file's bytes
+    std::uint64_t num_elements_ = 0;
     PolygonSoup soup_;
     bool has_colors_ = false, has_uvs_ = false;
 };
@@ -94,11 +96,12 @@ std::vector<std::uint64_t> GltfReader::root_nodes() const {
         return result;
     };
     if (document_.count("scenes") > 0)
-        return indices(
-            gltf::child(document_.element("scenes", gltf::whole(document_.root(), "scene", 0)), "nodes"));
+        return indices(gltf::child(
+            document_.element("scenes", gltf::whole(document_.root(), "scene", 0)), "nodes"));
     std::vector<bool> is_child(document_.count("nodes"), false);
     for (std::size_t i = 0; i < is_child.size(); ++i)
-        for (const std::uint64_t node : indices(gltf::child(document_.element("nodes", i), "children")))
+        for (const std::uint64_t node :
+             indices(gltf::child(document_.element("nodes", i), "children")))
             if (node < is_child.size())
                 is_child[node] = true;
     std::vector<std::uint64_t> roots;
@@ -156,15 +159,16 @@ std::vector<Vector> vectors(const gltf::Floats& floats) {
     std::vector<Vector> result(floats.count);
     for (std::size_t i = 0; i < result.size(); ++i)
         for (int j = 0; j < Vector::length(); ++j)
-            result[i][j] =
-                floats.values[i * static_cast<std::size_t>(Vector::length()) + static_cast<std::size_t>(j)];
+            result[i][j] = floats.values[i * static_cast<std::size_t>(Vector::length()) +
+                                         static_cast<std::size_t>(j)];
     return result;
 }
 
 std::optional<Primitive> GltfReader::primitive(const Json& description) {
     const std::uint64_t mode = gltf::whole(description, "mode", 4);
     if (mode > 6)
-        throw std::runtime_error(fmt::format("expected a primitive's mode of 0 to 6, got {}", mode));
+        throw std::runtime_error(
+            fmt::format("expected a primitive's mode of 0 to 6, got {}", mode));
     const Json& attributes = gltf::child(description, "attributes");
     if (mode < 4 || !attributes.contains("POSITION"))
         return std::nullopt;
@@ -176,8 +180,9 @@ std::optional<Primitive> GltfReader::primitive(const Json& description) {
         values = vectors<Vector>(
             gltf::read_floats(document_, gltf::whole(attributes, name.c_str()), Vector::length()));
         if (values.size() != result.positions.size())
-            throw std::runtime_error(fmt::format("expected {} elements of {}, as many as of POSITION, got {}",
-                                                 result.positions.size(), name, values.size()));
+            throw std::runtime_error(
+                fmt::format("expected {} elements of {}, as many as of POSITION, got {}",
+                            result.positions.size(), name, values.size()));
     };
     read("POSITION", result.positions);
     read("NORMAL", result.normals);
@@ -228,22 +233,25 @@ std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
     return place->second;
 }
 
-/// Nodes repeat meshes, primitives repeat accessors: without a limit, 64 KB of glTF make thousands of millions of vertices.
+/// Nodes repeat meshes, primitives repeat accessors: without a limit, 64 KB of glTF make thousands
+/// of millions of vertices.
 void GltfReader::count(const Primitive& primitive) {
     constexpr std::uint64_t AlwaysAllowed = std::uint64_t{1} << 20, PerByte = 64;
     const std::uint64_t limit = std::max(AlwaysAllowed, PerByte * document_.num_bytes());
     num_elements_ += primitive.positions.size() + primitive.triangles.size();
     if (num_elements_ > limit)
         throw std::runtime_error(fmt::format(
-            "expected at most {} vertices and triangles of {} bytes with all repetitions, got more", limit,
-            document_.num_bytes()));
+            "expected at most {} vertices and triangles of {} bytes with all repetitions, got more",
+            limit, document_.num_bytes()));
 }
 
-void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform, std::uint32_t group) {
+void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
+                        std::uint32_t group) {
     const std::size_t first = soup_.positions.size();
     if (first + primitive.positions.size() > std::numeric_limits<std::uint32_t>::max())
         throw std::runtime_error("expected at most 4294967295 vertices, got more");
-    // Normals go with the cofactors, the inverse's transpose but for the determinant, which singular matrices have, too.
+    // Normals go with the cofactors, the inverse's transpose but for the determinant, which
+    // singular matrices have, too.
     const glm::dmat3 linear(transform);
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
@@ -252,7 +260,8 @@ void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
         soup_.positions.emplace_back(transform * glm::dvec4(primitive.positions[i], 1.0));
         const glm::dvec3 normal = cofactors * glm::dvec3(primitive.normals[i]);
         const double length = glm::length(normal);
-        soup_.normals.emplace_back(length > 0.0 ? normal / (is_mirrored ? -length : length) : normal);
+        soup_.normals.emplace_back(length > 0.0 ? normal / (is_mirrored ? -length : length)
+                                                : normal);
     }
     has_colors_ |= !primitive.colors.empty();
     has_uvs_ |= !primitive.uvs.empty();
@@ -295,7 +304,8 @@ PolygonSoup GltfReader::read() {
             const std::uint64_t index = gltf::whole(node, "mesh");
             for (const Primitive& primitive : mesh(index)) {
                 count(primitive);
-                append(primitive, node.contains("skin") ? glm::dmat4(1.0) : transform, group(node, index));
+                append(primitive, node.contains("skin") ? glm::dmat4(1.0) : transform,
+                       group(node, index));
             }
         }
         const Json& children = gltf::child(node, "children");

@@ -1,6 +1,7 @@
-// stb_image is compiled here, for three formats. Debian's library has ten: fourteen bytes that begin like a PNM picture end the
-// program there, and what a short file lacks is read as whatever the memory held. Its JPEG decoder writes beyond its tables when a
-// file declares too many Huffman codes; libjpeg does not.
+// stb_image is compiled here, for three formats. Debian's library has ten: fourteen bytes that
+// begin like a PNM picture end the program there, and what a short file lacks is read as whatever
+// the memory held. Its JPEG decoder writes beyond its tables when a file declares too many Huffman
+// codes; libjpeg does not.
 #include "mesh/image_decoder.h"
 
 #include <algorithm>
@@ -33,7 +34,8 @@ enum class Format { Png, Jpeg, Bmp, Tga };
 /// TGA files say nothing of themselves: what is none of the others.
 Format format_of(std::span<const std::byte> file) {
     const auto begins_with = [&](std::string_view magic) {
-        return file.size() >= magic.size() && std::memcmp(file.data(), magic.data(), magic.size()) == 0;
+        return file.size() >= magic.size() &&
+               std::memcmp(file.data(), magic.data(), magic.size()) == 0;
     };
     return begins_with("\x89PNG")        ? Format::Png
            : begins_with("\xff\xd8\xff") ? Format::Jpeg
@@ -56,10 +58,11 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
     switch (format) {
     case Format::Png: // deflate packs at most 1032 to 1, of pixels of one bit
         return num_pixels / 1032 / 8;
-    case Format::
-        Jpeg: // a bit for each block of 64, and chroma may be sampled four times as coarsely each way
+    case Format::Jpeg: // a bit for each block of 64, and chroma may be sampled four times as
+                       // coarsely each way
         return num_pixels / 1024;
-    case Format::Bmp: { // never compressed where stb_image reads it; rows end at multiples of four bytes
+    case Format::Bmp: { // never compressed where stb_image reads it; rows end at multiples of four
+                        // bytes
         const std::uint64_t data = number_at(file, 10, 4);
         const std::uint64_t bits = number_at(file, number_at(file, 14, 4) == 12 ? 24 : 28, 2);
         return data + (width * bits + 31) / 32 * 4 * height;
@@ -67,7 +70,8 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
     case Format::Tga: {
         const std::uint64_t kind = number_at(file, 2, 1), bits = number_at(file, 16, 1);
         const std::uint64_t num_bytes = num_pixels * ((bits + 7) / 8);
-        return (kind & 8) != 0 ? num_pixels / 64 : 18 + num_bytes; // runs of 128 take two bytes or more
+        return (kind & 8) != 0 ? num_pixels / 64
+                               : 18 + num_bytes; // runs of 128 take two bytes or more
     }
     }
     return 0;
@@ -96,20 +100,22 @@ void check_png_chunks(std::span<const std::byte> file) {
 
 void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint64_t height) {
     if (width < 1 || height < 1 || width > MaxImageEdge || height > MaxImageEdge)
-        throw std::runtime_error(fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
-                                             MaxImageEdge, width, height));
+        throw std::runtime_error(
+            fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
+                        MaxImageEdge, width, height));
     const std::uint64_t num_pixels = width * height;
     const std::uint64_t of_large = num_pixels > MaxCheapPixels ? num_pixels / 128 : 0;
     if (std::max(of_large, least_bytes(format_of(file), file, width, height)) > file.size())
-        throw std::runtime_error(
-            fmt::format("expected the data of {} x {} pixels, got {} bytes", width, height, file.size()));
+        throw std::runtime_error(fmt::format("expected the data of {} x {} pixels, got {} bytes",
+                                             width, height, file.size()));
 }
 
 } // namespace
 
 DecodedImage decode_image(std::span<const std::byte> file) {
     if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        throw std::runtime_error(fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
+        throw std::runtime_error(
+            fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
     DecodedImage image{.rgb = {nullptr, std::free}};
     const auto check = [&](std::uint32_t width, std::uint32_t height) {
         check_size(file, width, height);
@@ -119,7 +125,8 @@ DecodedImage decode_image(std::span<const std::byte> file) {
     if (format_of(file) == Format::Jpeg) {
         decode_jpeg(file, [&](std::uint32_t width, std::uint32_t height) {
             check(width, height);
-            image.rgb.reset(static_cast<std::uint8_t*>(std::malloc(std::size_t{width} * height * 3)));
+            image.rgb.reset(
+                static_cast<std::uint8_t*>(std::malloc(std::size_t{width} * height * 3)));
             if (!image.rgb)
                 throw std::bad_alloc();
             return image.rgb.get();
@@ -134,12 +141,14 @@ DecodedImage decode_image(std::span<const std::byte> file) {
             "expected a PNG, JPEG, BMP or TGA image, got {} bytes of something else", file.size()));
     if (format_of(file) == Format::Png)
         check_png_chunks(file);
-    check(static_cast<std::uint32_t>(std::max(width, 0)), static_cast<std::uint32_t>(std::max(height, 0)));
+    check(static_cast<std::uint32_t>(std::max(width, 0)),
+          static_cast<std::uint32_t>(std::max(height, 0)));
     image.rgb.reset(stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, 3));
     if (!image.rgb)
-        throw std::runtime_error(fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
-                                             image.width, image.height,
-                                             excerpt(stbi_failure_reason()))); // may quote the file
+        throw std::runtime_error(
+            fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
+                        image.width, image.height,
+                        excerpt(stbi_failure_reason()))); // may quote the file
     return image;
 }
 

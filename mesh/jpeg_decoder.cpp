@@ -15,7 +15,8 @@ namespace {
 
 constexpr int MaxScans = 100; // programs write ten or so
 
-/// libjpeg leaves through longjmp on errors, so the functions that it may leave hold nothing that wants a destructor.
+/// libjpeg leaves through longjmp on errors, so the functions that it may leave hold nothing that
+/// wants a destructor.
 class Decoder {
 public:
     explicit Decoder(std::span<const std::byte> file) {
@@ -25,7 +26,8 @@ public:
             decoder(info).leave();
         };
         errors_.emit_message = [](j_common_ptr info, int level) {
-            // Level -1 means broken data that libjpeg would mend by guessing. Stray bytes between segments lose nothing.
+            // Level -1 means broken data that libjpeg would mend by guessing. Stray bytes between
+            // segments lose nothing.
             if (level < 0 && info->err->msg_code != JWRN_EXTRANEOUS_DATA)
                 decoder(info).leave();
         };
@@ -76,7 +78,8 @@ private:
             return false;
         jpeg_start_decompress(&info_);
         while (info_.output_scanline < info_.output_height) {
-            std::uint8_t* target = rgb + std::size_t{info_.output_scanline} * info_.output_width * 3;
+            std::uint8_t* target =
+                rgb + std::size_t{info_.output_scanline} * info_.output_width * 3;
             JSAMPROW row = is_cmyk_ ? row_.data() : target;
             jpeg_read_scanlines(&info_, &row, 1);
             for (std::size_t x = 0; is_cmyk_ && x < info_.output_width; ++x)
@@ -106,8 +109,9 @@ void decode_jpeg(std::span<const std::byte> file,
         throw std::runtime_error(
             fmt::format("expected a JPEG image, got broken data ({})", decoder.message()));
     if (!decoder.read_pixels(allocate(decoder.width(), decoder.height())))
-        throw std::runtime_error(fmt::format("expected a whole image of {} x {} pixels, got broken data ({})",
-                                             decoder.width(), decoder.height(), decoder.message()));
+        throw std::runtime_error(
+            fmt::format("expected a whole image of {} x {} pixels, got broken data ({})",
+                        decoder.width(), decoder.height(), decoder.message()));
 }
 
 } // namespace relumine::mesh

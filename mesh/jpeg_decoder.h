@@ -8,10 +8,12 @@
 
 namespace relumine::mesh {
 
-/// Decodes into what `allocate(width, height)` returns, [height * width * 3] from the top left; it may throw to refuse the size. Grey
-/// becomes RGB; CMYK is taken to be inverted, as Adobe's programs write it. Throws std::runtime_error "expected X, got Y" for a
-/// file that is broken in any way, ends early or has more than 100 scans (each costs a pass over the picture).
-void decode_jpeg(std::span<const std::byte> file,
-                 const std::function<std::uint8_t*(std::uint32_t width, std::uint32_t height)>& allocate);
+/// Decodes into what `allocate(width, height)` returns, [height * width * 3] from the top left; it
+/// may throw to refuse the size. Grey becomes RGB; CMYK is taken to be inverted, as Adobe's
+/// programs write it. Throws std::runtime_error "expected X, got Y" for a file that is broken in
+/// any way, ends early or has more than 100 scans (each costs a pass over the picture).
+void decode_jpeg(
+    std::span<const std::byte> file,
+    const std::function<std::uint8_t*(std::uint32_t width, std::uint32_t height)>& allocate);
 
 } // namespace relumine::mesh

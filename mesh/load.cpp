@@ -31,35 +31,39 @@ PolygonSoup read_soup(const std::filesystem::path& path, const std::string& exte
 /// In small letters, with the dot.
 std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    });
     return extension;
 }
 
 } // namespace
 
 bool has_mesh_extension(const std::filesystem::path& path) {
-    constexpr std::array<std::string_view, 6> Extensions = {".glb", ".gltf", ".obj", ".off", ".ply", ".stl"};
+    constexpr std::array<std::string_view, 6> Extensions = {".glb", ".gltf", ".obj",
+                                                            ".off", ".ply",  ".stl"};
     return std::find(Extensions.begin(), Extensions.end(), extension_of(path)) != Extensions.end();
 }
 
 TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
     const std::string extension = extension_of(path);
     if (!has_mesh_extension(path))
-        throw std::runtime_error(
-            fmt::format("{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
-                        path.string(), extension));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
+            path.string(), extension));
     // Opening a pipe would wait for someone to write into it.
     std::error_code error;
     if (const auto status = std::filesystem::status(path, error);
         std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        throw std::runtime_error(fmt::format("{}: expected a regular file, got another kind", path.string()));
+        throw std::runtime_error(
+            fmt::format("{}: expected a regular file, got another kind", path.string()));
     const std::vector<std::byte> bytes = files::read(path);
     try {
         return to_mesh(read_soup(path, extension, bytes), normals);
     } catch (const std::bad_alloc&) {
-        throw std::runtime_error(fmt::format("{}: expected a mesh that fits into memory, got {} bytes",
-                                             path.string(), bytes.size()));
+        throw std::runtime_error(
+            fmt::format("{}: expected a mesh that fits into memory, got {} bytes", path.string(),
+                        bytes.size()));
     } catch (const std::runtime_error& reason) {
         throw std::runtime_error(fmt::format("{}: {}", path.string(), reason.what()));
     }

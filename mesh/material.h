@@ -17,33 +17,48 @@ enum class Wrap : std::uint8_t { Repeat, Clamp, Mirror };
 
 /// A texture in use.
 struct TextureSlot {
-    std::uint32_t texture = 0;       ///< index into TriangleMesh::textures
-    bool is_srgb = false;            ///< bytes are decoded to linear colour before they are filtered
-    std::array<Wrap, 2> wrap{};      ///< along u, v
-    glm::mat2 uv_from_mesh_uv{1.0f}; ///< the place in the texture is this times the mesh's uv
-    glm::vec2 uv_offset{0.0f};       ///< plus this
+    /// Index into TriangleMesh::textures
+    std::uint32_t texture = 0;
+    /// Bytes are decoded to linear colour before they are filtered
+    bool is_srgb = false;
+    /// Along u, v
+    std::array<Wrap, 2> wrap{};
+    /// The place in the texture is this times the mesh's uv
+    glm::mat2 uv_from_mesh_uv{1.0f};
+    /// Plus this
+    glm::vec2 uv_offset{0.0f};
 
     bool operator==(const TextureSlot&) const = default;
 };
 
 /// What the numbers of a material mean.
 enum class MaterialModel : std::uint8_t {
-    Phong,             ///< Kd, Ks, Ns of MTL: Lambert where Ks is 0, Blinn-Phong otherwise
-    MetallicRoughness, ///< of glTF 2.0, or of MTL with Pr or Pm
+    /// Kd, Ks, Ns of MTL: Lambert where Ks is 0, Blinn-Phong otherwise
+    Phong,
+    /// Of glTF 2.0, or of MTL with Pr or Pm
+    MetallicRoughness,
 };
 
 /// One material. Colours are linear RGB.
 struct Material {
     std::string name = {};
     MaterialModel model = MaterialModel::Phong;
-    glm::vec3 base_color{1.0f};                         ///< Phong: Kd; 0..1
-    float metallic = 0.0f;                              ///< 0..1
-    float roughness = 1.0f;                             ///< 0..1
-    glm::vec3 specular{0.0f};                           ///< Phong: Ks, 0..1
-    float exponent = 0.0f;                              ///< Phong: Ns, >= 0
-    bool times_vertex_color = false;                    ///< glTF: COLOR_0 is a factor of the base colour
-    std::optional<TextureSlot> base_color_texture = {}; ///< RGB, a factor of base_color
-    std::optional<TextureSlot> metallic_roughness_texture = {}; ///< G, B: factors of roughness, metallic
+    /// Phong: Kd; 0..1
+    glm::vec3 base_color{1.0f};
+    /// 0..1
+    float metallic = 0.0f;
+    /// 0..1
+    float roughness = 1.0f;
+    /// Phong: Ks, 0..1
+    glm::vec3 specular{0.0f};
+    /// Phong: Ns, >= 0
+    float exponent = 0.0f;
+    /// glTF: COLOR_0 is a factor of the base colour
+    bool times_vertex_color = false;
+    /// RGB, a factor of base_color
+    std::optional<TextureSlot> base_color_texture = {};
+    /// G, B: factors of roughness, metallic
+    std::optional<TextureSlot> metallic_roughness_texture = {};
 
     bool operator==(const Material&) const = default;
 };

@@ -31,11 +31,12 @@ float number_between(const TextReader& reader, std::string_view word, double min
 glm::vec3 color(const TextReader& reader) {
     const auto& words = reader.words();
     if (words.size() != 2 && words.size() != 4)
-        reader.fail(fmt::format("1 or 3 numbers of {}", words[0]), fmt::format("{}", words.size() - 1));
+        reader.fail(fmt::format("1 or 3 numbers of {}", words[0]),
+                    fmt::format("{}", words.size() - 1));
     glm::vec3 result(0.0f);
     for (int i = 0; i < 3; ++i)
-        result[i] =
-            number_between(reader, words[words.size() == 2 ? 1 : static_cast<std::size_t>(i) + 1], 0.0, 1.0);
+        result[i] = number_between(
+            reader, words[words.size() == 2 ? 1 : static_cast<std::size_t>(i) + 1], 0.0, 1.0);
     return result;
 }
 
@@ -82,7 +83,8 @@ void MtlLibrary::read(const std::string& name) {
 }
 
 std::uint32_t MtlLibrary::add(const std::string& name) {
-    const auto [place, is_new] = indices_.try_emplace(name, static_cast<std::uint32_t>(materials.size()));
+    const auto [place, is_new] =
+        indices_.try_emplace(name, static_cast<std::uint32_t>(materials.size()));
     if (is_new)
         materials.emplace_back();
     materials[place->second] = {.name = name};
@@ -163,8 +165,8 @@ void MtlLibrary::parse(std::span<const std::byte> bytes, const std::filesystem::
             current = add(rest_of(std::span(words).subspan(1)));
             continue;
         }
-        const bool is_known = keyword == "Kd" || keyword == "Ks" || keyword == "Ns" || keyword == "Pr" ||
-                              keyword == "Pm" || keyword == "map_Kd";
+        const bool is_known = keyword == "Kd" || keyword == "Ks" || keyword == "Ns" ||
+                              keyword == "Pr" || keyword == "Pm" || keyword == "map_Kd";
         if (!is_known)
             continue;
         if (current == None)

@@ -1,9 +1,12 @@
-// Wavefront OBJ: v (with colours), vt, vn, f, o, g, mtllib and usemtl; everything else in the format (lines, curves) is skipped.
+// Wavefront OBJ: v (with colours), vt, vn, f, o, g, mtllib and usemtl; everything else in the
+// format (lines, curves) is skipped.
 //
-// Our own reader, since no library in Debian reads OBJ without silent changes: OpenMesh drops vertices with an unreadable or
-// non-finite number (later indices then mean other vertices) and faces with a continued line; tinyobjloader reads such numbers
-// as 0, wraps indices at 32 bits, takes a comment behind a face for corners and stores at most 255 corners per face; Assimp
-// makes a vertex of every corner; CGAL refuses lines and points, misreads tabs and knows no continued lines.
+// Our own reader, since no library in Debian reads OBJ without silent changes: OpenMesh drops
+// vertices with an unreadable or non-finite number (later indices then mean other vertices) and
+// faces with a continued line; tinyobjloader reads such numbers as 0, wraps indices at 32 bits,
+// takes a comment behind a face for corners and stores at most 255 corners per face; Assimp makes a
+// vertex of every corner; CGAL refuses lines and points, misreads tabs and knows no continued
+// lines.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -25,7 +28,8 @@ namespace {
 
 constexpr std::uint32_t NoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// What an OBJ corner refers to, counted from 0; NoIndex where it has no texture coordinate or normal.
+/// What an OBJ corner refers to, counted from 0; NoIndex where it has no texture coordinate or
+/// normal.
 struct Corner {
     std::uint32_t position = NoIndex;
     std::uint32_t uv = NoIndex;
@@ -57,14 +61,17 @@ private:
     TextReader reader_;
     std::filesystem::path folder_;
     MtlLibrary library_;
-    std::vector<std::string> used_materials_; ///< distinct, in the order of use
+    /// Distinct, in the order of use
+    std::vector<std::string> used_materials_;
     std::map<std::string, std::uint32_t> material_indices_, group_indices_;
-    std::uint32_t material_ = NoIndex, group_ = NoIndex; ///< of the faces that follow
+    /// Of the faces that follow
+    std::uint32_t material_ = NoIndex, group_ = NoIndex;
     std::vector<std::string_view> words_;
     PolygonSoup soup_;
     std::vector<glm::vec2> uvs_;
     std::vector<glm::vec3> normals_;
-    std::vector<Corner> corners_; ///< parallel to soup_.corners
+    /// Parallel to soup_.corners
+    std::vector<Corner> corners_;
 };
 
 /// A statement is a line and those that a backslash at the end joins to it.
@@ -97,15 +104,19 @@ void ObjReader::read_vertex() {
 void ObjReader::read_uv() {
     if (words_.size() < 2 || words_.size() > 4)
         reader_.fail("1, 2 or 3 texture coordinates", fmt::format("{}", words_.size() - 1));
-    uvs_.emplace_back(reader_.number(words_[1]), words_.size() > 2 ? reader_.number(words_[2]) : 0.0);
+    uvs_.emplace_back(reader_.number(words_[1]),
+                      words_.size() > 2 ? reader_.number(words_[2]) : 0.0);
 }
 
-/// Indices count from 1, or backwards from the newest element (-1). Elements that follow later in the file are allowed.
+/// Indices count from 1, or backwards from the newest element (-1). Elements that follow later in
+/// the file are allowed.
 std::uint32_t ObjReader::index(std::string_view word, std::size_t count) const {
     const std::int64_t written = reader_.integer(word);
-    const std::int64_t result = written > 0 ? written - 1 : static_cast<std::int64_t>(count) + written;
+    const std::int64_t result =
+        written > 0 ? written - 1 : static_cast<std::int64_t>(count) + written;
     if (written == 0 || result < 0 || result >= std::int64_t{NoIndex})
-        reader_.fail(fmt::format("an index (1 is the first, -1 the newest of {})", count), excerpt(word));
+        reader_.fail(fmt::format("an index (1 is the first, -1 the newest of {})", count),
+                     excerpt(word));
     return static_cast<std::uint32_t>(result);
 }
 
@@ -160,12 +171,13 @@ void ObjReader::begin_group() {
     group_ = place->second;
 }
 
-/// Files that refer to texture coordinates or normals but have none at all are common and lose nothing but these.
+/// Files that refer to texture coordinates or normals but have none at all are common and lose
+/// nothing but these.
 void ObjReader::check_indices() {
     const auto check = [](const char* what, std::uint32_t index, std::size_t count) {
         if (index != NoIndex && index >= count)
-            throw std::runtime_error(
-                fmt::format("expected {} indices of 1 to {}, got {}", what, count, std::uint64_t{index} + 1));
+            throw std::runtime_error(fmt::format("expected {} indices of 1 to {}, got {}", what,
+                                                 count, std::uint64_t{index} + 1));
     };
     for (Corner& corner : corners_) {
         if (uvs_.empty())
@@ -216,7 +228,8 @@ void ObjReader::gather_corner_uvs() {
         soup_.corner_uvs.push_back(corner.uv == NoIndex ? glm::vec2(0.0f) : uvs_[corner.uv]);
 }
 
-/// Libraries may follow the faces, so names become materials only now. Faces before the first usemtl or o have "default".
+/// Libraries may follow the faces, so names become materials only now. Faces before the first
+/// usemtl or o have "default".
 void ObjReader::gather_materials() {
     if (used_materials_.empty()) {
         soup_.face_materials.clear();
@@ -229,7 +242,8 @@ void ObjReader::gather_materials() {
                 material = static_cast<std::uint32_t>(indices.size());
                 indices.push_back(static_cast<std::uint32_t>(library_.materials.size()));
                 library_.materials.push_back({.name = "default"});
-                std::replace(soup_.face_materials.begin(), soup_.face_materials.end(), NoIndex, material);
+                std::replace(soup_.face_materials.begin(), soup_.face_materials.end(), NoIndex,
+                             material);
             }
             material = indices[material];
         }

@@ -1,10 +1,12 @@
-// Object File Format (Geomview): [ST][C][N]OFF, ASCII. One vertex and one face per line; comments anywhere; faces may end in up
-// to four colour values, which are skipped; colours of vertices have three or four values.
+// Object File Format (Geomview): [ST][C][N]OFF, ASCII. One vertex and one face per line; comments
+// anywhere; faces may end in up to four colour values, which are skipped; colours of vertices have
+// three or four values.
 //
-// Our own reader, since OpenMesh refuses comments, misreads polygons followed by colours and counts on the keyword's line, and
-// dies of a header that declares too much; Assimp misreads comments between faces and lets indices out of range pass. CGAL is
-// right about nearly all of these, but lets surplus values and lines pass, and would bring Boost and GMP for little more than
-// the hundred lines below, which share their text reader with the other formats.
+// Our own reader, since OpenMesh refuses comments, misreads polygons followed by colours and counts
+// on the keyword's line, and dies of a header that declares too much; Assimp misreads comments
+// between faces and lets indices out of range pass. CGAL is right about nearly all of these, but
+// lets surplus values and lines pass, and would bring Boost and GMP for little more than the
+// hundred lines below, which share their text reader with the other formats.
 #include <fmt/format.h>
 
 #include "mesh/polygon_soup.h"
@@ -61,7 +63,8 @@ std::vector<std::string_view> OffReader::read_keyword() {
     layout_.has_normal = take(keyword, "N");
     const bool has_keyword = take(keyword, "OFF");
     if (!has_keyword && words[0].find_first_not_of("0123456789") != std::string_view::npos)
-        reader_.fail("OFF with an optional ST, C, N in front, in three dimensions", excerpt(words[0]));
+        reader_.fail("OFF with an optional ST, C, N in front, in three dimensions",
+                     excerpt(words[0]));
     if (words.size() > 1 && words[1] == "BINARY")
         reader_.fail("ASCII OFF", "'BINARY'");
     // Some files lack the space between the keyword and the counts (ModelNet's).
@@ -76,14 +79,16 @@ Counts OffReader::read_counts() {
     if (words.empty() && reader_.next_line())
         words = reader_.words();
     if (words.size() != 3)
-        reader_.fail("the numbers of vertices, faces and edges", fmt::format("{} values", words.size()));
+        reader_.fail("the numbers of vertices, faces and edges",
+                     fmt::format("{} values", words.size()));
     // A vertex takes at least six bytes ("0 0 0" and the line's end), a face two.
     const std::int64_t vertices = reader_.integer(words[0]), faces = reader_.integer(words[1]);
     static_cast<void>(reader_.integer(words[2]));
     const auto limit = static_cast<std::int64_t>(num_bytes_);
     if (vertices < 0 || faces < 0 || vertices > limit / 6 || faces > limit / 2)
-        reader_.fail(fmt::format("numbers of vertices and faces that fit into {} bytes", num_bytes_),
-                     fmt::format("{} and {}", vertices, faces));
+        reader_.fail(
+            fmt::format("numbers of vertices and faces that fit into {} bytes", num_bytes_),
+            fmt::format("{} and {}", vertices, faces));
     return {static_cast<std::size_t>(vertices), static_cast<std::size_t>(faces)};
 }
 
@@ -94,7 +99,8 @@ void OffReader::read_vertex() {
     const std::size_t num_words = reader_.next_line() ? reader_.words().size() : 0;
     const bool has_alpha = layout_.has_color && num_words == num_values + 1;
     if (num_words != num_values && !has_alpha)
-        reader_.fail(fmt::format("{} numbers of a vertex", num_values), fmt::format("{}", num_words));
+        reader_.fail(fmt::format("{} numbers of a vertex", num_values),
+                     fmt::format("{}", num_words));
     std::size_t next = 3;
     soup_.positions.push_back(reader_.vector(0));
     if (layout_.has_normal) {
@@ -122,9 +128,9 @@ void OffReader::read_face(std::size_t num_vertices) {
     for (std::size_t i = 1; i <= static_cast<std::size_t>(num_corners); ++i) {
         const std::int64_t index = reader_.integer(words[i]);
         if (index < 0 || static_cast<std::size_t>(index) >= num_vertices)
-            reader_.fail(
-                fmt::format("a vertex index of 0 to {}", static_cast<std::int64_t>(num_vertices) - 1),
-                excerpt(words[i]));
+            reader_.fail(fmt::format("a vertex index of 0 to {}",
+                                     static_cast<std::int64_t>(num_vertices) - 1),
+                         excerpt(words[i]));
         soup_.corners.push_back(static_cast<std::uint32_t>(index));
     }
     for (std::size_t i = static_cast<std::size_t>(num_corners) + 1; i < words.size(); ++i)
@@ -140,8 +146,9 @@ PolygonSoup OffReader::read() {
     for (std::size_t i = 0; i < counts.faces; ++i)
         read_face(counts.vertices);
     if (reader_.next_line())
-        reader_.fail(fmt::format("nothing after {} vertices and {} faces", counts.vertices, counts.faces),
-                     excerpt(reader_.words()[0]));
+        reader_.fail(
+            fmt::format("nothing after {} vertices and {} faces", counts.vertices, counts.faces),
+            excerpt(reader_.words()[0]));
     normalize_text_colors(soup_.colors);
     return std::move(soup_);
 }

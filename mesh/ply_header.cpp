@@ -52,10 +52,11 @@ std::pair<std::string_view, std::size_t> split_header(std::string_view text) {
     for (std::size_t at = text.find(EndKeyword); at != std::string_view::npos;
          at = text.find(EndKeyword, at + 1)) {
         std::size_t end = text.find_first_not_of(" \t", at + EndKeyword.size());
-        if (at == 0 || (text[at - 1] != '\n' && text[at - 1] != '\r') || end == std::string_view::npos ||
-            (text[end] != '\n' && text[end] != '\r'))
+        if (at == 0 || (text[at - 1] != '\n' && text[at - 1] != '\r') ||
+            end == std::string_view::npos || (text[end] != '\n' && text[end] != '\r'))
             continue;
-        // After a lone CR the first byte of the data may happen to be an LF: the first line's end tells what ends lines.
+        // After a lone CR the first byte of the data may happen to be an LF: the first line's end
+        // tells what ends lines.
         const std::string_view first_end = text.substr(text.find_first_of("\r\n"), 2);
         const bool lone_cr = first_end[0] == '\r' && first_end != "\r\n";
         end += text.substr(end, 2) == "\r\n" && !lone_cr ? 2 : 1;
@@ -77,8 +78,8 @@ bool is_float(Type type) {
 
 Header read_header(std::string_view text) {
     if (!text.starts_with("ply\n") && !text.starts_with("ply\r"))
-        throw std::runtime_error(
-            fmt::format("expected a PLY file that begins with 'ply', got {}", excerpt(text.substr(0, 3))));
+        throw std::runtime_error(fmt::format("expected a PLY file that begins with 'ply', got {}",
+                                             excerpt(text.substr(0, 3))));
     Header header;
     const auto [header_text, num_bytes] = split_header(text);
     header.num_bytes = num_bytes;

@@ -15,7 +15,8 @@ enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
 struct Property {
     std::string_view name;
     Type type = Type::Int8;
-    std::optional<Type> size_type; ///< of a list's length
+    /// Of a list's length
+    std::optional<Type> size_type;
 };
 
 struct Element {
@@ -27,14 +28,16 @@ struct Element {
 struct Header {
     std::string_view format;
     std::vector<Element> elements;
-    std::size_t num_bytes = 0; ///< where the data begins
+    /// Where the data begins
+    std::size_t num_bytes = 0;
 };
 
-[[nodiscard]] std::size_t size_of(Type type); ///< in bytes, in the binary formats
+/// In bytes, in the binary formats
+[[nodiscard]] std::size_t size_of(Type type);
 [[nodiscard]] bool is_float(Type type);
 
-/// Reads the header of a whole file; its names point into `file`. Elements have different names; their counts may be any.
-/// Throws std::runtime_error "expected X, got Y".
+/// Reads the header of a whole file; its names point into `file`. Elements have different names;
+/// their counts may be any. Throws std::runtime_error "expected X, got Y".
 [[nodiscard]] Header read_header(std::string_view file);
 
 } // namespace relumine::mesh::ply_format

@@ -1,10 +1,10 @@
-// Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, any number type for any property, further
-// elements, properties and lists skipped, the elements in any order.
+// Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, any number type
+// for any property, further elements, properties and lists skipped, the elements in any order.
 //
-// Our own reader, since no library in Debian reads all valid files and refuses the others: OpenMesh misreads or refuses lists
-// beside the index list (on vertices, faces or other elements) and 32-bit lengths of lists; Assimp loses track in elements that
-// hold lists and reads truncated files as whole ones; CGAL refuses 16-bit indices. None minds data that the header does not
-// declare.
+// Our own reader, since no library in Debian reads all valid files and refuses the others: OpenMesh
+// misreads or refuses lists beside the index list (on vertices, faces or other elements) and 32-bit
+// lengths of lists; Assimp loses track in elements that hold lists and reads truncated files as
+// whole ones; CGAL refuses 16-bit indices. None minds data that the header does not declare.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -97,14 +97,15 @@ private:
 /// Refuses a header that declares more than the body can hold, before anything is allocated.
 void check_sizes(const Header& header, std::size_t num_bytes, bool is_binary) {
     for (const Element& element : header.elements) {
-        std::size_t least =
-            0; // bytes of one element; an empty list is its size alone, an ASCII number a digit and a space
+        std::size_t least = 0; // bytes of one element; an empty list is its size alone, an ASCII
+                               // number a digit and a space
         for (const Property& property : element.properties)
-            least += is_binary ? ply_format::size_of(property.size_type.value_or(property.type)) : 2;
+            least +=
+                is_binary ? ply_format::size_of(property.size_type.value_or(property.type)) : 2;
         if (least > 0 && element.count > (num_bytes + 1) / least)
-            throw std::runtime_error(
-                fmt::format("expected {} elements '{}' of {} bytes or more each, got {} bytes in all",
-                            element.count, element.name, least, num_bytes));
+            throw std::runtime_error(fmt::format(
+                "expected {} elements '{}' of {} bytes or more each, got {} bytes in all",
+                element.count, element.name, least, num_bytes));
     }
 }
 
@@ -204,17 +205,21 @@ void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
 }
 
 template<class Values>
-void read_faces(const Element& element, std::uint64_t num_vertices, Values& values, PolygonSoup& soup) {
+void read_faces(const Element& element, std::uint64_t num_vertices, Values& values,
+                PolygonSoup& soup) {
     const auto is_index_list = [](const Property& property) {
-        return (property.name == "vertex_indices" || property.name == "vertex_index") && property.size_type &&
-               !ply_format::is_float(property.type);
+        return (property.name == "vertex_indices" || property.name == "vertex_index") &&
+               property.size_type && !ply_format::is_float(property.type);
     };
-    const auto indices = std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
+    const auto indices =
+        std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
     if (indices == element.properties.end())
-        throw std::runtime_error("expected faces with a list of whole numbers 'vertex_indices', got none");
+        throw std::runtime_error(
+            "expected faces with a list of whole numbers 'vertex_indices', got none");
     soup.face_ends.reserve(element.count);
     for (std::uint64_t i = 0; i < element.count; ++i) {
-        for (auto property = element.properties.begin(); property != element.properties.end(); ++property) {
+        for (auto property = element.properties.begin(); property != element.properties.end();
+             ++property) {
             if (property != indices) {
                 skip(*property, values);
                 continue;
@@ -224,8 +229,9 @@ void read_faces(const Element& element, std::uint64_t num_vertices, Values& valu
                 const double index = values.next(property->type);
                 if (!(index >= 0.0 && index < static_cast<double>(num_vertices)) ||
                     index != std::floor(index))
-                    throw std::runtime_error(fmt::format("expected vertex indices of 0 to {}, got {}",
-                                                         static_cast<std::int64_t>(num_vertices) - 1, index));
+                    throw std::runtime_error(
+                        fmt::format("expected vertex indices of 0 to {}, got {}",
+                                    static_cast<std::int64_t>(num_vertices) - 1, index));
                 soup.corners.push_back(static_cast<std::uint32_t>(index));
             }
         }
@@ -241,7 +247,8 @@ PolygonSoup read_body(const Header& header, Values values) {
         if (element.name == "vertex")
             num_vertices = element.count;
     if (num_vertices >= std::numeric_limits<std::uint32_t>::max())
-        throw std::runtime_error(fmt::format("expected fewer than 2^32 vertices, got {}", num_vertices));
+        throw std::runtime_error(
+            fmt::format("expected fewer than 2^32 vertices, got {}", num_vertices));
     PolygonSoup soup;
     for (const Element& element : header.elements) {
         if (element.name == "vertex" && element.count > 0)

@@ -25,9 +25,9 @@ void check(const PolygonSoup& soup) {
         throw std::runtime_error("expected vertices, got none");
     for (std::size_t i = 0; i < num_vertices; ++i)
         if (!is_finite(soup.positions[i]))
-            throw std::runtime_error(fmt::format("expected finite positions, got {} {} {} at vertex {} of {}",
-                                                 soup.positions[i].x, soup.positions[i].y,
-                                                 soup.positions[i].z, i, num_vertices));
+            throw std::runtime_error(fmt::format(
+                "expected finite positions, got {} {} {} at vertex {} of {}", soup.positions[i].x,
+                soup.positions[i].y, soup.positions[i].z, i, num_vertices));
     for (const std::uint32_t vertex : soup.corners)
         if (vertex >= num_vertices)
             throw std::runtime_error(
@@ -49,8 +49,8 @@ void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
             mesh.triangles.push_back(
                 {soup.corners[begin + a], soup.corners[begin + b], soup.corners[begin + c]});
             if (!soup.corner_uvs.empty())
-                mesh.corner_uvs.push_back(
-                    {soup.corner_uvs[begin + a], soup.corner_uvs[begin + b], soup.corner_uvs[begin + c]});
+                mesh.corner_uvs.push_back({soup.corner_uvs[begin + a], soup.corner_uvs[begin + b],
+                                           soup.corner_uvs[begin + c]});
             if (!soup.face_materials.empty())
                 mesh.triangle_materials.push_back(soup.face_materials[face]);
             if (!soup.face_groups.empty())
@@ -103,8 +103,9 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     };
     if (!std::all_of(mesh.uvs.begin(), mesh.uvs.end(), is_finite_uv))
         mesh.uvs.clear();
-    if (!std::all_of(mesh.corner_uvs.begin(), mesh.corner_uvs.end(),
-                     [&](const auto& uvs) { return std::all_of(uvs.begin(), uvs.end(), is_finite_uv); }))
+    if (!std::all_of(mesh.corner_uvs.begin(), mesh.corner_uvs.end(), [&](const auto& uvs) {
+            return std::all_of(uvs.begin(), uvs.end(), is_finite_uv);
+        }))
         mesh.corner_uvs.clear();
     return mesh;
 }

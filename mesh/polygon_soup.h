@@ -16,34 +16,45 @@
 namespace relumine::mesh {
 
 struct PolygonSoup {
-    std::vector<glm::vec3> positions; ///< [num_vertices], perhaps not finite: load() checks
-    std::vector<std::uint32_t>
-        corners; ///< vertex indices of all faces, one face after the other, perhaps out of range
-    std::vector<std::size_t> face_ends; ///< [num_faces], each face's end in `corners`
-    std::vector<glm::vec3> normals;     ///< [num_vertices], any length, or empty
-    std::vector<glm::vec3> colors;      ///< [num_vertices], or empty
-    std::vector<glm::vec2> uvs;         ///< [num_vertices], or empty
-    std::vector<glm::vec2> corner_uvs;  ///< parallel to `corners`, or empty
+    /// [num_vertices], perhaps not finite: load() checks
+    std::vector<glm::vec3> positions;
+    /// Vertex indices of all faces, one face after the other, perhaps out of range
+    std::vector<std::uint32_t> corners;
+    /// [num_faces], each face's end in `corners`
+    std::vector<std::size_t> face_ends;
+    /// [num_vertices], any length, or empty
+    std::vector<glm::vec3> normals;
+    /// [num_vertices], or empty
+    std::vector<glm::vec3> colors;
+    /// [num_vertices], or empty
+    std::vector<glm::vec2> uvs;
+    /// Parallel to `corners`, or empty
+    std::vector<glm::vec2> corner_uvs;
 
-    std::vector<std::uint32_t> face_materials; ///< [num_faces], indices into materials; or empty
-    std::vector<std::uint32_t> face_groups;    ///< [num_faces], indices into groups; or empty
+    /// [num_faces], indices into materials; or empty
+    std::vector<std::uint32_t> face_materials;
+    /// [num_faces], indices into groups; or empty
+    std::vector<std::uint32_t> face_groups;
     std::vector<Material> materials;
     std::vector<std::string> groups;
     std::vector<Texture> textures;
-    std::vector<std::string> missing; ///< as TriangleMesh has it
+    /// As TriangleMesh has it
+    std::vector<std::string> missing;
 
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }
 };
 
-/// Checks the soup, cuts its polygons into triangles and completes the normals, as load() promises. Throws
-/// std::runtime_error "expected X, got Y".
+/// Checks the soup, cuts its polygons into triangles and completes the normals, as load() promises.
+/// Throws std::runtime_error "expected X, got Y".
 [[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source);
 
-/// The readers, one per format, of a whole file's bytes. They throw std::runtime_error "expected X, got Y" (load() puts
-/// the path in front), never read outside `bytes`, and allocate no more than a small multiple of its size. Files that a file
-/// names are looked for from its `folder` on. What glTF repeats (a mesh of many nodes) is repeated.
-[[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder);
+/// The readers, one per format, of a whole file's bytes. They throw std::runtime_error "expected X,
+/// got Y" (load() puts the path in front), never read outside `bytes`, and allocate no more than a
+/// small multiple of its size. Files that a file names are looked for from its `folder` on. What
+/// glTF repeats (a mesh of many nodes) is repeated.
+[[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes,
+                                    const std::filesystem::path& folder);
 [[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
                                    const std::filesystem::path& folder = {});
 [[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);

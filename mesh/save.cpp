@@ -20,17 +20,18 @@ static_assert(std::endian::native == std::endian::little,
               "binary_little_endian is written from memory as it is");
 
 std::string ply(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
-    std::string content = fmt::format("ply\n"
-                                      "format binary_little_endian 1.0\n"
-                                      "comment Relumine: linear RGB radiance per vertex\n"
-                                      "element vertex {}\n"
-                                      "property float x\nproperty float y\nproperty float z\n"
-                                      "property float nx\nproperty float ny\nproperty float nz\n"
-                                      "property float red\nproperty float green\nproperty float blue\n"
-                                      "element face {}\n"
-                                      "property list uchar uint vertex_indices\n"
-                                      "end_header\n",
-                                      mesh.num_vertices(), mesh.num_triangles());
+    std::string content =
+        fmt::format("ply\n"
+                    "format binary_little_endian 1.0\n"
+                    "comment Relumine: linear RGB radiance per vertex\n"
+                    "element vertex {}\n"
+                    "property float x\nproperty float y\nproperty float z\n"
+                    "property float nx\nproperty float ny\nproperty float nz\n"
+                    "property float red\nproperty float green\nproperty float blue\n"
+                    "element face {}\n"
+                    "property list uchar uint vertex_indices\n"
+                    "end_header\n",
+                    mesh.num_vertices(), mesh.num_triangles());
     const auto append = [&content](const auto& value) {
         content.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
@@ -55,20 +56,25 @@ void check(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     if (mesh.triangles.empty())
         throw std::runtime_error("expected triangles to save, got none");
     for (std::size_t i = 0; i < colors.size(); ++i)
-        if (!std::isfinite(colors[i].x) || !std::isfinite(colors[i].y) || !std::isfinite(colors[i].z))
-            throw std::runtime_error(fmt::format("expected finite colours, got {} {} {} at vertex {}",
-                                                 colors[i].x, colors[i].y, colors[i].z, i));
+        if (!std::isfinite(colors[i].x) || !std::isfinite(colors[i].y) ||
+            !std::isfinite(colors[i].z))
+            throw std::runtime_error(
+                fmt::format("expected finite colours, got {} {} {} at vertex {}", colors[i].x,
+                            colors[i].y, colors[i].z, i));
 }
 
 } // namespace
 
-void save(const std::filesystem::path& path, const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
+void save(const std::filesystem::path& path, const TriangleMesh& mesh,
+          std::span<const glm::vec3> colors) {
     std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](char c) { return static_cast<char>(std::tolower(static_cast<unsigned char>(c))); });
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    });
     if (extension != ".ply" && extension != ".glb")
-        throw std::runtime_error(fmt::format("{}: expected a mesh file to write (.ply or .glb), got '{}'",
-                                             path.string(), extension));
+        throw std::runtime_error(
+            fmt::format("{}: expected a mesh file to write (.ply or .glb), got '{}'", path.string(),
+                        extension));
     std::string content;
     try {
         check(mesh, colors);

@@ -1,8 +1,9 @@
-// STL, ASCII and binary. STL has no vertices, only corners: corners at exactly the same place become one vertex, numbered in
-// the order of the file. Normals of facets are skipped: the corners' order tells them.
+// STL, ASCII and binary. STL has no vertices, only corners: corners at exactly the same place
+// become one vertex, numbered in the order of the file. Normals of facets are skipped: the corners'
+// order tells them.
 //
-// Our own reader: OpenMesh drops degenerate facets and reads truncated files as shorter ones, Assimp makes a vertex of every
-// corner; for CGAL see off_reader.cpp.
+// Our own reader: OpenMesh drops degenerate facets and reads truncated files as shorter ones,
+// Assimp makes a vertex of every corner; for CGAL see off_reader.cpp.
 #include <bit>
 #include <cctype>
 #include <cstring>
@@ -61,8 +62,8 @@ PolygonSoup read_binary(std::span<const std::byte> bytes) {
         for (std::size_t corner = facet + 12; corner < facet + 48; corner += 12) {
             glm::vec3 point;
             for (int i = 0; i < 3; ++i)
-                point[i] =
-                    std::bit_cast<float>(little_endian(&bytes[corner + 4 * static_cast<std::size_t>(i)]));
+                point[i] = std::bit_cast<float>(
+                    little_endian(&bytes[corner + 4 * static_cast<std::size_t>(i)]));
             welder.add_corner(point);
         }
         welder.end_facet();
@@ -72,8 +73,9 @@ PolygonSoup read_binary(std::span<const std::byte> bytes) {
 
 bool same_keyword(std::string_view word, std::string_view keyword) {
     return word.size() == keyword.size() &&
-           std::equal(word.begin(), word.end(), keyword.begin(),
-                      [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
+           std::equal(word.begin(), word.end(), keyword.begin(), [](char a, char b) {
+               return std::tolower(static_cast<unsigned char>(a)) == b;
+           });
 }
 
 class AsciiReader {
@@ -140,7 +142,8 @@ PolygonSoup AsciiReader::read() {
 
 PolygonSoup read_stl(std::span<const std::byte> bytes) {
     // Binary files may begin with "solid", too; their size tells them apart.
-    const std::uint64_t num_facets = bytes.size() < HeaderBytes ? 0 : little_endian(&bytes[HeaderBytes - 4]);
+    const std::uint64_t num_facets =
+        bytes.size() < HeaderBytes ? 0 : little_endian(&bytes[HeaderBytes - 4]);
     if (bytes.size() >= HeaderBytes && bytes.size() == HeaderBytes + num_facets * FacetBytes)
         return read_binary(bytes);
     const std::string_view text = as_text(bytes);
@@ -148,10 +151,11 @@ PolygonSoup read_stl(std::span<const std::byte> bytes) {
     if (same_keyword(text.substr(start, 5), "solid"))
         return AsciiReader(text).read();
     if (bytes.size() < HeaderBytes)
-        throw std::runtime_error(
-            fmt::format("expected STL, got {} bytes without 'solid' or a binary header", bytes.size()));
+        throw std::runtime_error(fmt::format(
+            "expected STL, got {} bytes without 'solid' or a binary header", bytes.size()));
     throw std::runtime_error(fmt::format("expected {} bytes of binary STL with {} facets, got {}",
-                                         HeaderBytes + num_facets * FacetBytes, num_facets, bytes.size()));
+                                         HeaderBytes + num_facets * FacetBytes, num_facets,
+                                         bytes.size()));
 }
 
 } // namespace relumine::mesh

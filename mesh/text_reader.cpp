@@ -40,7 +40,8 @@ TextReader::TextReader(std::string_view text, char comment) : rest_(text), comme
     if (rest_.starts_with("\xFE\xFF") || rest_.starts_with("\xFF\xFE"))
         throw std::runtime_error("expected ASCII or UTF-8 text, got UTF-16");
     if (rest_.find('\0') != std::string_view::npos)
-        throw std::runtime_error("expected ASCII or UTF-8 text, got NUL bytes (UTF-16 or binary data)");
+        throw std::runtime_error(
+            "expected ASCII or UTF-8 text, got NUL bytes (UTF-16 or binary data)");
 }
 
 bool TextReader::next_line() {
@@ -86,8 +87,8 @@ double TextReader::number(std::string_view word) const {
     if (end != digits.data() + digits.size() || error == std::errc::invalid_argument)
         fail("a number", excerpt(word));
     if (error == std::errc::result_out_of_range) {
-        const bool is_small =
-            digits.find("e-") != std::string_view::npos || digits.find("E-") != std::string_view::npos;
+        const bool is_small = digits.find("e-") != std::string_view::npos ||
+                              digits.find("E-") != std::string_view::npos;
         return is_small ? 0.0 : std::numeric_limits<double>::infinity();
     }
     return value;
@@ -103,12 +104,14 @@ std::int64_t TextReader::integer(std::string_view word) const {
 }
 
 glm::vec3 TextReader::vector(std::size_t first) const {
-    return {static_cast<float>(number(words_[first])), static_cast<float>(number(words_[first + 1])),
+    return {static_cast<float>(number(words_[first])),
+            static_cast<float>(number(words_[first + 1])),
             static_cast<float>(number(words_[first + 2]))};
 }
 
 void TextReader::fail(std::string_view expected, std::string_view got) const {
-    throw std::runtime_error(fmt::format("expected {} in line {}, got {}", expected, line_number_, got));
+    throw std::runtime_error(
+        fmt::format("expected {} in line {}, got {}", expected, line_number_, got));
 }
 
 void normalize_text_colors(std::vector<glm::vec3>& colors) {

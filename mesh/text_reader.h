@@ -18,9 +18,10 @@ namespace relumine::mesh {
 /// Text of unknown content for an error message: quoted, shortened, without control characters.
 [[nodiscard]] std::string excerpt(std::string_view text);
 
-/// Walks over a text line by line or word by word. Lines end with LF, CR or CR LF; words are separated by white space.
-/// The text must outlive the reader and its words. A UTF-8 byte order mark is skipped; text with NUL bytes (UTF-16) is
-/// refused by the constructor. All errors are std::runtime_error "expected X in line N, got Y".
+/// Walks over a text line by line or word by word. Lines end with LF, CR or CR LF; words are
+/// separated by white space. The text must outlive the reader and its words. A UTF-8 byte order
+/// mark is skipped; text with NUL bytes (UTF-16) is refused by the constructor. All errors are
+/// std::runtime_error "expected X in line N, got Y".
 class TextReader {
 public:
     /// `comment` and what follows it in a line is skipped; 0 for a format without comments.
@@ -36,8 +37,8 @@ public:
     /// True when there is no further word.
     [[nodiscard]] bool at_end();
 
-    /// The whole word as a number: decimal, independent of the locale; nan and inf are numbers here. Numbers too large
-    /// for a double become infinite, too small ones zero.
+    /// The whole word as a number: decimal, independent of the locale; nan and inf are numbers
+    /// here. Numbers too large for a double become infinite, too small ones zero.
     [[nodiscard]] double number(std::string_view word) const;
     [[nodiscard]] std::int64_t integer(std::string_view word) const;
     /// Three numbers of the current line from words()[first] on, which must exist.
@@ -53,7 +54,8 @@ private:
     std::size_t next_word_ = 0;
 };
 
-/// Colours of a text format in 0..1: bytes, that is whole numbers of which some are above 1, are divided by 255.
+/// Colours of a text format in 0..1: bytes, that is whole numbers of which some are above 1, are
+/// divided by 255.
 void normalize_text_colors(std::vector<glm::vec3>& colors);
 
 } // namespace relumine::mesh

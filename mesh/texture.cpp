@@ -19,7 +19,8 @@ std::array<float, 256> srgb_table() {
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
         const double s = static_cast<double>(i) / 255.0;
-        table[i] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+        table[i] =
+            static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
     }
     return table;
 }
@@ -48,7 +49,8 @@ struct Pair {
 };
 
 Pair neighbours(float coordinate, std::uint32_t size, Wrap wrap) {
-    // In double, and brought near 0 first, where it repeats: large coordinates keep their fraction as far as float has it.
+    // In double, and brought near 0 first, where it repeats: large coordinates keep their fraction
+    // as far as float has it.
     double x = std::isfinite(coordinate) ? double{coordinate} : 0.0;
     x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * std::floor(0.5 * x);
     x = x * size - 0.5;
@@ -67,8 +69,8 @@ Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
     texture.texels.resize(std::size_t{texture.width} * texture.height);
     for (std::size_t row = 0; row < texture.height; ++row) {
         const std::size_t from = origin == VOrigin::Top ? row : texture.height - 1 - row;
-        std::memcpy(texture.texels.data() + row * texture.width, image.rgb.get() + from * texture.width * 3,
-                    std::size_t{texture.width} * 3);
+        std::memcpy(texture.texels.data() + row * texture.width,
+                    image.rgb.get() + from * texture.width * 3, std::size_t{texture.width} * 3);
     }
     return texture;
 }
@@ -81,7 +83,8 @@ glm::vec3 sample(const Texture& texture, const TextureSlot& slot, const glm::vec
         return decoded(texture.texels[std::size_t{row} * texture.width + column], slot.is_srgb);
     };
     return glm::mix(glm::mix(texel(u.first, v.first), texel(u.second, v.first), u.weight),
-                    glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.weight), v.weight);
+                    glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.weight),
+                    v.weight);
 }
 
 } // namespace relumine::mesh

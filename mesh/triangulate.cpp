@@ -1,6 +1,7 @@
-// Ear clipping. Based on: G. H. Meisters, "Polygons have ears", 1975; the closed-triangle test of reflex corners only, as in
-// Eberly, "Triangulation by ear clipping", 2002. Debian has no library that does it: mapbox's earcut comes for Python alone,
-// and GLU's tessellator adds vertices of its own.
+// Ear clipping. Based on: G. H. Meisters, "Polygons have ears", 1975; the closed-triangle test of
+// reflex corners only, as in Eberly, "Triangulation by ear clipping", 2002. Debian has no library
+// that does it: mapbox's earcut comes for Python alone, and GLU's tessellator adds vertices of its
+// own.
 #include "mesh/triangulate.h"
 
 #include <algorithm>
@@ -23,10 +24,11 @@ double turn_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
 
 } // namespace
 
-/// Drops the axis along which the polygon's Newell normal is longest, so that coordinates stay exact, and orients the
-/// result counter-clockwise. False for a polygon without area.
+/// Drops the axis along which the polygon's Newell normal is longest, so that coordinates stay
+/// exact, and orients the result counter-clockwise. False for a polygon without area.
 bool Triangulator::project(std::span<const std::uint32_t> polygon) {
-    // Relative to the first corner: the normal of a small polygon far from the origin would drown in rounding otherwise.
+    // Relative to the first corner: the normal of a small polygon far from the origin would drown
+    // in rounding otherwise.
     const glm::dvec3 origin(positions_[polygon[0]]);
     glm::dvec3 normal(0.0);
     for (std::size_t i = 0; i < polygon.size(); ++i)
@@ -45,7 +47,8 @@ bool Triangulator::project(std::span<const std::uint32_t> polygon) {
     corners_.resize(n);
     for (std::uint32_t i = 0; i < n; ++i) {
         const glm::vec3& position = positions_[polygon[i]];
-        corners_[i] = {{position[u], position[v]}, i == 0 ? n - 1 : i - 1, i + 1 == n ? 0 : i + 1, false};
+        corners_[i] = {
+            {position[u], position[v]}, i == 0 ? n - 1 : i - 1, i + 1 == n ? 0 : i + 1, false};
     }
     return true;
 }
@@ -80,8 +83,9 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
     if (!(area > 0.0))
         return false;
 
-    // An ear holds no other corner; among the corners in the triangle there is a reflex one if there is any. Corners at the
-    // same place as one of the triangle's are ends of doubled edges, which pass the triangle by.
+    // An ear holds no other corner; among the corners in the triangle there is a reflex one if
+    // there is any. Corners at the same place as one of the triangle's are ends of doubled edges,
+    // which pass the triangle by.
     const glm::dvec2 a = corners_[corners_[corner].previous].point;
     const glm::dvec2 b = corners_[corner].point;
     const glm::dvec2 c = corners_[corners_[corner].next].point;
@@ -102,7 +106,8 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
     return true;
 }
 
-void Triangulator::append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles) {
+void Triangulator::append(std::span<const std::uint32_t> polygon,
+                          std::vector<Triangle>& triangles) {
     const std::size_t first = triangles.size();
     cut(polygon, triangles);
     for (std::size_t i = first; i < triangles.size(); ++i)
@@ -118,11 +123,13 @@ void Triangulator::cut(std::span<const std::uint32_t> polygon,
         return;
     }
     find_reflex_corners();
-    // Usual polygons need a few tests per corner; the mesh as a whole may spend many more before it is given up.
+    // Usual polygons need a few tests per corner; the mesh as a whole may spend many more before it
+    // is given up.
     work_left_ += 1000.0 * static_cast<double>(polygon.size());
 
-    // Ears with an area come first: a corner on a straight edge then gets triangles with an area, too. A cut can only make
-    // ears of its two neighbours; looking there first keeps long strips, with ears at their ends alone, from taking O(n^2).
+    // Ears with an area come first: a corner on a straight edge then gets triangles with an area,
+    // too. A cut can only make ears of its two neighbours; looking there first keeps long strips,
+    // with ears at their ends alone, from taking O(n^2).
     constexpr std::uint32_t None = std::numeric_limits<std::uint32_t>::max();
     std::size_t num_left = polygon.size();
     std::size_t num_cuts = 0;    // since out-of-date reflex corners were dropped
@@ -132,9 +139,10 @@ void Triangulator::cut(std::span<const std::uint32_t> polygon,
     std::uint32_t corner = 1;
     while (num_left > 2) {
         if (work_left_ < 0.0)
-            throw std::runtime_error(fmt::format("expected polygons that are soon cut into triangles, got "
-                                                 "one of {} corners that takes too long",
-                                                 polygon.size()));
+            throw std::runtime_error(
+                fmt::format("expected polygons that are soon cut into triangles, got "
+                            "one of {} corners that takes too long",
+                            polygon.size()));
         const std::uint32_t previous = corners_[corner].previous;
         const std::uint32_t next = corners_[corner].next;
         if (is_ear(corner, kind)) {

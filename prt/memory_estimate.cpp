@@ -12,19 +12,22 @@ namespace {
 
 constexpr std::uint64_t MiB = std::uint64_t{1} << 20;
 
-// Measured (docs/performance.md, "Memory"): the program and its libraries; per triangle Embree's tree and the tree of beams with the mesh's indices;
-// per vertex positions, normals and what loading leaves; per receiver two copies of positions and normals in either order, and the order.
+// Measured (docs/performance.md, "Memory"): the program and its libraries; per triangle Embree's
+// tree and the tree of beams with the mesh's indices; per vertex positions, normals and what
+// loading leaves; per receiver two copies of positions and normals in either order, and the order.
 constexpr std::uint64_t ProgramBytes = 40 * MiB;
 constexpr std::uint64_t BytesPerTriangle = 150;
 constexpr std::uint64_t BeamBytesPerTriangle = 260;
 constexpr std::uint64_t BytesPerVertex = 48;
 constexpr std::uint64_t BytesPerReceiver = 80;
 
-/// The joined counts have a third word beside each two of the columns, and a file is written from a copy, compressed beside it.
+/// The joined counts have a third word beside each two of the columns, and a file is written from a
+/// copy, compressed beside it.
 constexpr double JoinedPerColumn = 1.3;
 constexpr double SavedPerColumn = 2.6;
 
-/// Highlights: surfaces and directions to the eye, twice; blocks beside the lobe that they are joined to; its sections beside it.
+/// Highlights: surfaces and directions to the eye, twice; blocks beside the lobe that they are
+/// joined to; its sections beside it.
 constexpr std::uint64_t GlossyBytesPerReceiver = 120;
 constexpr double JoinedPerGlossyByte = 2.2;
 constexpr double SavedPerGlossyByte = 3.4;
@@ -33,12 +36,12 @@ constexpr double SavedPerGlossyByte = 3.4;
 constexpr double DirectionsPerCluster = 4.1;
 constexpr double LargestLevel = 0.55;
 
-/// Receivers of the trial: blocks of neighbours, whose counts are stored together. Few large groups would be dearer to trust than to trace: neighbours err
-/// alike.
+/// Receivers of the trial: blocks of neighbours, whose counts are stored together. Few large groups
+/// would be dearer to trust than to trace: neighbours err alike.
 constexpr std::size_t MaxTrialBlocks = 256;
 
-/// An RMS over few receivers scatters, and a cell is split when one of nine is too large: a trial finds more clusters than the whole. Of the scenes measured
-/// 1.6 to 1.8 times as many.
+/// An RMS over few receivers scatters, and a cell is split when one of nine is too large: a trial
+/// finds more clusters than the whole. Of the scenes measured 1.6 to 1.8 times as many.
 constexpr double TrialExcess = 1.65;
 
 /// Every n-th group of neighbours.
@@ -62,24 +65,28 @@ Receivers trial_receivers(const Receivers& receivers) {
 } // namespace
 
 std::uint64_t scene_bytes(const SceneSizes& sizes) {
-    const std::uint64_t per_triangle = BytesPerTriangle + (sizes.has_beams ? BeamBytesPerTriangle : 0);
+    const std::uint64_t per_triangle =
+        BytesPerTriangle + (sizes.has_beams ? BeamBytesPerTriangle : 0);
     return ProgramBytes + sizes.num_vertices * BytesPerVertex + sizes.num_triangles * per_triangle +
            sizes.num_receivers * BytesPerReceiver;
 }
 
-std::uint64_t peak_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes, std::uint64_t column_bytes) {
+std::uint64_t peak_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes,
+                         std::uint64_t column_bytes) {
     const auto columns = static_cast<double>(column_bytes);
     const std::uint64_t scene = scene_bytes(sizes);
     const std::uint64_t tracing = scene + plane_bytes + column_bytes;
-    const std::uint64_t joining = scene + static_cast<std::uint64_t>((1.0 + JoinedPerColumn) * columns);
-    const std::uint64_t saving =
-        scene_bytes(
-            {.num_vertices = sizes.num_vertices, .num_triangles = 0, .num_receivers = sizes.num_receivers}) +
-        static_cast<std::uint64_t>(SavedPerColumn * columns);
+    const std::uint64_t joining =
+        scene + static_cast<std::uint64_t>((1.0 + JoinedPerColumn) * columns);
+    const std::uint64_t saving = scene_bytes({.num_vertices = sizes.num_vertices,
+                                              .num_triangles = 0,
+                                              .num_receivers = sizes.num_receivers}) +
+                                 static_cast<std::uint64_t>(SavedPerColumn * columns);
     return std::max({tracing, joining, saving});
 }
 
-std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes, std::uint64_t max_bytes) {
+std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes,
+                               std::uint64_t max_bytes) {
     std::uint64_t low = 0;
     std::uint64_t high = max_bytes;
     while (low < high) {
@@ -92,7 +99,8 @@ std::uint64_t max_column_bytes(const SceneSizes& sizes, std::uint64_t plane_byte
     return low;
 }
 
-std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes, std::uint64_t max_bytes) {
+std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
+                               std::uint64_t max_bytes) {
     SceneSizes without_beams = sizes;
     without_beams.has_beams = false;
     SceneSizes without_triangles = without_beams;
@@ -104,8 +112,9 @@ std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_byt
                             per_column * columns;
         return std::max(0.0, static_cast<double>(max_bytes) - used) / per_byte;
     };
-    return static_cast<std::uint64_t>(std::min(left(without_beams, JoinedPerColumn, JoinedPerGlossyByte),
-                                               left(without_triangles, SavedPerColumn, SavedPerGlossyByte)));
+    return static_cast<std::uint64_t>(
+        std::min(left(without_beams, JoinedPerColumn, JoinedPerGlossyByte),
+                 left(without_triangles, SavedPerColumn, SavedPerGlossyByte)));
 }
 
 std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes) {
@@ -114,20 +123,24 @@ std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_byte
     return std::clamp(left / 4, 16 * MiB, PrecomputeOptions{}.plane_bytes);
 }
 
-MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receivers, const Blockers& blockers,
-                               const PrecomputeOptions& options, std::uint64_t max_bytes) {
+MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receivers,
+                               const Blockers& blockers, const PrecomputeOptions& options,
+                               std::uint64_t max_bytes) {
     const Receivers trial = trial_receivers(receivers);
     PrecomputeOptions trial_options = options;
     if (options.epsilon) {
         // The same RMS for fewer receivers.
         trial_options.epsilon = {};
-        trial_options.tolerance = *options.epsilon * std::sqrt(static_cast<float>(receivers.size()));
+        trial_options.tolerance =
+            *options.epsilon * std::sqrt(static_cast<float>(receivers.size()));
     }
     trial_options.checkpoint = nullptr;
     trial_options.on_progress = {};
-    trial_options.column_scale = static_cast<double>(receivers.size()) / static_cast<double>(trial.size());
+    trial_options.column_scale =
+        static_cast<double>(receivers.size()) / static_cast<double>(trial.size());
     // A limit that is not one cannot be scaled.
-    const double most = static_cast<double>(max_column_bytes(sizes, options.plane_bytes, max_bytes));
+    const double most =
+        static_cast<double>(max_column_bytes(sizes, options.plane_bytes, max_bytes));
     trial_options.max_column_bytes = static_cast<std::uint64_t>(std::min(TrialExcess * most, 1e18));
     PrecomputeStatistics statistics;
     MemoryEstimate estimate;
@@ -145,9 +158,10 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     const double largest_level = DirectionsPerCluster * LargestLevel *
                                  static_cast<double>(estimate.num_clusters) *
                                  static_cast<double>(receivers.size()) / 8.0;
-    estimate.plane_bytes = !estimate.is_at_least && largest_level < static_cast<double>(options.plane_bytes)
-                               ? static_cast<std::uint64_t>(largest_level)
-                               : options.plane_bytes;
+    estimate.plane_bytes =
+        !estimate.is_at_least && largest_level < static_cast<double>(options.plane_bytes)
+            ? static_cast<std::uint64_t>(largest_level)
+            : options.plane_bytes;
     estimate.peak_bytes = peak_bytes(sizes, estimate.plane_bytes, estimate.column_bytes);
     return estimate;
 }

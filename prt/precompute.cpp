@@ -29,8 +29,9 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
     require(options.face_resolution >= 1 && options.face_resolution <= (1u << MaxLevel),
             fmt::format("expected a face resolution from 1 to {}, got {}", 1u << MaxLevel,
                         options.face_resolution));
-    require(options.min_level <= MaxLevel,
-            fmt::format("expected a minimum depth from 0 to {}, got {}", MaxLevel, options.min_level));
+    require(
+        options.min_level <= MaxLevel,
+        fmt::format("expected a minimum depth from 0 to {}, got {}", MaxLevel, options.min_level));
     require(std::isfinite(options.bias) && options.bias >= 0.0f,
             fmt::format("expected a bias >= 0, got {}", options.bias));
 }
@@ -41,8 +42,8 @@ TooManyClusters::TooManyClusters(std::uint64_t clusters, std::uint64_t bytes)
     : std::runtime_error(fmt::format("too many clusters: {} take {} bytes", clusters, bytes)),
       num_clusters(clusters), column_bytes(bytes) {}
 
-Transfer precompute(const Receivers& receivers, const Blockers& blockers, const PrecomputeOptions& options,
-                    PrecomputeStatistics* statistics) {
+Transfer precompute(const Receivers& receivers, const Blockers& blockers,
+                    const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
     check(receivers, options);
     const auto start = std::chrono::steady_clock::now();
     PrecomputeStatistics local;

@@ -8,7 +8,8 @@
 
 namespace relumine::prt {
 
-/// Turns parts of stages into one fraction that never falls. All calls but start_stage() may come from any thread.
+/// Turns parts of stages into one fraction that never falls. All calls but start_stage() may come
+/// from any thread.
 class Progress {
 public:
     /// Either argument may be empty.

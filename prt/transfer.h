@@ -15,21 +15,29 @@
 
 namespace relumine::prt {
 
-/// Light transfer of a set of receivers. The diffuse part is for albedo 1, colour is a factor applied when the light is known:
-/// T_C(x) = c(x, C)/16 * max(dot(n(x), w), 0) / pi, unit 1/sr [JN, Eqs. 2 and 10]. Immutable once made.
+/// Light transfer of a set of receivers. The diffuse part is for albedo 1, colour is a factor
+/// applied when the light is known: T_C(x) = c(x, C)/16 * max(dot(n(x), w), 0) / pi, unit 1/sr [JN,
+/// Eqs. 2 and 10]. Immutable once made.
 struct Transfer {
-    Quadtree quadtree;                         ///< its leaves are the clusters
-    std::vector<std::uint32_t> order;          ///< [num_receivers] place in spatial order -> receiver index
-    std::vector<glm::vec3> normals;            ///< [num_receivers] by place, unit or zero
-    VisibleCounts counts;                      ///< by place
-    std::vector<Surface> surfaces = {};        ///< [num_receivers] by place; or empty: Lambert, albedo 1
-    std::optional<GlossyTransfer> glossy = {}; ///< what depends on the view; only with surfaces
+    /// Its leaves are the clusters
+    Quadtree quadtree;
+    /// [num_receivers] place in spatial order -> receiver index
+    std::vector<std::uint32_t> order;
+    /// [num_receivers] by place, unit or zero
+    std::vector<glm::vec3> normals;
+    /// By place
+    VisibleCounts counts;
+    /// [num_receivers] by place; or empty: Lambert, albedo 1
+    std::vector<Surface> surfaces = {};
+    /// What depends on the view; only with surfaces
+    std::optional<GlossyTransfer> glossy = {};
 
     [[nodiscard]] std::size_t num_receivers() const { return order.size(); }
     [[nodiscard]] std::size_t num_clusters() const { return quadtree.num_leaves(); }
 };
 
-/// Copies the receivers' surfaces, and for a glossy part their directions to the eye, into the transfer.
+/// Copies the receivers' surfaces, and for a glossy part their directions to the eye, into the
+/// transfer.
 void set_surfaces(Transfer& transfer, const Receivers& receivers);
 
 } // namespace relumine::prt

@@ -25,8 +25,9 @@ bool is_good(const glm::vec3& texel) {
     return good(texel.r) && good(texel.g) && good(texel.b);
 }
 
-/// Whether all values are surely good. As whole numbers, floats from 0 up are in their own order, and NaN and what is below zero are
-/// larger than all of them: one comparison that compilers turn into vectors. (-0 is good, but not surely.)
+/// Whether all values are surely good. As whole numbers, floats from 0 up are in their own order,
+/// and NaN and what is below zero are larger than all of them: one comparison that compilers turn
+/// into vectors. (-0 is good, but not surely.)
 bool are_surely_good(std::span<const glm::vec3> texels) {
     const auto surely = [](float value) {
         return std::bit_cast<std::uint32_t>(value) <= std::bit_cast<std::uint32_t>(MaxRadiance);
@@ -44,16 +45,18 @@ void require_radiance(std::span<const glm::vec3> texels) {
     if (texels.size() <= Grain && are_surely_good(texels))
         return; // rows of an edit: not worth a task
     std::atomic<bool> good = true;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, texels.size(), Grain), [&](const auto& part) {
-        if (!are_surely_good(texels.subspan(part.begin(), part.size())))
-            good = false;
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, texels.size(), Grain),
+                      [&](const auto& part) {
+                          if (!are_surely_good(texels.subspan(part.begin(), part.size())))
+                              good = false;
+                      });
     if (good)
         return;
     const auto bad = std::find_if_not(texels.begin(), texels.end(), is_good);
     if (bad != texels.end())
-        throw std::invalid_argument(fmt::format("expected finite radiance from 0 to {}, got ({}, {}, {})",
-                                                MaxRadiance, bad->r, bad->g, bad->b));
+        throw std::invalid_argument(
+            fmt::format("expected finite radiance from 0 to {}, got ({}, {}, {})", MaxRadiance,
+                        bad->r, bad->g, bad->b));
 }
 
 BinnedEnvironment EnvironmentBinner::bin(cubemap::CubeMap map) {

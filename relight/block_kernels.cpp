@@ -36,7 +36,8 @@ struct Normals {
     [[nodiscard]] FloatVec cosine(const float* e) const {
         const Floats d;
         const auto along_z = hn::Mul(z, hn::Set(d, e[2]));
-        const auto n_dot_e = hn::MulAdd(x, hn::Set(d, e[0]), hn::MulAdd(y, hn::Set(d, e[1]), along_z));
+        const auto n_dot_e =
+            hn::MulAdd(x, hn::Set(d, e[0]), hn::MulAdd(y, hn::Set(d, e[1]), along_z));
         return hn::Max(n_dot_e, hn::Zero(d));
     }
 };
@@ -52,7 +53,8 @@ FloatVec load_counts(const std::uint8_t* counts) {
 struct Sum {
     FloatVec red, green, blue;
 
-    // Written out: g++ compiles an implicit constructor without the instruction set of the functions around it.
+    // Written out: g++ compiles an implicit constructor without the instruction set of the
+    // functions around it.
     Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
 
     /// c max(n.E, 0)
@@ -108,7 +110,8 @@ std::size_t first_float(std::uint64_t bits) {
     return static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride;
 }
 
-/// The mixed clusters of a block and word. `counts` and `vectors` begin at the word's first entry and cluster.
+/// The mixed clusters of a block and word. `counts` and `vectors` begin at the word's first entry
+/// and cluster.
 struct MixedWord {
     std::uint64_t clusters;
     const std::uint8_t* counts;
@@ -121,7 +124,8 @@ void sum_clamped(const MixedWord& word, const float* vectors, WordSum& result) {
         const Normals n(word.normals, lane);
         Sum sum;
         const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.clusters; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
+        for (std::uint64_t bits = word.clusters; bits != 0;
+             bits &= bits - 1, counts += prt::BlockSize)
             sum.add_clamped(load_counts(counts), n, vectors + first_float(bits));
         sum.store(result, lane);
     }
@@ -132,21 +136,23 @@ void sum_unclamped(const MixedWord& word, const float* vectors, WordSum& result)
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
         VectorSum sum;
         const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.clusters; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
+        for (std::uint64_t bits = word.clusters; bits != 0;
+             bits &= bits - 1, counts += prt::BlockSize)
             sum.add(load_counts(counts), vectors + first_float(bits));
         sum.on(Normals(word.normals, lane)).store(result, lane);
     }
 }
 
 /// sum_clamped() with two sets of vectors at once, which differ in `changed` clusters only.
-void sum_clamped_twice(const MixedWord& word, std::uint64_t changed, const float* before, const float* after,
-                       WordSum& result_before, WordSum& result_after) {
+void sum_clamped_twice(const MixedWord& word, std::uint64_t changed, const float* before,
+                       const float* after, WordSum& result_before, WordSum& result_after) {
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
         const Normals n(word.normals, lane);
         Sum sum_before;
         Sum sum_after;
         const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.clusters; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
+        for (std::uint64_t bits = word.clusters; bits != 0;
+             bits &= bits - 1, counts += prt::BlockSize) {
             const auto count = load_counts(counts);
             const float* e = before + first_float(bits);
             const auto red = n.cosine(e), green = n.cosine(e + 3), blue = n.cosine(e + 6);
@@ -174,7 +180,8 @@ void add_difference(const WordSum& before, const WordSum& after, BlockLight& lig
                 static_cast<double>(after[channel][i]) - static_cast<double>(before[channel][i]);
 }
 
-/// Adds the clusters of the set bits, one difference of prefix sums for each run of them; `prefix` begins at the word's first cluster.
+/// Adds the clusters of the set bits, one difference of prefix sums for each run of them; `prefix`
+/// begins at the word's first cluster.
 void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
     const hn::CappedTag<double, ClusterLights::Stride - 1> d;
     for (std::size_t lane = 0; lane < ClusterLights::Stride - 1; lane += hn::Lanes(d)) {
@@ -185,9 +192,10 @@ void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
             rest += rest & (~rest + 1); // the run carries into the zero above it, if there is one
             const std::size_t end = rest == 0 ? 64 * ClusterLights::Stride : first_float(rest);
             rest &= bits;
-            lanes = hn::Add(lanes,
-                            hn::Sub(hn::LoadU(d, prefix + end + lane), hn::LoadU(d, prefix + first + lane)));
-            last += prefix[end + ClusterLights::Stride - 1] - prefix[first + ClusterLights::Stride - 1];
+            lanes = hn::Add(lanes, hn::Sub(hn::LoadU(d, prefix + end + lane),
+                                           hn::LoadU(d, prefix + first + lane)));
+            last +=
+                prefix[end + ClusterLights::Stride - 1] - prefix[first + ClusterLights::Stride - 1];
         }
         hn::StoreU(lanes, d, sum + lane);
         if (lane == 0)
@@ -195,8 +203,8 @@ void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
     }
 }
 
-void block_radiance(const BlockNormals& normals, const BlockLight& light, const TracedRadiance* traced,
-                    BlockRadiance& radiance) {
+void block_radiance(const BlockNormals& normals, const BlockLight& light,
+                    const TracedRadiance* traced, BlockRadiance& radiance) {
     const hn::CappedTag<double, prt::BlockSize> d;
     const hn::Rebind<float, decltype(d)> floats;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
@@ -206,11 +214,13 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light, const 
         for (std::size_t channel = 0; channel < 3; ++channel) {
             const double* e = light.visible.data() + 3 * channel;
             const auto along_z = hn::Mul(nz, hn::Set(d, e[2]));
-            const auto n_dot_e = hn::MulAdd(nx, hn::Set(d, e[0]), hn::MulAdd(ny, hn::Set(d, e[1]), along_z));
+            const auto n_dot_e =
+                hn::MulAdd(nx, hn::Set(d, e[0]), hn::MulAdd(ny, hn::Set(d, e[1]), along_z));
             const auto mixed = hn::LoadU(d, light.mixed[channel].data() + lane);
             // A whole cluster counts 16. Sums of nothing may round to a hair below zero.
-            auto sum = hn::Max(hn::Zero(d),
-                               hn::MulAdd(hn::Set(d, static_cast<double>(prt::FullCount)), n_dot_e, mixed));
+            auto sum =
+                hn::Max(hn::Zero(d), hn::MulAdd(hn::Set(d, static_cast<double>(prt::FullCount)),
+                                                n_dot_e, mixed));
             if (traced != nullptr)
                 sum = hn::Add(sum, hn::LoadU(d, traced->channels[channel].data() + lane));
             hn::StoreU(hn::DemoteTo(floats, sum), floats, radiance.channels[channel].data() + lane);
@@ -227,7 +237,8 @@ void for_blocks(std::uint64_t bits, std::size_t begin, std::size_t word, const V
     }
 }
 
-void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights, BlockLight* light) {
+void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
     const std::size_t end = counts.tile_begin(tile + 1);
@@ -238,7 +249,8 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
         const float* vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride;
         const double* prefix = lights.prefix.data() + w * 64 * ClusterLights::Stride;
         const auto mixed = [&](std::size_t block, std::size_t word) {
-            return MixedWord{counts.mixed[word], counts.mixed_counts(word, 0), scene.normals[block]};
+            return MixedWord{counts.mixed[word], counts.mixed_counts(word, 0),
+                             scene.normals[block]};
         };
         for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
             add_runs(counts.visible[word], prefix, light[block].visible.data());
@@ -263,7 +275,8 @@ public:
         for (; clusters != 0; clusters &= clusters - 1) {
             const std::size_t first = first_float(clusters);
             for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
-                sum_[i] += static_cast<double>(after[first + i]) - static_cast<double>(before[first + i]);
+                sum_[i] +=
+                    static_cast<double>(after[first + i]) - static_cast<double>(before[first + i]);
         }
     }
 
@@ -276,8 +289,9 @@ private:
     std::array<double, ClusterLights::Stride> sum_{};
 };
 
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
-                          const float* all_before, const float* all_after, BlockLight* light) {
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
+                          std::span<const ChangedWord> changes, const float* all_before,
+                          const float* all_after, BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
     std::uint64_t touched = 0;
@@ -286,7 +300,8 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<c
         const std::size_t first_word = counts.word(begin, change.word);
         const float* before = all_before + std::size_t{change.word} * 64 * ClusterLights::Stride;
         const float* after = all_after + std::size_t{change.word} * 64 * ClusterLights::Stride;
-        // Most blocks that see any of the changed clusters whole see all of them: neighbours in the sky.
+        // Most blocks that see any of the changed clusters whole see all of them: neighbours in the
+        // sky.
         const VectorDifference all(change.clusters, before, after);
         for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
             const std::uint64_t seen = counts.visible[word] & change.clusters;
@@ -298,22 +313,24 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<c
             else
                 VectorDifference(seen, before, after).add_to(light[block].visible);
         });
-        for_blocks(
-            blocks.clamped | blocks.unclamped, begin, first_word, [&](std::size_t block, std::size_t word) {
-                if ((counts.mixed[word] & change.clusters) == 0)
-                    return;
-                touched |= std::uint64_t{1} << (block - begin);
-                const MixedWord mixed{counts.mixed[word], counts.mixed_counts(word, 0), scene.normals[block]};
-                WordSum sum_before;
-                WordSum sum_after;
-                if ((blocks.clamped >> (block - begin) & 1u) != 0) {
-                    sum_clamped_twice(mixed, change.clusters, before, after, sum_before, sum_after);
-                } else {
-                    sum_unclamped(mixed, before, sum_before);
-                    sum_unclamped(mixed, after, sum_after);
-                }
-                add_difference(sum_before, sum_after, light[block]);
-            });
+        for_blocks(blocks.clamped | blocks.unclamped, begin, first_word,
+                   [&](std::size_t block, std::size_t word) {
+                       if ((counts.mixed[word] & change.clusters) == 0)
+                           return;
+                       touched |= std::uint64_t{1} << (block - begin);
+                       const MixedWord mixed{counts.mixed[word], counts.mixed_counts(word, 0),
+                                             scene.normals[block]};
+                       WordSum sum_before;
+                       WordSum sum_after;
+                       if ((blocks.clamped >> (block - begin) & 1u) != 0) {
+                           sum_clamped_twice(mixed, change.clusters, before, after, sum_before,
+                                             sum_after);
+                       } else {
+                           sum_unclamped(mixed, before, sum_before);
+                           sum_unclamped(mixed, after, sum_after);
+                       }
+                       add_difference(sum_before, sum_after, light[block]);
+                   });
     }
     return touched;
 }
@@ -346,8 +363,8 @@ void ClusterLights::sum_prefix() {
         prefix[i + Stride] = prefix[i] + static_cast<double>(vectors[i]);
 }
 
-void block_radiance(const BlockNormals& normals, const BlockLight& light, const TracedRadiance* traced,
-                    BlockRadiance& radiance) {
+void block_radiance(const BlockNormals& normals, const BlockLight& light,
+                    const TracedRadiance* traced, BlockRadiance& radiance) {
     HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, traced, radiance);
 }
 
@@ -356,10 +373,11 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
     HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data());
 }
 
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
-                          std::span<const float> before, std::span<const float> after,
-                          std::span<BlockLight> light) {
-    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, before.data(), after.data(), light.data());
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
+                          std::span<const ChangedWord> changes, std::span<const float> before,
+                          std::span<const float> after, std::span<BlockLight> light) {
+    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, before.data(), after.data(),
+                                             light.data());
 }
 
 } // namespace relumine::relight

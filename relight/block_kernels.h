@@ -1,4 +1,5 @@
-// The inner loops of relighting: clusters' light times visible counts, 16 receivers at a time. Vectorised with run-time dispatch.
+// The inner loops of relighting: clusters' light times visible counts, 16 receivers at a time.
+// Vectorised with run-time dispatch.
 #pragma once
 
 #include <array>
@@ -16,12 +17,15 @@
 
 namespace relumine::relight {
 
-/// Light of the clusters as the kernels read it: per cluster the red, green and blue vector irradiance over 16 pi, rounded to
-/// float. Full sums and updates use the very same rounded numbers.
+/// Light of the clusters as the kernels read it: per cluster the red, green and blue vector
+/// irradiance over 16 pi, rounded to float. Full sums and updates use the very same rounded
+/// numbers.
 struct ClusterLights {
     static constexpr std::size_t Stride = 9;
-    std::vector<float> vectors; ///< [num_clusters * 9] red x y z, green x y z, blue x y z
-    std::vector<double> prefix; ///< [(num_clusters + 1) * 9] sums of `vectors` over the clusters before each
+    /// [num_clusters * 9] red x y z, green x y z, blue x y z
+    std::vector<float> vectors;
+    /// [(num_clusters + 1) * 9] sums of `vectors` over the clusters before each
+    std::vector<double> prefix;
 
     explicit ClusterLights(std::size_t num_clusters);
     void set(std::size_t cluster, const VectorIrradiance& irradiance);
@@ -29,18 +33,23 @@ struct ClusterLights {
     void sum_prefix();
 };
 
-/// What a block of 16 receivers has received, in two parts: clusters that all 16 see whole add up to one vector; those they see in part add
-/// up per receiver. The sums are of float sums over 64 clusters each, taken in double. An update takes such a float sum away and adds the
-/// new one, so nothing remains of a light that is gone, not even its rounding.
+/// What a block of 16 receivers has received, in two parts: clusters that all 16 see whole add up
+/// to one vector; those they see in part add up per receiver. The sums are of float sums over 64
+/// clusters each, taken in double. An update takes such a float sum away and adds the new one, so
+/// nothing remains of a light that is gone, not even its rounding.
 struct alignas(64) BlockLight {
-    std::array<double, ClusterLights::Stride> visible{};       ///< vector irradiance over 16 pi
-    std::array<std::array<double, prt::BlockSize>, 3> mixed{}; ///< radiance [channel][receiver]
+    /// Vector irradiance over 16 pi
+    std::array<double, ClusterLights::Stride> visible{};
+    /// Radiance [channel][receiver]
+    std::array<std::array<double, prt::BlockSize>, 3> mixed{};
 };
 
 /// Changed clusters among the 64 that share a word of VisibleCounts.
 struct ChangedWord {
-    std::uint32_t word = 0;     ///< cluster / 64
-    std::uint64_t clusters = 0; ///< bit cluster % 64
+    /// Cluster / 64
+    std::uint32_t word = 0;
+    /// Bit cluster % 64
+    std::uint64_t clusters = 0;
 };
 
 /// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver].
@@ -52,30 +61,36 @@ struct alignas(64) BlockRadiance {
     }
 };
 
-/// Radiance that a block's receivers have beside that of the clusters, for albedo 1, [channel][receiver].
+/// Radiance that a block's receivers have beside that of the clusters, for albedo 1,
+/// [channel][receiver].
 struct alignas(64) TracedRadiance {
     std::array<std::array<double, prt::BlockSize>, 3> channels{};
 };
 
-/// Both parts of a block's light put together, never below zero, and `traced` (null: nothing) added.
-void block_radiance(const BlockNormals& normals, const BlockLight& light, const TracedRadiance* traced,
-                    BlockRadiance& radiance);
+/// Both parts of a block's light put together, never below zero, and `traced` (null: nothing)
+/// added.
+void block_radiance(const BlockNormals& normals, const BlockLight& light,
+                    const TracedRadiance* traced, BlockRadiance& radiance);
 
 /// What a scene's blocks are lit by and with; sums of a tile's blocks need no more.
 struct BlockScene {
     const prt::VisibleCounts& counts;
-    std::span<const TileWord> words;       ///< tile_words()
-    std::span<const BlockNormals> normals; ///< [num_blocks]
+    /// tile_words()
+    std::span<const TileWord> words;
+    /// [num_blocks]
+    std::span<const BlockNormals> normals;
 };
 
-/// Lights the blocks of a tile from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi. `light` is that of all blocks.
+/// Lights the blocks of a tile from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi.
+/// `light` is that of all blocks.
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                 std::span<BlockLight> light);
 
-/// Adds what the changed clusters make of the tile's light [JN, Eq. 15]. `before` and `after` are ClusterLights::vectors of all clusters;
-/// they differ in no other cluster. Returns the blocks that see any of them, bit b for the tile's block b.
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, std::span<const ChangedWord> changes,
-                          std::span<const float> before, std::span<const float> after,
-                          std::span<BlockLight> light);
+/// Adds what the changed clusters make of the tile's light [JN, Eq. 15]. `before` and `after` are
+/// ClusterLights::vectors of all clusters; they differ in no other cluster. Returns the blocks that
+/// see any of them, bit b for the tile's block b.
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
+                          std::span<const ChangedWord> changes, std::span<const float> before,
+                          std::span<const float> after, std::span<BlockLight> light);
 
 } // namespace relumine::relight

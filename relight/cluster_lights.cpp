@@ -15,9 +15,11 @@ namespace {
 
 /// Range of texels along one axis that an interval meets, and which of them it covers whole.
 struct TexelRange {
-    std::uint32_t begin, end; ///< those it meets
+    /// Those it meets
+    std::uint32_t begin, end;
     std::uint32_t whole_begin,
-        whole_end; ///< those inside; empty (begin == end) for an interval within one texel
+        /// Those inside; empty (begin == end) for an interval within one texel
+        whole_end;
 };
 
 TexelRange texel_range(double low, double high) {
@@ -29,7 +31,8 @@ TexelRange texel_range(double low, double high) {
     return range;
 }
 
-/// Sums of L q, L q u and L q v, where q (u, v, 1) is a texel's solid angle times its direction in face coordinates.
+/// Sums of L q, L q u and L q v, where q (u, v, 1) is a texel's solid angle times its direction in
+/// face coordinates.
 struct FaceSums {
     glm::dvec3 one{0.0};
     glm::dvec3 u{0.0};
@@ -80,7 +83,8 @@ LightBinning::LightBinning(std::uint32_t face_resolution) : resolution_(face_res
         }
 }
 
-VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment, const prt::Cell& cell) const {
+VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
+                                   const prt::Cell& cell) const {
     const double r = resolution_;
     const double s0 = cell.x * cell.size() * r; // in texels
     const double t0 = cell.y * cell.size() * r;
@@ -98,15 +102,17 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment, const pr
         const double part_t1 = std::min(t1, y + 1.0) / r;
         const double u = part_s0 + part_s1 - 1.0;
         const double v = part_t0 + part_t1 - 1.0;
-        const double weight =
-            cubemap::solid_angle(part_s0, part_t0, part_s1, part_t1) / std::sqrt(u * u + v * v + 1.0);
+        const double weight = cubemap::solid_angle(part_s0, part_t0, part_s1, part_t1) /
+                              std::sqrt(u * u + v * v + 1.0);
         sums.add(glm::dvec3(environment.at(cell.face, x, y)) * weight, u, v);
     };
     // The texels around a rectangle of whole ones: all of them where there is none.
-    const bool any_whole = columns.whole_begin < columns.whole_end && rows.whole_begin < rows.whole_end;
+    const bool any_whole =
+        columns.whole_begin < columns.whole_end && rows.whole_begin < rows.whole_end;
     for (std::uint32_t y = rows.begin; y < rows.end; ++y) {
         const bool whole_row = any_whole && y >= rows.whole_begin && y < rows.whole_end;
-        for (std::uint32_t x = columns.begin; x < (whole_row ? columns.whole_begin : columns.end); ++x)
+        for (std::uint32_t x = columns.begin; x < (whole_row ? columns.whole_begin : columns.end);
+             ++x)
             add_part(x, y);
         for (std::uint32_t x = columns.whole_end; whole_row && x < columns.end; ++x)
             add_part(x, y);
@@ -114,8 +120,9 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment, const pr
     if (any_whole) {
         const TexelSums whole = texel_sums(
             &environment.at(cell.face, columns.whole_begin, rows.whole_begin),
-            weights_.data() + std::size_t{rows.whole_begin} * resolution_ + columns.whole_begin, resolution_,
-            columns.whole_end - columns.whole_begin, rows.whole_end - rows.whole_begin);
+            weights_.data() + std::size_t{rows.whole_begin} * resolution_ + columns.whole_begin,
+            resolution_, columns.whole_end - columns.whole_begin,
+            rows.whole_end - rows.whole_begin);
         sums.one += whole.one;
         sums.u += whole.x * step + whole.one * ((columns.whole_begin + 0.5) * step - 1.0);
         sums.v += whole.y * step + whole.one * ((rows.whole_begin + 0.5) * step - 1.0);

@@ -14,8 +14,9 @@
 
 namespace relumine::relight {
 
-/// Vector irradiance of a part of the environment, per colour channel: the sum of L_j dw_j w_j over its lights j, unit of radiance
-/// times sr. A surface of normal n that sees all of it, and nothing of it from behind, has irradiance dot(n, vector).
+/// Vector irradiance of a part of the environment, per colour channel: the sum of L_j dw_j w_j over
+/// its lights j, unit of radiance times sr. A surface of normal n that sees all of it, and nothing
+/// of it from behind, has irradiance dot(n, vector).
 struct VectorIrradiance {
     glm::dvec3 red{0.0};
     glm::dvec3 green{0.0};
@@ -25,7 +26,9 @@ struct VectorIrradiance {
     VectorIrradiance& operator-=(const VectorIrradiance& other);
     bool operator==(const VectorIrradiance&) const = default;
     /// The vector of the luminance (Rec. 709 weights).
-    [[nodiscard]] glm::dvec3 luminance() const { return 0.2126 * red + 0.7152 * green + 0.0722 * blue; }
+    [[nodiscard]] glm::dvec3 luminance() const {
+        return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
+    }
     /// Irradiance of a surface with this normal that sees all of it, never below zero.
     [[nodiscard]] glm::dvec3 on(const glm::vec3& normal) const {
         const glm::dvec3 n(normal);
@@ -35,18 +38,21 @@ struct VectorIrradiance {
     [[nodiscard]] double power() const { return glm::length(luminance()); }
 };
 
-/// Sums an environment's texels into cells. Keeps the texels' solid angles for one resolution, so that many sums are cheap.
-/// Differs from [JN, Eq. 8], where a cluster has one scalar L_C = sum of L_j: the vector keeps where inside the cluster the light
-/// comes from, at no cost when relighting, and lowers the error of bright small lights in large clusters.
+/// Sums an environment's texels into cells. Keeps the texels' solid angles for one resolution, so
+/// that many sums are cheap. Differs from [JN, Eq. 8], where a cluster has one scalar L_C = sum of
+/// L_j: the vector keeps where inside the cluster the light comes from, at no cost when relighting,
+/// and lowers the error of bright small lights in large clusters.
 class LightBinning {
 public:
     explicit LightBinning(std::uint32_t face_resolution);
 
     [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
 
-    /// Vector irradiance of one cell. A texel that the cell covers in part counts by the part's solid angle and
-    /// direction, so cells need not fit texels. Sums in double, in a fixed order. O(texels of the cell).
-    [[nodiscard]] VectorIrradiance sum(const cubemap::CubeMap& environment, const prt::Cell& cell) const;
+    /// Vector irradiance of one cell. A texel that the cell covers in part counts by the part's
+    /// solid angle and direction, so cells need not fit texels. Sums in double, in a fixed order.
+    /// O(texels of the cell).
+    [[nodiscard]] VectorIrradiance sum(const cubemap::CubeMap& environment,
+                                       const prt::Cell& cell) const;
 
     /// sum() of every cell; parallel.
     [[nodiscard]] std::vector<VectorIrradiance> sums(const cubemap::CubeMap& environment,
@@ -54,8 +60,8 @@ public:
 
 private:
     std::uint32_t resolution_;
-    std::vector<float>
-        weights_; ///< [R * R] solid angle over the length of (u, v, 1): L times this times (u, v, 1) is L dw w
+    /// [R * R] solid angle over the length of (u, v, 1): L times this times (u, v, 1) is L dw w
+    std::vector<float> weights_;
 };
 
 } // namespace relumine::relight

@@ -9,18 +9,21 @@ namespace relumine::relight {
 
 namespace {
 
-/// Texels whose centres lie in a cell; where there is none, the texel that the cell's centre lies in.
+/// Texels whose centres lie in a cell; where there is none, the texel that the cell's centre lies
+/// in.
 struct TexelSpan {
     std::uint32_t x0, y0, x1, y1;
 };
 
-std::pair<std::uint32_t, std::uint32_t> centres_between(double low, double high, std::uint32_t resolution) {
+std::pair<std::uint32_t, std::uint32_t> centres_between(double low, double high,
+                                                        std::uint32_t resolution) {
     const double r = resolution;
     const auto begin = static_cast<std::uint32_t>(std::ceil(low * r - 0.5));
     const auto end = static_cast<std::uint32_t>(std::ceil(high * r - 0.5));
     if (begin < end)
         return {begin, end};
-    const auto middle = std::min(static_cast<std::uint32_t>(0.5 * (low + high) * r), resolution - 1);
+    const auto middle =
+        std::min(static_cast<std::uint32_t>(0.5 * (low + high) * r), resolution - 1);
     return {middle, middle + 1};
 }
 
@@ -35,10 +38,12 @@ TexelSpan texels_of(const prt::Cell& cell, std::uint32_t resolution) {
 class Spreader {
 public:
     explicit Spreader(const cubemap::CubeMap& environment)
-        : environment_(environment), map_(environment.resolution), taken_(environment.texels.size()),
+        : environment_(environment), map_(environment.resolution),
+          taken_(environment.texels.size()),
           solid_angles_(cubemap::texel_solid_angles(environment.resolution)) {}
 
-    /// Adds `radiance`, which came from the cell, to its texels that are not taken yet, by their radiance.
+    /// Adds `radiance`, which came from the cell, to its texels that are not taken yet, by their
+    /// radiance.
     void spread(const prt::Cell& cell, const glm::dvec3& radiance, bool take) {
         if (radiance == glm::dvec3(0.0))
             return;
@@ -51,7 +56,8 @@ public:
         });
         for_each(cell.face, span, [&](std::size_t texel, double) {
             for (int channel = 0; channel < 3; ++channel) {
-                // A cell smaller than a texel may have its light from a texel whose centre is elsewhere.
+                // A cell smaller than a texel may have its light from a texel whose centre is
+                // elsewhere.
                 const double share =
                     power[channel] > 0.0
                         ? static_cast<double>(environment_.texels[texel][channel]) / power[channel]
@@ -92,7 +98,8 @@ private:
 
 } // namespace
 
-cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const std::uint32_t> receivers) {
+cubemap::CubeMap contribution_map(const Relighter& relighter,
+                                  std::span<const std::uint32_t> receivers) {
     const prt::Transfer& transfer = relighter.transfer();
     if (receivers.empty())
         throw std::invalid_argument("expected at least one receiver");
@@ -115,7 +122,8 @@ cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const st
         const glm::dvec3 normal = transfer.normals[place];
         for (std::size_t cluster = 0; cluster < cells.size(); ++cluster) {
             const double count = share * transfer.counts.count(place, cluster);
-            const float* e = relighter.cluster_lights().vectors.data() + cluster * ClusterLights::Stride;
+            const float* e =
+                relighter.cluster_lights().vectors.data() + cluster * ClusterLights::Stride;
             for (int channel = 0; channel < 3; ++channel, e += 3)
                 from_cluster[cluster][channel] +=
                     count * std::max(0.0, normal.x * static_cast<double>(e[0]) +
@@ -124,7 +132,8 @@ cubemap::CubeMap contribution_map(const Relighter& relighter, std::span<const st
         }
         const ShadowRays& rays = relighter.shadow_rays();
         for (std::size_t i = 0; i < sharp.size(); ++i)
-            from_sharp[i] += share * shadow_packets[i].radiance(rays.positions[receiver], normal, rays);
+            from_sharp[i] +=
+                share * shadow_packets[i].radiance(rays.positions[receiver], normal, rays);
     }
 
     Spreader spreader(relighter.environment());

@@ -26,12 +26,14 @@ static_assert(std::size_t{TileSize} * TileSize == prt::PacketSize);
 
 struct Tile {
     prt::DirectionPacket packet;
-    std::array<glm::dvec3, prt::PacketSize> power{}; ///< L dw
-    std::uint32_t lit = 0;                           ///< lanes with any light
+    /// L dw
+    std::array<glm::dvec3, prt::PacketSize> power{};
+    /// Lanes with any light
+    std::uint32_t lit = 0;
 };
 
-Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_angles, cubemap::Face face,
-             std::uint32_t x0, std::uint32_t y0) {
+Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_angles,
+             cubemap::Face face, std::uint32_t x0, std::uint32_t y0) {
     Tile tile;
     const std::uint32_t r = environment.resolution;
     tile.packet.num_directions = prt::PacketSize;
@@ -44,7 +46,8 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
         tile.packet.set(i, cubemap::texel_direction(face, inner_x, inner_y, r));
         if (x >= r || y >= r)
             continue;
-        tile.power[i] = glm::dvec3(environment.at(face, x, y)) * solid_angles[std::size_t{y} * r + x];
+        tile.power[i] =
+            glm::dvec3(environment.at(face, x, y)) * solid_angles[std::size_t{y} * r + x];
         tile.lit |= static_cast<std::uint32_t>(tile.power[i] != glm::dvec3(0.0)) << i;
     }
     return tile;
@@ -91,7 +94,8 @@ public:
 private:
     glm::vec3 normal_;
     glm::vec3 origin_;
-    glm::vec3 to_eye_{0.0f}; ///< below every horizon: no highlight
+    /// Below every horizon: no highlight
+    glm::vec3 to_eye_{0.0f};
     prt::Surface surface_;
 };
 
@@ -99,7 +103,8 @@ private:
 
 std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
                                        std::span<const std::uint32_t> receiver_indices,
-                                       const prt::Blockers& blockers, const cubemap::CubeMap& environment,
+                                       const prt::Blockers& blockers,
+                                       const cubemap::CubeMap& environment,
                                        const ExactOptions& options) {
     const std::uint32_t r = environment.resolution;
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(r);
@@ -110,7 +115,8 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
         exact.emplace_back(receivers, receiver, options.bias);
     std::mutex mutex;
     std::size_t rows_done = 0;
-    const std::size_t num_tasks = (receiver_indices.size() + ReceiversPerTask - 1) / ReceiversPerTask;
+    const std::size_t num_tasks =
+        (receiver_indices.size() + ReceiversPerTask - 1) / ReceiversPerTask;
     const std::size_t rows_per_task = cubemap::NumFaces * ((r + TileSize - 1) / TileSize);
 
     const auto report_row = [&] {
@@ -150,7 +156,8 @@ std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::
         count = num_receivers;
     std::vector<std::uint32_t> places(num_receivers);
     std::iota(places.begin(), places.end(), 0u);
-    // Fisher and Yates' shuffle of the first `count` places, by SplitMix64 (Steele, Lea, Flood 2014): the same on every system.
+    // Fisher and Yates' shuffle of the first `count` places, by SplitMix64 (Steele, Lea, Flood
+    // 2014): the same on every system.
     for (std::size_t i = 0; i < count; ++i) {
         std::uint64_t z = (seed += 0x9e3779b97f4a7c15);
         z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
@@ -165,8 +172,8 @@ std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::
     return places;
 }
 
-ErrorReport compare(std::span<const std::uint32_t> receiver_indices, std::span<const glm::dvec3> exact,
-                    std::span<const glm::vec3> relit) {
+ErrorReport compare(std::span<const std::uint32_t> receiver_indices,
+                    std::span<const glm::dvec3> exact, std::span<const glm::vec3> relit) {
     ErrorReport report;
     double error_squares = 0.0;
     double exact_squares = 0.0;

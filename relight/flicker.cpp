@@ -33,9 +33,11 @@ std::vector<double> luminances(std::span<const glm::dvec3> radiance, double expo
 
 void require_finite(std::span<const glm::dvec3> radiance, const char* what) {
     for (std::size_t i = 0; i < radiance.size(); ++i)
-        if (!std::isfinite(radiance[i].r) || !std::isfinite(radiance[i].g) || !std::isfinite(radiance[i].b))
-            throw std::invalid_argument(fmt::format("{}: expected finite radiance, got ({}, {}, {}) at {}",
-                                                    what, radiance[i].r, radiance[i].g, radiance[i].b, i));
+        if (!std::isfinite(radiance[i].r) || !std::isfinite(radiance[i].g) ||
+            !std::isfinite(radiance[i].b))
+            throw std::invalid_argument(
+                fmt::format("{}: expected finite radiance, got ({}, {}, {}) at {}", what,
+                            radiance[i].r, radiance[i].g, radiance[i].b, i));
 }
 
 double relative_l2(std::span<const glm::dvec3> frame, std::span<const glm::dvec3> reference) {
@@ -85,20 +87,25 @@ public:
     }
     [[nodiscard]] bool at_end() const { return at_end_; }
     /// Of the file that the last frame was in.
-    [[nodiscard]] std::string name() const { return file_ > 0 ? paths_[file_ - 1].string() : "no files"; }
+    [[nodiscard]] std::string name() const {
+        return file_ > 0 ? paths_[file_ - 1].string() : "no files";
+    }
 
 private:
     std::span<const std::filesystem::path> paths_;
     VectorArray array_;
-    std::size_t file_ = 0; ///< to read next
+    /// To read next
+    std::size_t file_ = 0;
     std::size_t frame_ = 0;
-    std::size_t num_frames_ = 0; ///< in array_
+    /// In array_
+    std::size_t num_frames_ = 0;
     bool at_end_ = false;
 };
 
 } // namespace
 
-void FlickerMeter::add_frame(std::span<const glm::dvec3> frame, std::span<const glm::dvec3> reference) {
+void FlickerMeter::add_frame(std::span<const glm::dvec3> frame,
+                             std::span<const glm::dvec3> reference) {
     const std::size_t wanted = report_.relative_l2.empty() ? reference.size() : last_.size();
     if (frame.size() != wanted || reference.size() != wanted)
         throw std::invalid_argument(
@@ -124,7 +131,8 @@ void FlickerMeter::add_frame(std::span<const glm::dvec3> frame, std::span<const 
     last_reference_ = std::move(now_reference);
 }
 
-void FlickerMeter::add_frame(std::span<const glm::vec3> frame, std::span<const glm::vec3> reference) {
+void FlickerMeter::add_frame(std::span<const glm::vec3> frame,
+                             std::span<const glm::vec3> reference) {
     add_frame(in_double(frame), in_double(reference));
 }
 
@@ -158,13 +166,14 @@ FlickerReport measure_flicker(std::span<const std::filesystem::path> frames,
         if (got.at_end() && wanted.at_end())
             break;
         if (got.at_end() || wanted.at_end())
-            throw std::runtime_error(fmt::format("{}: expected as many frames as the other animation, got {}",
-                                                 (got.at_end() ? got : wanted).name(), count));
+            throw std::runtime_error(
+                fmt::format("{}: expected as many frames as the other animation, got {}",
+                            (got.at_end() ? got : wanted).name(), count));
         try {
             meter.add_frame(frame, reference_frame);
         } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(
-                fmt::format("{}: frame {} against {}: {}", got.name(), count, wanted.name(), error.what()));
+            throw std::runtime_error(fmt::format("{}: frame {} against {}: {}", got.name(), count,
+                                                 wanted.name(), error.what()));
         }
         ++count;
     }
@@ -172,11 +181,15 @@ FlickerReport measure_flicker(std::span<const std::filesystem::path> frames,
 }
 
 std::string inconsistency_plot(std::span<const NamedReport> reports, const std::string& title) {
-    Plot plot{.title = title, .x_label = "frame", .y_label = "temporal inconsistency", .y_scale = Scale::Log};
+    Plot plot{.title = title,
+              .x_label = "frame",
+              .y_label = "temporal inconsistency",
+              .y_scale = Scale::Log};
     for (const NamedReport& named : reports) {
-        Plot::Series series{.name = fmt::format("{}: {:.2g}", named.name, named.report.mean_inconsistency),
-                            .x = {},
-                            .y = named.report.inconsistency};
+        Plot::Series series{
+            .name = fmt::format("{}: {:.2g}", named.name, named.report.mean_inconsistency),
+            .x = {},
+            .y = named.report.inconsistency};
         for (std::size_t t = 0; t < series.y.size(); ++t)
             series.x.push_back(static_cast<double>(t));
         plot.series.push_back(std::move(series));
@@ -187,10 +200,12 @@ std::string inconsistency_plot(std::span<const NamedReport> reports, const std::
 std::string light_positions_plot(const lights::FrameLights& lights, std::size_t first_frame,
                                  std::size_t num_frames, const std::string& title) {
     constexpr double Degrees = 180.0 * std::numbers::inv_pi;
-    Plot plot{.title = title, .x_label = "longitude (degrees, from +Z to +X)", .y_label = "latitude"};
+    Plot plot{
+        .title = title, .x_label = "longitude (degrees, from +Z to +X)", .y_label = "latitude"};
     const std::size_t end = std::min(first_frame + num_frames, lights.num_frames());
     for (std::size_t frame = first_frame; frame < end; ++frame) {
-        Plot::Series series{.name = fmt::format("frame {}", frame), .x = {}, .y = {}, .line = false};
+        Plot::Series series{
+            .name = fmt::format("frame {}", frame), .x = {}, .y = {}, .line = false};
         for (const lights::DistantLight& light : lights.at(frame)) {
             series.x.push_back(Degrees * std::atan2(light.direction.x, light.direction.z));
             series.y.push_back(Degrees * std::asin(std::clamp(light.direction.y, -1.0, 1.0)));

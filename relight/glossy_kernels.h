@@ -1,5 +1,5 @@
-// The inner loop of glossy relighting: light of cells times quantised transfer, 16 receivers at a time. Vectorised with run-time
-// dispatch.
+// The inner loop of glossy relighting: light of cells times quantised transfer, 16 receivers at a
+// time. Vectorised with run-time dispatch.
 #pragma once
 
 #include <array>
@@ -14,7 +14,8 @@ namespace relumine::relight {
 /// Radiance of a block's receivers through each lobe, colours not put in.
 using GlossyLight = std::array<BlockRadiance, prt::NumGlossyLobes>;
 
-/// Lights one block through one lobe [JN, Eq. 8]: sum over its cells of light times transfer. `light` as LightPyramid::light().
+/// Lights one block through one lobe [JN, Eq. 8]: sum over its cells of light times transfer.
+/// `light` as LightPyramid::light().
 void light_block(const prt::LobeCuts& cuts, std::size_t block, std::span<const float> light,
                  BlockRadiance& radiance);
 

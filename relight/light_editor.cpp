@@ -19,10 +19,12 @@ namespace relumine::relight {
 
 namespace {
 
-/// Receivers whose radiance one task copies: about 10 microseconds, ten times the cost of starting it.
+/// Receivers whose radiance one task copies: about 10 microseconds, ten times the cost of starting
+/// it.
 constexpr std::size_t CopyGrain = 8192;
 
-/// The tiles of 16 x 16 texels in which two maps of one resolution differ; NaN differs from everything.
+/// The tiles of 16 x 16 texels in which two maps of one resolution differ; NaN differs from
+/// everything.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
                           std::vector<cubemap::TexelRectangle>& tiles) {
     constexpr std::uint32_t TileSize = 16;
@@ -41,7 +43,8 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
             bool equal = true;
             for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
                 const glm::vec3* of_before = &before.at(face, x, row);
-                equal = std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
+                equal =
+                    std::equal(of_before, of_before + (tile.x1 - tile.x0), &after.at(face, x, row));
             }
             if (!equal)
                 of_row[i].push_back(tile);
@@ -51,10 +54,12 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
         tiles.insert(tiles.end(), some.begin(), some.end());
 }
 
-void require_radiance_in(const cubemap::CubeMap& map, std::span<const cubemap::TexelRectangle> rectangles) {
+void require_radiance_in(const cubemap::CubeMap& map,
+                         std::span<const cubemap::TexelRectangle> rectangles) {
     for (const cubemap::TexelRectangle& rectangle : rectangles)
         for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
-            require_radiance({&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
+            require_radiance(
+                {&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
 }
 
 /// Adds what of a rectangle is in none of the list yet.
@@ -66,7 +71,8 @@ void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t firs
             there.y0 >= rectangle.y1 || there.y1 <= rectangle.y0)
             continue;
         // Above and below as wide as it is, left and right between.
-        cubemap::TexelRectangle above = rectangle, below = rectangle, left = rectangle, right = rectangle;
+        cubemap::TexelRectangle above = rectangle, below = rectangle, left = rectangle,
+                                right = rectangle;
         above.y1 = left.y0 = right.y0 = std::max(rectangle.y0, there.y0);
         below.y0 = left.y1 = right.y1 = std::min(rectangle.y1, there.y1);
         left.x1 = std::max(rectangle.x0, there.x0);
@@ -79,9 +85,10 @@ void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t firs
     list.push_back(rectangle);
 }
 
-/// Where two strokes differ of which one goes on where the other ends, as when one is painted: the new piece, a little wider.
-std::optional<cubemap::LightLayer> added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b,
-                                               std::uint32_t resolution) {
+/// Where two strokes differ of which one goes on where the other ends, as when one is painted: the
+/// new piece, a little wider.
+std::optional<cubemap::LightLayer>
+added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uint32_t resolution) {
     const auto* from = std::get_if<cubemap::Stroke>(&a.region);
     const auto* to = std::get_if<cubemap::Stroke>(&b.region);
     if (!from || !to || a.on != b.on || a.gain_ev != b.gain_ev || a.effect != b.effect ||
@@ -91,8 +98,9 @@ std::optional<cubemap::LightLayer> added_piece(const cubemap::LightLayer& a, con
         std::swap(from, to);
     if (!std::equal(from->points.begin(), from->points.end(), to->points.begin()))
         return std::nullopt;
-    // A texel at the rim of both is fitted to the distance at its corners, so a piece counts that comes near them without covering
-    // them: up to three times the chord from a texel's centre to its corner, one of which touched_texels() adds.
+    // A texel at the rim of both is fitted to the distance at its corners, so a piece counts that
+    // comes near them without covering them: up to three times the chord from a texel's centre to
+    // its corner, one of which touched_texels() adds.
     constexpr double Radian = 180.0 / std::numbers::pi;
     const double margin = 2.0 * 1.5 / resolution;
     const double chord = 2.0 * std::sin(0.5 * to->radius_degrees / Radian) + margin;
@@ -172,8 +180,8 @@ RelightTimes LightEditor::relight_all() {
 }
 
 void LightEditor::turn_base() {
-    turned_base_ =
-        rotation_degrees_ == 0.0 || !base_ ? cubemap::CubeMap() : cubemap::rotated(*base_, rotation_degrees_);
+    turned_base_ = rotation_degrees_ == 0.0 || !base_ ? cubemap::CubeMap()
+                                                      : cubemap::rotated(*base_, rotation_degrees_);
 }
 
 void LightEditor::turn(std::span<const cubemap::LightLayer> layers,
@@ -213,10 +221,12 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         std::swap(turned_layers_, next_layers_);
         return {};
     }
-    // Layers at the same place in both lists that are equal change nothing; all others dirty what they cover, before and after. A layer that
-    // moved within the list is compared with its new neighbour, and so dirtied.
+    // Layers at the same place in both lists that are equal change nothing; all others dirty what
+    // they cover, before and after. A layer that moved within the list is compared with its new
+    // neighbour, and so dirtied.
     const auto add = [&](const cubemap::LightLayer& layer) {
-        for (const cubemap::TexelRectangle& touched : cubemap::touched_texels(layer, base_->resolution))
+        for (const cubemap::TexelRectangle& touched :
+             cubemap::touched_texels(layer, base_->resolution))
             add_merged(touched, touched_);
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
@@ -225,7 +235,8 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         if (both && turned_layers_[i] == next_layers_[i])
             continue;
         if (const auto piece =
-                both ? added_piece(turned_layers_[i], next_layers_[i], base_->resolution) : std::nullopt) {
+                both ? added_piece(turned_layers_[i], next_layers_[i], base_->resolution)
+                     : std::nullopt) {
             add(*piece);
             continue;
         }
@@ -236,7 +247,8 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         if (i < next_layers_.size() && !same_place)
             add(next_layers_[i]);
     }
-    // Rectangles that do not grow by it were made one; what of others overlaps is done once all the same.
+    // Rectangles that do not grow by it were made one; what of others overlaps is done once all the
+    // same.
     for (const cubemap::TexelRectangle& touched : touched_)
         append_uncovered(touched, 0, dirty_);
     const UpdateReport report = update_dirty(turned_base(), next_layers_);
@@ -248,15 +260,16 @@ UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,
                                        std::span<const cubemap::LightLayer> layers) {
     if (dirty_.empty())
         return {};
-    const UpdateReport report = relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
-        cubemap::composite(base, layers, dirty_, environment);
-        try {
-            require_radiance_in(environment, dirty_);
-        } catch (const std::invalid_argument&) { // layers too bright together
-            cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
-            throw;
-        }
-    });
+    const UpdateReport report =
+        relighter_.update_regions(dirty_, [&](cubemap::CubeMap& environment) {
+            cubemap::composite(base, layers, dirty_, environment);
+            try {
+                require_radiance_in(environment, dirty_);
+            } catch (const std::invalid_argument&) { // layers too bright together
+                cubemap::composite(turned_base(), turned_layers_, dirty_, environment);
+                throw;
+            }
+        });
     publish();
     return report;
 }
@@ -333,11 +346,12 @@ UpdateReport LightEditor::go_to(std::size_t mark) {
 void LightEditor::publish() {
     const std::span<const glm::vec3> radiance = relighter_.radiance();
     back_.resize(radiance.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), CopyGrain), [&](const auto& part) {
-        std::copy(radiance.begin() + static_cast<std::ptrdiff_t>(part.begin()),
-                  radiance.begin() + static_cast<std::ptrdiff_t>(part.end()),
-                  back_.begin() + static_cast<std::ptrdiff_t>(part.begin()));
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), CopyGrain),
+                      [&](const auto& part) {
+                          std::copy(radiance.begin() + static_cast<std::ptrdiff_t>(part.begin()),
+                                    radiance.begin() + static_cast<std::ptrdiff_t>(part.end()),
+                                    back_.begin() + static_cast<std::ptrdiff_t>(part.begin()));
+                      });
     const std::unique_lock lock(published_mutex_);
     std::swap(published_, back_);
 }

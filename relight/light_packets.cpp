@@ -42,8 +42,8 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
 }
 
 /// Which of the packet's lights reach the receiver.
-std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position, const glm::vec3& normal,
-                                    const ShadowRays& rays) {
+std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position,
+                                    const glm::vec3& normal, const ShadowRays& rays) {
     const std::uint32_t used = (1u << packet.directions.num_directions) - 1;
     return prt::lit_lanes(*rays.blockers, prt::ray_origin(position, normal, rays.bias), normal,
                           packet.directions, used);
@@ -55,11 +55,13 @@ glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& no
     for (const Packet& packet : packets_)
         for (std::uint32_t lights = visible(packet, position, normal, rays); lights != 0;
              lights &= lights - 1)
-            irradiance += packet.irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(normal);
+            irradiance +=
+                packet.irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(normal);
     return irradiance / std::numbers::pi;
 }
 
-void LightPackets::light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
+void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
+                               std::span<const glm::vec3> positions,
                                std::span<const glm::vec3> normals, const ShadowRays& rays,
                                std::span<prt::Lobes<glm::dvec3>> sums) const {
     std::fill(sums.begin(), sums.end(), prt::Lobes<glm::dvec3>());
@@ -67,8 +69,8 @@ void LightPackets::light_block(const prt::BlockSurfaces& surfaces, std::span<con
         // By light, as the lobes are evaluated for a block at a time.
         std::array<std::uint32_t, prt::PacketSize> reached{};
         for (std::size_t i = 0; i < sums.size(); ++i)
-            for (std::uint32_t lights = visible(packet, positions[i], normals[i], rays); lights != 0;
-                 lights &= lights - 1)
+            for (std::uint32_t lights = visible(packet, positions[i], normals[i], rays);
+                 lights != 0; lights &= lights - 1)
                 reached[static_cast<std::size_t>(std::countr_zero(lights))] |= 1u << i;
         for (std::size_t light = 0; light < packet.directions.num_directions; ++light) {
             if (reached[light] == 0)
@@ -77,7 +79,8 @@ void LightPackets::light_block(const prt::BlockSurfaces& surfaces, std::span<con
             std::array<prt::BlockSurfaces::Floats, prt::NumGlossyLobes> lobes;
             prt::evaluate_lobes(surfaces, {d.x[light], d.y[light], d.z[light]}, lobes);
             const glm::dvec3& strength = packet.strength[light];
-            for (std::uint32_t receivers = reached[light]; receivers != 0; receivers &= receivers - 1) {
+            for (std::uint32_t receivers = reached[light]; receivers != 0;
+                 receivers &= receivers - 1) {
                 const auto i = static_cast<std::size_t>(std::countr_zero(receivers));
                 prt::Lobes<glm::dvec3>& sum = sums[i];
                 sum.diffuse += packet.irradiance[light].on(normals[i]) / std::numbers::pi;
@@ -101,13 +104,14 @@ std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lig
                                        const ShadowRays& rays) {
     const LightPackets packets(lights);
     std::vector<glm::dvec3> radiance(receiver_indices.size());
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerTask), [&](const auto& some) {
-            for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                const std::uint32_t receiver = receiver_indices[i];
-                radiance[i] = packets.radiance(rays.positions[receiver], normals[receiver], rays);
-            }
-        });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerTask),
+                      [&](const auto& some) {
+                          for (std::size_t i = some.begin(); i < some.end(); ++i) {
+                              const std::uint32_t receiver = receiver_indices[i];
+                              radiance[i] = packets.radiance(rays.positions[receiver],
+                                                             normals[receiver], rays);
+                          }
+                      });
     return radiance;
 }
 

@@ -14,7 +14,8 @@ namespace relumine::relight {
 
 namespace {
 
-// A column is a combination of others when less than this part of it is new: well above float rounding.
+// A column is a combination of others when less than this part of it is new: well above float
+// rounding.
 constexpr float LeastNewPart = 1e-4f;
 
 // An exchange that lowers the error by less is rounding, and could go on for ever.
@@ -85,7 +86,8 @@ double LightPursuit::error() const {
     for (std::size_t k = 0; k < chosen_.size(); ++k) {
         glm::dvec3 slope(0.0);
         for (std::size_t l = 0; l < chosen_.size(); ++l)
-            slope += chosen_[l].irradiance * static_cast<double>(products_[l][chosen_[k].candidate]);
+            slope +=
+                chosen_[l].irradiance * static_cast<double>(products_[l][chosen_[k].candidate]);
         sum += glm::dot(chosen_[k].irradiance, slope - 2.0 * target(chosen_[k].candidate));
     }
     return sum;
@@ -101,7 +103,8 @@ void LightPursuit::push_back(std::size_t candidate, const glm::dvec3& irradiance
                 row[j] -= common * other[j];
         }
     });
-    const float scale = 1.0f / std::sqrt(std::max(row[candidate], std::numeric_limits<float>::min()));
+    const float scale =
+        1.0f / std::sqrt(std::max(row[candidate], std::numeric_limits<float>::min()));
     for (std::size_t j = 0; j < row.size(); ++j) {
         row[j] *= scale;
         new_norms_[j] -= row[j] * row[j];
@@ -166,9 +169,11 @@ void LightPursuit::correlate() {
     tbb::parallel_for(candidates(), [&](const auto& some) {
         for (std::size_t c = 0; c < 3; ++c) {
             float* correlations = correlations_[c].data();
-            std::copy_n(targets_[c].data() + some.begin(), some.size(), correlations + some.begin());
+            std::copy_n(targets_[c].data() + some.begin(), some.size(),
+                        correlations + some.begin());
             for (std::size_t l = 0; l < chosen_.size(); ++l) {
-                const auto irradiance = static_cast<float>(chosen_[l].irradiance[static_cast<int>(c)]);
+                const auto irradiance =
+                    static_cast<float>(chosen_[l].irradiance[static_cast<int>(c)]);
                 const float* products = products_[l].data();
                 for (std::size_t j = some.begin(); j < some.end(); ++j)
                     correlations[j] -= irradiance * products[j];

@@ -23,7 +23,8 @@ glm::dvec3 sum_of_texels(const cubemap::CubeMap& environment, std::span<const do
     glm::dvec3 sum(0.0);
     for (std::uint32_t y = cell.y * k; y < (cell.y + 1) * k; ++y)
         for (std::uint32_t x = cell.x * k; x < (cell.x + 1) * k; ++x)
-            sum += glm::dvec3(environment.at(cell.face, x, y)) * solid_angles[std::size_t{y} * r + x];
+            sum +=
+                glm::dvec3(environment.at(cell.face, x, y)) * solid_angles[std::size_t{y} * r + x];
     return sum;
 }
 
@@ -51,7 +52,8 @@ void LightPyramid::set_lights(std::span<const lights::DistantLight> lights) {
                              .x = std::min(static_cast<std::uint32_t>(point.s * n), n - 1),
                              .y = std::min(static_cast<std::uint32_t>(point.t * n), n - 1)};
         for (int channel = 0; channel < 3; ++channel)
-            light_[std::size_t{prt::cell_index(cell)} * NumChannels + static_cast<std::size_t>(channel)] +=
+            light_[std::size_t{prt::cell_index(cell)} * NumChannels +
+                   static_cast<std::size_t>(channel)] +=
                 static_cast<float>(light.irradiance[channel]);
     }
     sum_levels();
@@ -61,14 +63,19 @@ void LightPyramid::sum_levels() {
     // Children of a cell follow each other.
     for (std::uint32_t level = deepest_level_; level-- > 0;) {
         float* parents = light_.data() + std::size_t{prt::num_cells_above(level)} * NumChannels;
-        const float* children = light_.data() + std::size_t{prt::num_cells_above(level + 1)} * NumChannels;
-        const std::size_t num_parents = prt::num_cells_above(level + 1) - prt::num_cells_above(level);
-        tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_parents, 4096), [&](const auto& some) {
-            for (std::size_t i = some.begin() * NumChannels; i < some.end() * NumChannels; ++i) {
-                const float* child = children + i / NumChannels * (4 * NumChannels) + i % NumChannels;
-                parents[i] = (child[0] + child[3]) + (child[6] + child[9]);
-            }
-        });
+        const float* children =
+            light_.data() + std::size_t{prt::num_cells_above(level + 1)} * NumChannels;
+        const std::size_t num_parents =
+            prt::num_cells_above(level + 1) - prt::num_cells_above(level);
+        tbb::parallel_for(
+            tbb::blocked_range<std::size_t>(0, num_parents, 4096), [&](const auto& some) {
+                for (std::size_t i = some.begin() * NumChannels; i < some.end() * NumChannels;
+                     ++i) {
+                    const float* child =
+                        children + i / NumChannels * (4 * NumChannels) + i % NumChannels;
+                    parents[i] = (child[0] + child[3]) + (child[6] + child[9]);
+                }
+            });
     }
 }
 
@@ -81,7 +88,8 @@ void LightPyramid::set_deepest(const cubemap::CubeMap& environment, const LightB
         solid_angles_ = cubemap::texel_solid_angles(finer);
         resolution_ = finer;
     }
-    float* deepest = light_.data() + std::size_t{prt::num_cells_above(deepest_level_)} * NumChannels;
+    float* deepest =
+        light_.data() + std::size_t{prt::num_cells_above(deepest_level_)} * NumChannels;
     const auto set_row = [&](std::size_t row) {
         prt::Cell cell{.face = cubemap::AllFaces[row / n],
                        .level = static_cast<std::uint8_t>(deepest_level_),
@@ -103,29 +111,33 @@ void LightPyramid::set_deepest(const cubemap::CubeMap& environment, const LightB
                 place[channel] = static_cast<float>(light[channel]);
         }
     };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, std::size_t{n} * cubemap::NumFaces, RowsPerTask),
-                      [&](const auto& rows) {
-                          for (std::size_t row = rows.begin(); row < rows.end(); ++row)
-                              set_row(row);
-                      });
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, std::size_t{n} * cubemap::NumFaces, RowsPerTask),
+        [&](const auto& rows) {
+            for (std::size_t row = rows.begin(); row < rows.end(); ++row)
+                set_row(row);
+        });
 }
 
-/// A sharp light is all light of its cell: that of the deepest cells in it, or a part of the one that holds it.
+/// A sharp light is all light of its cell: that of the deepest cells in it, or a part of the one
+/// that holds it.
 void LightPyramid::remove(const SharpLight& sharp) {
-    float* deepest = light_.data() + std::size_t{prt::num_cells_above(deepest_level_)} * NumChannels;
+    float* deepest =
+        light_.data() + std::size_t{prt::num_cells_above(deepest_level_)} * NumChannels;
     if (sharp.cell.level <= deepest_level_) {
         const std::uint32_t shift = 2u * (deepest_level_ - sharp.cell.level);
         const std::size_t first = std::size_t{prt::place_in_level(sharp.cell)} << shift;
         std::fill_n(deepest + first * NumChannels, (std::size_t{1} << shift) * NumChannels, 0.0f);
         return;
     }
-    const std::size_t place = prt::place_in_level(sharp.cell) >> 2u * (sharp.cell.level - deepest_level_);
+    const std::size_t place =
+        prt::place_in_level(sharp.cell) >> 2u * (sharp.cell.level - deepest_level_);
     const std::array<const glm::dvec3*, NumChannels> vectors = {
         &sharp.irradiance.red, &sharp.irradiance.green, &sharp.irradiance.blue};
     for (std::size_t channel = 0; channel < NumChannels; ++channel) {
         float& light = deepest[place * NumChannels + channel];
-        light =
-            static_cast<float>(std::max(0.0, static_cast<double>(light) - glm::length(*vectors[channel])));
+        light = static_cast<float>(
+            std::max(0.0, static_cast<double>(light) - glm::length(*vectors[channel])));
     }
 }
 

@@ -19,8 +19,9 @@ public:
     /// Cells down to `deepest_level`. Memory: 12 bytes a cell, 8 * 4^level cells.
     explicit LightPyramid(std::uint32_t deepest_level);
 
-    /// Sums a whole environment but for the lights in `without`, which are lit in another way. `binning` is of the environment's
-    /// resolution; any resolution will do, texels on borders of cells are shared by area. O(6 R^2 + cells); parallel, the same bits for any number of
+    /// Sums a whole environment but for the lights in `without`, which are lit in another way.
+    /// `binning` is of the environment's resolution; any resolution will do, texels on borders of
+    /// cells are shared by area. O(6 R^2 + cells); parallel, the same bits for any number of
     /// threads.
     void set(const cubemap::CubeMap& environment, const LightBinning& binning,
              std::span<const SharpLight> without);
@@ -37,8 +38,10 @@ private:
     void sum_levels();
 
     std::uint32_t deepest_level_;
-    std::uint32_t resolution_ = 0;     ///< that solid_angles_ are of
-    std::vector<double> solid_angles_; ///< [n * n] of the finer of texels and cells
+    /// That solid_angles_ are of
+    std::uint32_t resolution_ = 0;
+    /// [n * n] of the finer of texels and cells
+    std::vector<double> solid_angles_;
     std::vector<float> light_;
 };
 

@@ -1,4 +1,5 @@
-// Based on: Lawson, Hanson, "Solving Least Squares Problems", 1974, chapter 23 (algorithm NNLS), in terms of A^T A and A^T b.
+// Based on: Lawson, Hanson, "Solving Least Squares Problems", 1974, chapter 23 (algorithm NNLS), in
+// terms of A^T A and A^T b.
 #include "relight/non_negative_fit.h"
 
 #include <algorithm>
@@ -10,7 +11,8 @@ namespace relumine::relight {
 
 namespace {
 
-// Added to the diagonal, relative to it: columns that repeat each other share the weight in place of a division by zero.
+// Added to the diagonal, relative to it: columns that repeat each other share the weight in place
+// of a division by zero.
 constexpr double Ridge = 1e-9;
 
 // A slope is zero below this part of its target: rounding of sums of a few thousand products.
@@ -19,7 +21,8 @@ constexpr double FlatSlope = 1e-9;
 class Fit {
 public:
     Fit(std::span<const double> gram, std::span<const double> target, std::span<double> x)
-        : gram_(gram.data(), static_cast<Eigen::Index>(x.size()), static_cast<Eigen::Index>(x.size())),
+        : gram_(gram.data(), static_cast<Eigen::Index>(x.size()),
+                static_cast<Eigen::Index>(x.size())),
           target_(target.data(), static_cast<Eigen::Index>(x.size())), x_(x) {
         for (std::size_t i = 0; i < x.size(); ++i)
             if (x[i] > 0.0)
@@ -28,7 +31,8 @@ public:
 
     void solve() {
         fit_positive();
-        // Each round lowers the error, so no set of positive unknowns comes twice; the bound is for rounding.
+        // Each round lowers the error, so no set of positive unknowns comes twice; the bound is for
+        // rounding.
         for (std::size_t round = 0; round < 3 * x_.size() && add_steepest(); ++round)
             fit_positive();
     }
@@ -56,8 +60,8 @@ private:
         Eigen::VectorXd target(n);
         for (Eigen::Index i = 0; i < n; ++i) {
             for (Eigen::Index j = 0; j < n; ++j)
-                gram(i, j) =
-                    gram_(positive_[static_cast<std::size_t>(i)], positive_[static_cast<std::size_t>(j)]);
+                gram(i, j) = gram_(positive_[static_cast<std::size_t>(i)],
+                                   positive_[static_cast<std::size_t>(j)]);
             gram(i, i) *= 1.0 + Ridge;
             target[i] = target_[positive_[static_cast<std::size_t>(i)]];
         }
@@ -77,7 +81,8 @@ private:
         positive_ = std::move(kept);
     }
 
-    /// Makes the zero unknown positive along which the error falls fastest; false where it falls along none.
+    /// Makes the zero unknown positive along which the error falls fastest; false where it falls
+    /// along none.
     bool add_steepest() {
         Eigen::Index steepest = -1;
         double best = 0.0;
@@ -92,7 +97,8 @@ private:
                 steepest = i;
             }
         }
-        if (steepest < 0 || std::find(positive_.begin(), positive_.end(), steepest) != positive_.end())
+        if (steepest < 0 ||
+            std::find(positive_.begin(), positive_.end(), steepest) != positive_.end())
             return false;
         positive_.insert(std::upper_bound(positive_.begin(), positive_.end(), steepest), steepest);
         return true;
@@ -105,12 +111,14 @@ private:
     Eigen::Map<const Eigen::MatrixXd> gram_;
     Eigen::Map<const Eigen::VectorXd> target_;
     std::span<double> x_;
-    std::vector<Eigen::Index> positive_; ///< ascending
+    /// ascending
+    std::vector<Eigen::Index> positive_;
 };
 
 } // namespace
 
-void fit_non_negative(std::span<const double> gram, std::span<const double> target, std::span<double> x) {
+void fit_non_negative(std::span<const double> gram, std::span<const double> target,
+                      std::span<double> x) {
     Fit(gram, target, x).solve();
 }
 

@@ -1,4 +1,5 @@
-// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN], Section 5.
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN],
+// Section 5.
 #include "relight/relighter.h"
 
 #include <algorithm>
@@ -21,8 +22,9 @@ namespace {
 /// How far from 1 the length of a light's direction may be, as in files of lights.
 constexpr double UnitTolerance = 1e-3;
 
-/// Whether summing all clusters is less work than updating these, ascending: an update sums each word of 64 clusters that holds any of them twice.
-/// The weights, over the time of the full sum, are measured: `./dev bench frames`.
+/// Whether summing all clusters is less work than updating these, ascending: an update sums each
+/// word of 64 clusters that holds any of them twice. The weights, over the time of the full sum,
+/// are measured: `./dev bench frames`.
 bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t num_clusters) {
     constexpr double CostOfWords = 0.84, CostOfClusters = 2.3;
     constexpr std::size_t ClustersPerWord = 64;
@@ -32,7 +34,8 @@ bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t n
             ++num_words;
     const double all_words = std::ceil(static_cast<double>(num_clusters) / ClustersPerWord);
     return CostOfWords * static_cast<double>(num_words) / all_words +
-               CostOfClusters * static_cast<double>(changed.size()) / static_cast<double>(num_clusters) >
+               CostOfClusters * static_cast<double>(changed.size()) /
+                   static_cast<double>(num_clusters) >
            1.0;
 }
 
@@ -42,7 +45,8 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 /// The sum of all squares, over channels and axes.
 double squared_norm(const VectorIrradiance& sum) {
-    return glm::dot(sum.red, sum.red) + glm::dot(sum.green, sum.green) + glm::dot(sum.blue, sum.blue);
+    return glm::dot(sum.red, sum.red) + glm::dot(sum.green, sum.green) +
+           glm::dot(sum.blue, sum.blue);
 }
 
 /// Whether a cluster's light changed by more than `bound` of what it becomes.
@@ -62,17 +66,19 @@ void sort_unique(std::vector<std::uint32_t>& values) {
 } // namespace
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
-    : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()), powers_(transfer.num_clusters()),
-      traced_(transfer, rays), normals_(block_normals(transfer.normals)),
-      words_(tile_words(transfer, normals_)), light_(transfer.counts.num_blocks()),
-      lights_(transfer.num_clusters()), lit_by_(lights_.vectors),
-      binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
+    : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),
+      powers_(transfer.num_clusters()), traced_(transfer, rays),
+      normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
+      light_(transfer.counts.num_blocks()), lights_(transfer.num_clusters()),
+      lit_by_(lights_.vectors), binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
       radiance_(transfer.num_receivers()) {
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())
-        throw std::invalid_argument("expected one surface per receiver, or none without a glossy part");
+        throw std::invalid_argument(
+            "expected one surface per receiver, or none without a glossy part");
     if (transfer.glossy && transfer.glossy->to_eye.size() != transfer.num_receivers())
-        throw std::invalid_argument("expected a direction to the eye per receiver, see prt::set_surfaces()");
+        throw std::invalid_argument(
+            "expected a direction to the eye per receiver, see prt::set_surfaces()");
     if (transfer.glossy) {
         pyramid_.emplace(transfer.glossy->deepest_level());
         glossy_.resize(transfer.counts.num_blocks());
@@ -172,11 +178,14 @@ RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights)
                                      .direction = light.direction,
                                      .irradiance = irradiance});
     }
-    std::stable_sort(sharp_lights_.begin(), sharp_lights_.end(),
-                     [](const SharpLight& a, const SharpLight& b) { return a.cluster < b.cluster; });
-    std::transform(sums_.begin(), sums_.end(), powers_.begin(), std::mem_fn(&VectorIrradiance::power));
+    std::stable_sort(
+        sharp_lights_.begin(), sharp_lights_.end(),
+        [](const SharpLight& a, const SharpLight& b) { return a.cluster < b.cluster; });
+    std::transform(sums_.begin(), sums_.end(), powers_.begin(),
+                   std::mem_fn(&VectorIrradiance::power));
     if (pyramid_)
-        pyramid_->set_lights(rays_.blockers == nullptr ? lights : std::span<const lights::DistantLight>());
+        pyramid_->set_lights(rays_.blockers == nullptr ? lights
+                                                       : std::span<const lights::DistantLight>());
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
@@ -207,13 +216,15 @@ void Relighter::resum() {
     lit_by_ = lights_.vectors;
 }
 
-/// The clusters' light is all light of their cells less the sharp lights in them. `clusters` ascend.
+/// The clusters' light is all light of their cells less the sharp lights in them. `clusters`
+/// ascend.
 void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
     auto sharp = sharp_lights_.begin();
     for (const std::uint32_t cluster : clusters) {
         VectorIrradiance rest = sums_[cluster];
-        sharp = std::lower_bound(sharp, sharp_lights_.end(), cluster,
-                                 [](const SharpLight& light, std::uint32_t c) { return light.cluster < c; });
+        sharp = std::lower_bound(
+            sharp, sharp_lights_.end(), cluster,
+            [](const SharpLight& light, std::uint32_t c) { return light.cluster < c; });
         for (; sharp != sharp_lights_.end() && sharp->cluster == cluster; ++sharp)
             rest -= sharp->irradiance;
         lights_.set(cluster, rest);
@@ -224,11 +235,14 @@ void Relighter::check(const TexelRectangle& rectangle) const {
     const std::uint32_t r = environment_.resolution;
     if (r == 0)
         throw std::invalid_argument("expected an environment before its first update");
-    if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r || rectangle.y1 > r)
-        throw std::invalid_argument(fmt::format("expected a rectangle inside the {0} x {0} face", r));
+    if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r ||
+        rectangle.y1 > r)
+        throw std::invalid_argument(
+            fmt::format("expected a rectangle inside the {0} x {0} face", r));
 }
 
-UpdateReport Relighter::update_region(const TexelRectangle& rectangle, std::span<const glm::vec3> radiance) {
+UpdateReport Relighter::update_region(const TexelRectangle& rectangle,
+                                      std::span<const glm::vec3> radiance) {
     check(rectangle);
     const std::size_t width = rectangle.x1 - rectangle.x0;
     if (radiance.size() != width * (rectangle.y1 - rectangle.y0))
@@ -249,7 +263,8 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
         check(rectangle);
     edit(environment_);
 
-    // The clusters that the rectangles meet get their light summed anew, not by differences: nothing can drift.
+    // The clusters that the rectangles meet get their light summed anew, not by differences:
+    // nothing can drift.
     changed_.clear();
     const auto r = static_cast<double>(environment_.resolution);
     for (const TexelRectangle& rectangle : rectangles)
@@ -275,7 +290,8 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
             .seconds = seconds_since(start)};
 }
 
-/// Updates what the clusters in `changed_`, ascending, contribute, their sums_ being new. Returns how many receivers see any of them.
+/// Updates what the clusters in `changed_`, ascending, contribute, their sums_ being new. Returns
+/// how many receivers see any of them.
 std::size_t Relighter::update_changed(bool sharp_changed) {
     set_cluster_lights(changed_);
     changed_words_.clear();
@@ -287,7 +303,8 @@ std::size_t Relighter::update_changed(bool sharp_changed) {
     std::atomic<std::size_t> num_blocks = 0;
     const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
     tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
-        std::uint64_t touched = update_tile(scene, tile, changed_words_, lit_by_, lights_.vectors, light_);
+        std::uint64_t touched =
+            update_tile(scene, tile, changed_words_, lit_by_, lights_.vectors, light_);
         if (sharp_changed || transfer_.glossy)
             touched = ~std::uint64_t{0};
         const std::size_t begin = transfer_.counts.tile_begin(tile);
@@ -303,18 +320,21 @@ std::size_t Relighter::update_changed(bool sharp_changed) {
     });
     for (const std::uint32_t cluster : changed_) {
         const auto first = static_cast<std::ptrdiff_t>(cluster * ClusterLights::Stride);
-        std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride, lit_by_.begin() + first);
+        std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride,
+                    lit_by_.begin() + first);
     }
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
 /// Which lights are sharp depends on the whole map.
 bool Relighter::update_sharp_lights() {
-    return replace_sharp_lights(find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(),
-                                                  powers_, rays_.tolerance, transfer_.glossy.has_value()));
+    return replace_sharp_lights(find_sharp_lights(environment_, *binning_,
+                                                  transfer_.quadtree.leaves(), powers_,
+                                                  rays_.tolerance, transfer_.glossy.has_value()));
 }
 
-/// Adds the clusters of sharp lights that came or went to `changed_` and traces anew when there are any; returns whether there are.
+/// Adds the clusters of sharp lights that came or went to `changed_` and traces anew when there are
+/// any; returns whether there are.
 bool Relighter::replace_sharp_lights(std::vector<SharpLight> lights) {
     if (lights == sharp_lights_)
         return false;

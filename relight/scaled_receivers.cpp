@@ -1,4 +1,5 @@
-// Based on: W. Madow, "On the Theory of Systematic Sampling, II", 1949, sampling with probability proportional to size; the estimate is Horvitz and Thompson's, 1952.
+// Based on: W. Madow, "On the Theory of Systematic Sampling, II", 1949, sampling with probability
+// proportional to size; the estimate is Horvitz and Thompson's, 1952.
 #include "relight/scaled_receivers.h"
 
 #include <algorithm>
@@ -11,10 +12,12 @@ namespace relumine::relight {
 
 namespace {
 
-// The expected errors are those of other lights, so that some receivers are chosen whatever is expected: a scale stays below 1/sqrt(this part).
+// The expected errors are those of other lights, so that some receivers are chosen whatever is
+// expected: a scale stays below 1/sqrt(this part).
 constexpr double EvenPart = 0.3;
 
-// Neighbours on each side that an expected error is averaged over: shadows of other lights lie near by, not at the same place.
+// Neighbours on each side that an expected error is averaged over: shadows of other lights lie near
+// by, not at the same place.
 constexpr std::size_t Neighbours = 3;
 
 std::vector<double> averaged(std::span<const double> values) {
@@ -89,7 +92,8 @@ void add_squared_errors(const Relighter& relighter, std::span<const lights::Dist
     std::vector<glm::vec3> normals(transfer.num_receivers());
     for (std::size_t place = 0; place < normals.size(); ++place)
         normals[transfer.order[place]] = transfer.normals[place];
-    const std::vector<glm::vec3> radiance = radiance_under(lights, normals, relighter.shadow_rays());
+    const std::vector<glm::vec3> radiance =
+        radiance_under(lights, normals, relighter.shadow_rays());
     std::vector<double> squares(errors.size());
     for (std::size_t place = 0; place < squares.size(); ++place) {
         const std::uint32_t receiver = transfer.order[place];

@@ -11,23 +11,27 @@ namespace relumine::relight {
 
 namespace {
 
-// A sharp light may make this error, relative to the mean radiance, before it is traced. Four such lights in one map stay within
-// 0.5 %, the size of what clusters make of the measured environments.
+// A sharp light may make this error, relative to the mean radiance, before it is traced. Four such
+// lights in one map stay within 0.5 %, the size of what clusters make of the measured environments.
 constexpr double AllowedError = 0.0025;
 
-// Levels between a cluster and the cells that are looked at: a sixteenth of its area. What fills less is "small".
+// Levels between a cluster and the cells that are looked at: a sixteenth of its area. What fills
+// less is "small".
 constexpr std::uint32_t LevelsBelowCluster = 2;
 
-// Spread evenly, such a cell has a sixteenth of its cluster's power; with twice that the light is not even.
+// Spread evenly, such a cell has a sixteenth of its cluster's power; with twice that the light is
+// not even.
 constexpr double SharpShare = 0.125;
 
-// A light of this part of its sharp cell's power is not cut further, so a cell becomes a hundred lights at most.
+// A light of this part of its sharp cell's power is not cut further, so a cell becomes a hundred
+// lights at most.
 constexpr double FinestShare = 1.0 / 64.0;
 
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
 
-/// Four sums side by side: each addition waits for the one before it, and this runs with every edit.
+/// Four sums side by side: each addition waits for the one before it, and this runs with every
+/// edit.
 double sum_of(std::span<const double> values) {
     std::array<double, 4> sums{};
     std::size_t i = 0;
@@ -42,13 +46,14 @@ double sum_of(std::span<const double> values) {
 /// Finds the sharp cells below one cluster and cuts them into lights.
 class Search {
 public:
-    Search(const cubemap::CubeMap& environment, const LightBinning& binning, double min_power, bool even_too,
-           std::vector<SharpLight>& lights)
+    Search(const cubemap::CubeMap& environment, const LightBinning& binning, double min_power,
+           bool even_too, std::vector<SharpLight>& lights)
         : environment_(environment), binning_(binning), min_power_(min_power), even_too_(even_too),
           texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))),
           lights_(lights) {}
 
-    /// Finds the sharp cells of a cluster of this power: none unless one of them stands out, or those that do not are wanted, too.
+    /// Finds the sharp cells of a cluster of this power: none unless one of them stands out, or
+    /// those that do not are wanted, too.
     void look_into(std::uint32_t cluster, double cluster_power, const prt::Cell& cell) {
         candidates_.clear();
         collect(cell, LevelsBelowCluster);
@@ -88,8 +93,10 @@ private:
             for (std::uint32_t i = 0; i < 4; ++i)
                 cut(cluster, sharp_power, cell.child(i));
         } else if (power > 0.0) {
-            lights_.push_back(
-                {.cluster = cluster, .cell = cell, .direction = luminance / power, .irradiance = sum});
+            lights_.push_back({.cluster = cluster,
+                               .cell = cell,
+                               .direction = luminance / power,
+                               .irradiance = sum});
         }
     }
 
@@ -97,16 +104,19 @@ private:
     const LightBinning& binning_;
     double min_power_;
     bool even_too_;
-    std::uint32_t texel_level_; ///< where a cell is no larger than a texel
+    /// Where a cell is no larger than a texel
+    std::uint32_t texel_level_;
     std::vector<Candidate> candidates_;
     std::vector<SharpLight>& lights_;
 };
 
 } // namespace
 
-std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment, const LightBinning& binning,
-                                          std::span<const prt::Cell> clusters, std::span<const double> powers,
-                                          float tolerance, bool glossy) {
+std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
+                                          const LightBinning& binning,
+                                          std::span<const prt::Cell> clusters,
+                                          std::span<const double> powers, float tolerance,
+                                          bool glossy) {
     // The length of a small cell's vector irradiance is its power.
     const double total_power = sum_of(powers);
     std::vector<SharpLight> lights;

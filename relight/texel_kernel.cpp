@@ -18,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t MaxLanes = 16;
 constexpr std::size_t RowsPerRun = 64;
 
-/// Columns side by side, as many as lanes of D: their texels' colours fill three vectors as they lie in memory, and each weight is spread
-/// over the lanes of its texel.
+/// Columns side by side, as many as lanes of D: their texels' colours fill three vectors as they
+/// lie in memory, and each weight is spread over the lanes of its texel.
 template<class D>
 class Columns {
     using Vec = hn::Vec<D>;
@@ -31,8 +31,8 @@ public:
             texel_of_[i] = static_cast<std::int32_t>(i / 3);
     }
 
-    void add_to(TexelSums& sums, const glm::vec3* radiance, const float* weights, std::size_t stride,
-                std::size_t first_x, std::size_t height) const {
+    void add_to(TexelSums& sums, const glm::vec3* radiance, const float* weights,
+                std::size_t stride, std::size_t first_x, std::size_t height) const {
         const D d;
         const std::size_t n = hn::Lanes(d);
         const auto* values = reinterpret_cast<const float*>(radiance);
@@ -55,8 +55,8 @@ public:
             hn::StoreU(y_0, d, y.data());
             hn::StoreU(y_1, d, y.data() + n);
             hn::StoreU(y_2, d, y.data() + 2 * n);
-            add_columns(one.data(), y.data(), n, static_cast<double>(first_x), static_cast<double>(begin),
-                        sums);
+            add_columns(one.data(), y.data(), n, static_cast<double>(first_x),
+                        static_cast<double>(begin), sums);
         }
     }
 
@@ -69,11 +69,12 @@ private:
     /// The weights of the texels in the given third.
     Vec spread(Vec weights, std::size_t third) const {
         const D d;
-        return hn::TableLookupLanes(weights, hn::SetTableIndices(d, texel_of_.data() + third * hn::Lanes(d)));
+        return hn::TableLookupLanes(
+            weights, hn::SetTableIndices(d, texel_of_.data() + third * hn::Lanes(d)));
     }
 
-    static void add_columns(const float* one, const float* y, std::size_t num_columns, double first_x,
-                            double first_y, TexelSums& sums) {
+    static void add_columns(const float* one, const float* y, std::size_t num_columns,
+                            double first_x, double first_y, TexelSums& sums) {
         glm::dvec3 of_one(0.0), of_x(0.0), of_y(0.0);
         for (std::size_t i = 0; i < num_columns; ++i, one += 3, y += 3) {
             const glm::dvec3 column(one[0], one[1], one[2]);
@@ -89,8 +90,8 @@ private:
     std::array<std::int32_t, NumFloats> texel_of_;
 };
 
-TexelSums texel_sums(const glm::vec3* radiance, const float* weights, std::size_t stride, std::size_t width,
-                     std::size_t height) {
+TexelSums texel_sums(const glm::vec3* radiance, const float* weights, std::size_t stride,
+                     std::size_t width, std::size_t height) {
     TexelSums sums;
     std::size_t x = 0;
     const auto add_columns = [&](auto d) {
@@ -122,8 +123,8 @@ namespace {
 HWY_EXPORT(texel_sums);
 }
 
-TexelSums texel_sums(const glm::vec3* radiance, const float* weights, std::size_t stride, std::size_t width,
-                     std::size_t height) {
+TexelSums texel_sums(const glm::vec3* radiance, const float* weights, std::size_t stride,
+                     std::size_t width, std::size_t height) {
     return HWY_DYNAMIC_DISPATCH(texel_sums)(radiance, weights, stride, width, height);
 }
 

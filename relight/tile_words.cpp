@@ -19,8 +19,10 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Corners of a cell: x, y, z of four directions.
 constexpr std::size_t CornerFloats = 12;
 
-/// Whether every receiver with a count has all four corners above its horizon, and so all of the cell.
-bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals, const float* corners) {
+/// Whether every receiver with a count has all four corners above its horizon, and so all of the
+/// cell.
+bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals,
+                     const float* corners) {
     const hn::CappedTag<float, prt::BlockSize> d;
     const hn::Rebind<std::uint8_t, decltype(d)> bytes;
     const hn::Rebind<std::int32_t, decltype(d)> integers;
@@ -42,7 +44,8 @@ bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals, co
     return true;
 }
 
-/// sees_only_above() for all clusters in `mixed`; `counts` and `corners` begin at the word's first entry and cluster.
+/// sees_only_above() for all clusters in `mixed`; `counts` and `corners` begin at the word's first
+/// entry and cluster.
 bool needs_no_clamp(std::uint64_t mixed, const std::uint8_t* counts, const BlockNormals& normals,
                     const float* corners) {
     for (; mixed != 0; mixed &= mixed - 1, counts += prt::BlockSize) {
@@ -77,7 +80,8 @@ std::vector<std::array<glm::vec3, 4>> corners_of(const prt::Quadtree& quadtree) 
 
 } // namespace
 
-std::vector<TileWord> tile_words(const prt::Transfer& transfer, std::span<const BlockNormals> normals) {
+std::vector<TileWord> tile_words(const prt::Transfer& transfer,
+                                 std::span<const BlockNormals> normals) {
     const prt::VisibleCounts& counts = transfer.counts;
     const std::vector<std::array<glm::vec3, 4>> corners = corners_of(transfer.quadtree);
     const std::size_t num_words = counts.words_per_block();
@@ -94,9 +98,9 @@ std::vector<TileWord> tile_words(const prt::Transfer& transfer, std::span<const 
                     of_tile.visible |= bit;
                 if (counts.mixed[word] == 0)
                     continue;
-                const bool unclamped =
-                    HWY_DYNAMIC_DISPATCH(needs_no_clamp)(counts.mixed[word], counts.mixed_counts(word, 0),
-                                                         normals[block], &corners[w * 64].front().x);
+                const bool unclamped = HWY_DYNAMIC_DISPATCH(needs_no_clamp)(
+                    counts.mixed[word], counts.mixed_counts(word, 0), normals[block],
+                    &corners[w * 64].front().x);
                 (unclamped ? of_tile.unclamped : of_tile.clamped) |= bit;
             }
     });

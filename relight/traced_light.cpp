@@ -48,7 +48,8 @@ void TracedLight::trace_block(const LightPackets& packets, std::size_t block) {
     const std::size_t end = std::min(begin + prt::BlockSize, transfer_.num_receivers());
     for (std::size_t place = begin; place < end; ++place)
         set(diffuse_[block], place - begin,
-            packets.radiance(rays_.positions[transfer_.order[place]], transfer_.normals[place], rays_));
+            packets.radiance(rays_.positions[transfer_.order[place]], transfer_.normals[place],
+                             rays_));
 }
 
 void TracedLight::trace_glossy_block(const LightPackets& packets, std::size_t block) {

@@ -1,4 +1,5 @@
-// Light that reaches the receivers from sharp lights, which are traced and not looked up in clusters.
+// Light that reaches the receivers from sharp lights, which are traced and not looked up in
+// clusters.
 #pragma once
 
 #include <array>
@@ -16,10 +17,12 @@
 
 namespace relumine::relight {
 
-/// Keeps, per receiver, what the sharp lights make of its radiance. Without blockers there is nothing to trace with and nothing is kept.
+/// Keeps, per receiver, what the sharp lights make of its radiance. Without blockers there is
+/// nothing to trace with and nothing is kept.
 class TracedLight {
 public:
-    /// Throws std::invalid_argument unless there is a position per receiver, or no blockers. The transfer must outlive this.
+    /// Throws std::invalid_argument unless there is a position per receiver, or no blockers. The
+    /// transfer must outlive this.
     TracedLight(const prt::Transfer& transfer, const ShadowRays& rays);
 
     /// Traces them all anew: a shadow ray per light and receiver that faces it; parallel.
@@ -40,8 +43,10 @@ private:
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
-    std::vector<TracedRadiance> diffuse_;           ///< [num_blocks], or none
-    std::vector<prt::Lobes<glm::vec3>> highlights_; ///< [num_receivers] by place, or none
+    /// [num_blocks], or none
+    std::vector<TracedRadiance> diffuse_;
+    /// [num_receivers] by place, or none
+    std::vector<prt::Lobes<glm::vec3>> highlights_;
 };
 
 } // namespace relumine::relight

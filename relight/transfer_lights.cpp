@@ -23,23 +23,27 @@ namespace relumine::relight {
 
 namespace {
 
-// Candidates are the centres of light of cells of this level, 2.8 degrees wide: about 8,000 of them, 500 MB with 16,000 receivers.
+// Candidates are the centres of light of cells of this level, 2.8 degrees wide: about 8,000 of
+// them, 500 MB with 16,000 receivers.
 constexpr std::uint32_t CandidateLevel = 5;
 
-// A cell with a larger share of the power is cut further, so that a sun or a lamp can be given several lights.
+// A cell with a larger share of the power is cut further, so that a sun or a lamp can be given
+// several lights.
 constexpr double LargestShare = 1.0 / 1024.0;
-// Steps in degrees by which a light may move from its candidate's direction: those are 2.8 degrees apart. Twice, as the others have moved, too.
+// Steps in degrees by which a light may move from its candidate's direction: those are 2.8 degrees
+// apart. Twice, as the others have moved, too.
 constexpr std::array RefiningSteps = {1.4, 0.8, 0.4, 0.2, 1.0, 0.5, 0.25};
 constexpr int RefiningPasses = 2;
-// Lights fitted to the receivers they were chosen with light those better than others: as many more take part in the steps.
+// Lights fitted to the receivers they were chosen with light those better than others: as many more
+// take part in the steps.
 constexpr std::size_t RefiningFactor = 2;
 
 // Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
 constexpr std::size_t MaxExchanged = 128;
 constexpr int ExchangePasses = 2;
 
-/// Unit directions where lights could be, neighbours together: the centres of light of cells of CandidateLevel, and of smaller ones where there
-/// is more light.
+/// Unit directions where lights could be, neighbours together: the centres of light of cells of
+/// CandidateLevel, and of smaller ones where there is more light.
 class Candidates {
 public:
     explicit Candidates(const cubemap::CubeMap& environment)
@@ -69,13 +73,15 @@ private:
 
     const cubemap::CubeMap& environment_;
     LightBinning binning_;
-    std::uint32_t texel_level_; ///< where a cell is no larger than a texel
+    /// Where a cell is no larger than a texel
+    std::uint32_t texel_level_;
     double most_power_ = 0.0;
     std::vector<glm::dvec3> directions_;
 };
 
 /// A direction and eight around it, so many degrees to the sides and corners.
-void append_around(const glm::dvec3& direction, double degrees, std::vector<glm::dvec3>& directions) {
+void append_around(const glm::dvec3& direction, double degrees,
+                   std::vector<glm::dvec3>& directions) {
     const glm::dvec3 other =
         std::abs(direction.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
     const double step = std::tan(degrees * std::numbers::pi / 180.0);
@@ -85,8 +91,8 @@ void append_around(const glm::dvec3& direction, double degrees, std::vector<glm:
     for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
             if (x != 0 || y != 0)
-                directions.push_back(
-                    glm::normalize(direction + static_cast<double>(x) * right + static_cast<double>(y) * up));
+                directions.push_back(glm::normalize(direction + static_cast<double>(x) * right +
+                                                    static_cast<double>(y) * up));
 }
 
 /// Some receivers and what they shall get, scaled alike.
@@ -95,20 +101,23 @@ struct Wanted {
         : receivers(choose_receivers(relighter.transfer(), expected_errors, count)) {
         radiance.reserve(receivers.places.size());
         for (std::size_t i = 0; i < receivers.places.size(); ++i)
-            radiance.push_back(receivers.scales[i] *
-                               relighter.radiance()[relighter.transfer().order[receivers.places[i]]]);
+            radiance.push_back(
+                receivers.scales[i] *
+                relighter.radiance()[relighter.transfer().order[receivers.places[i]]]);
     }
     ScaledReceivers receivers;
     std::vector<glm::vec3> radiance;
 };
 
-/// By place, how large a part of the squared error of lights that do not know the scene is there: at the borders of shadows and where there are many.
+/// By place, how large a part of the squared error of lights that do not know the scene is there:
+/// at the borders of shadows and where there are many.
 std::vector<double> errors_of_cuts(const Relighter& relighter, std::size_t count) {
     const cubemap::EnvironmentImage image = lights::lat_long_of(relighter.environment());
     std::vector<double> errors(relighter.transfer().num_receivers());
     for (const lights::Method method : {lights::Method::VarianceCut, lights::Method::MedianCut})
-        add_squared_errors(relighter,
-                           lights::place(method, image, std::min(count, image.pixels.size())).lights, errors);
+        add_squared_errors(
+            relighter, lights::place(method, image, std::min(count, image.pixels.size())).lights,
+            errors);
     return errors;
 }
 
@@ -117,13 +126,14 @@ std::vector<lights::DistantLight> list_of(std::span<const LightPursuit::Light> l
     std::vector<lights::DistantLight> list;
     for (const LightPursuit::Light& light : lights)
         if (light.irradiance != glm::dvec3(0.0))
-            list.push_back({.direction = directions[light.candidate], .irradiance = light.irradiance});
+            list.push_back(
+                {.direction = directions[light.candidate], .irradiance = light.irradiance});
     return list;
 }
 
 /// Lights in these directions.
-std::vector<lights::DistantLight> fitted(const Relighter& relighter, std::span<const glm::dvec3> directions,
-                                         const Wanted& wanted) {
+std::vector<lights::DistantLight>
+fitted(const Relighter& relighter, std::span<const glm::dvec3> directions, const Wanted& wanted) {
     const TransferMatrix matrix(relighter, directions, wanted.receivers);
     LightPursuit pursuit(matrix, wanted.radiance);
     std::vector<std::size_t> all(directions.size());
@@ -132,9 +142,11 @@ std::vector<lights::DistantLight> fitted(const Relighter& relighter, std::span<c
     return list_of(pursuit.lights(), directions);
 }
 
-/// Lights in these directions once each has moved by a step, where it pays; and the directions with them.
-std::vector<lights::DistantLight> moved(const Relighter& relighter, std::vector<glm::dvec3>& directions,
-                                        double step, const Wanted& wanted) {
+/// Lights in these directions once each has moved by a step, where it pays; and the directions with
+/// them.
+std::vector<lights::DistantLight> moved(const Relighter& relighter,
+                                        std::vector<glm::dvec3>& directions, double step,
+                                        const Wanted& wanted) {
     std::vector<glm::dvec3> nearby;
     std::vector<std::size_t> unmoved;
     for (const glm::dvec3& direction : directions) {
@@ -180,11 +192,13 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
         count = std::min(count, candidates.size());
         while (pursuit.lights().size() < count && pursuit.take_best())
             poll(0.5 * static_cast<double>(pursuit.lights().size()) / static_cast<double>(count));
-        for (int pass = 0; pass < ExchangePasses && count <= MaxExchanged && pursuit.exchange(); ++pass)
+        for (int pass = 0; pass < ExchangePasses && count <= MaxExchanged && pursuit.exchange();
+             ++pass)
             poll(0.5);
         chosen.assign(pursuit.lights().begin(), pursuit.lights().end());
     }
-    // More receivers, as there are far fewer directions now, and more of them where this list is wrong.
+    // More receivers, as there are far fewer directions now, and more of them where this list is
+    // wrong.
     add_squared_errors(relighter, list_of(chosen, candidates), errors);
     const Wanted all_over(relighter, errors, RefiningFactor * options.num_receivers);
     std::vector<glm::dvec3> directions;

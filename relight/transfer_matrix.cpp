@@ -18,7 +18,8 @@ TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::
     const ShadowRays& rays = relighter.shadow_rays();
     const prt::Transfer& transfer = relighter.transfer();
     tbb::parallel_for(
-        std::size_t{0}, (directions.size() + prt::PacketSize - 1) / prt::PacketSize, [&](std::size_t p) {
+        std::size_t{0}, (directions.size() + prt::PacketSize - 1) / prt::PacketSize,
+        [&](std::size_t p) {
             const std::size_t begin = p * prt::PacketSize;
             const std::size_t end = std::min(begin + prt::PacketSize, directions.size());
             prt::DirectionPacket packet;
@@ -34,8 +35,9 @@ TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::
                 const auto all = static_cast<std::uint32_t>((1u << (end - begin)) - 1);
                 const std::uint32_t occluded = rays.blockers->occluded(origin, packet, all);
                 for (std::size_t j = begin; j < end; ++j) {
-                    const float cosine = glm::dot(
-                        normal, glm::vec3(packet.x[j - begin], packet.y[j - begin], packet.z[j - begin]));
+                    const float cosine =
+                        glm::dot(normal, glm::vec3(packet.x[j - begin], packet.y[j - begin],
+                                                   packet.z[j - begin]));
                     if (cosine > 0.0f && (occluded >> (j - begin) & 1u) == 0)
                         elements_[j * num_receivers_ + i] = cosine * scale;
                 }
@@ -45,10 +47,11 @@ TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::
 
 std::vector<float> TransferMatrix::products(std::span<const float> vector) const {
     std::vector<float> result(num_directions_);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_directions_, 64), [&](const auto& some) {
-        for (std::size_t j = some.begin(); j < some.end(); ++j)
-            result[j] = dot(column(j), vector);
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_directions_, 64),
+                      [&](const auto& some) {
+                          for (std::size_t j = some.begin(); j < some.end(); ++j)
+                              result[j] = dot(column(j), vector);
+                      });
     return result;
 }
 

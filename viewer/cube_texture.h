@@ -11,8 +11,8 @@
 
 namespace relumine::viewer {
 
-/// OpenGL's cube maps are seen from outside, ours from inside: faces go to the slot of their mirror image in z, and shaders look up
-/// (x, y, -z). cube_lookup_source() does so.
+/// OpenGL's cube maps are seen from outside, ours from inside: faces go to the slot of their mirror
+/// image in z, and shaders look up (x, y, -z). cube_lookup_source() does so.
 class CubeTexture {
 public:
     CubeTexture();

@@ -17,9 +17,10 @@ void drop_dialogue(ViewState& state) {
     const ImVec2 display = ImGui::GetIO().DisplaySize;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {16.0f, 12.0f});
     ImGui::SetNextWindowPos({0.5f * display.x, 0.5f * display.y}, ImGuiCond_Always, {0.5f, 0.5f});
-    const bool seen = ImGui::BeginPopupModal(Title, nullptr,
-                                             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
-                                                 ImGuiWindowFlags_NoSavedSettings);
+    const bool seen =
+        ImGui::BeginPopupModal(Title, nullptr,
+                               ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove |
+                                   ImGuiWindowFlags_NoSavedSettings);
     ImGui::PopStyleVar();
     if (!seen)
         return;
@@ -29,7 +30,8 @@ void drop_dialogue(ViewState& state) {
     ImGui::SameLine();
     const bool layer = ImGui::Button("An image layer", {ButtonWidth, 0.0f});
     ImGui::SameLine();
-    const bool neither = ImGui::Button("Cancel", {90.0f, 0.0f}) || ImGui::IsKeyPressed(ImGuiKey_Escape);
+    const bool neither =
+        ImGui::Button("Cancel", {90.0f, 0.0f}) || ImGui::IsKeyPressed(ImGuiKey_Escape);
     if (environment || layer || neither) {
         const std::filesystem::path path = std::exchange(state.dropped, {});
         if (environment)

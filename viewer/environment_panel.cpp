@@ -22,12 +22,14 @@ ImVec2 im(const glm::dvec2& pixel) {
 
 void picture_tools(ViewState& state) {
     // What the words leave of the row.
-    const float slider_width = std::clamp(0.5f * (ImGui::GetContentRegionAvail().x - 400.0f), 56.0f, 140.0f);
+    const float slider_width =
+        std::clamp(0.5f * (ImGui::GetContentRegionAvail().x - 400.0f), 56.0f, 140.0f);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted("Exposure");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(slider_width);
-    ImGui::SliderFloat("##env exposure", &state.environment_look.exposure_ev, -15.0f, 15.0f, "%+.2f EV");
+    ImGui::SliderFloat("##env exposure", &state.environment_look.exposure_ev, -15.0f, 15.0f,
+                       "%+.2f EV");
     ImGui::SameLine();
     ImGui::TextUnformatted("Rotate");
     ImGui::SameLine();
@@ -101,11 +103,11 @@ void edit_tools(ViewState& state) {
         lasso_tools(state);
 }
 /// A line over the picture, once for each copy of the picture that is seen.
-void draw_line(const ViewState& state, const PixelRectangle& place, const std::vector<glm::dvec3>& line,
-               ImU32 color, float thickness) {
+void draw_line(const ViewState& state, const PixelRectangle& place,
+               const std::vector<glm::dvec3>& line, ImU32 color, float thickness) {
     const std::vector<glm::dvec2> uv = unrolled(line);
-    const auto [low, high] =
-        std::minmax_element(uv.begin(), uv.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+    const auto [low, high] = std::minmax_element(
+        uv.begin(), uv.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
     const double left = state.lat_long.uv_at(place, {place.x, place.y}).x;
     const double right = state.lat_long.uv_at(place, {place.x + place.width, place.y}).x;
     std::vector<ImVec2> points;
@@ -114,11 +116,12 @@ void draw_line(const ViewState& state, const PixelRectangle& place, const std::v
         for (const glm::dvec2& at : uv) {
             const ImVec2 pixel = im(state.lat_long.pixel_at(place, at + glm::dvec2(turn, 0.0)));
             // Points that all but coincide would give the line spikes.
-            if (points.empty() || std::hypot(pixel.x - points.back().x, pixel.y - points.back().y) > 1.0f)
+            if (points.empty() ||
+                std::hypot(pixel.x - points.back().x, pixel.y - points.back().y) > 1.0f)
                 points.push_back(pixel);
         }
-        ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()), color, 0,
-                                                thickness);
+        ImGui::GetWindowDrawList()->AddPolyline(points.data(), static_cast<int>(points.size()),
+                                                color, 0, thickness);
     }
 }
 
@@ -177,10 +180,12 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
 
     const double tolerance = RimReach * 360.0 / (state.lat_long.zoom * std::max(place.width, 1));
     const bool moves_layers = state.tool == Tool::Move && !state.desk.is_dragging();
-    const LightDesk::Held held =
-        hovered && direction && moves_layers ? state.desk.held_at(*direction, tolerance) : LightDesk::Held{};
+    const LightDesk::Held held = hovered && direction && moves_layers
+                                     ? state.desk.held_at(*direction, tolerance)
+                                     : LightDesk::Held{};
     if (held.grip != Grip::None)
-        ImGui::SetMouseCursor(held.grip == Grip::Body ? ImGuiMouseCursor_Hand : ImGuiMouseCursor_ResizeAll);
+        ImGui::SetMouseCursor(held.grip == Grip::Body ? ImGuiMouseCursor_Hand
+                                                      : ImGuiMouseCursor_ResizeAll);
     if (hovered && direction && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (state.tool == Tool::Paint)
             state.desk.begin_stroke(state.brush, *direction);

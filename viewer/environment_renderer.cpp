@@ -83,8 +83,8 @@ EnvironmentRenderer::EnvironmentRenderer(const prt::Quadtree& quadtree)
     num_line_ends_ = static_cast<GLsizei>(ends.size());
     glBindVertexArray(line_array_.id());
     glBindBuffer(GL_ARRAY_BUFFER, lines_.id());
-    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(ends.size() * sizeof(glm::vec2)), ends.data(),
-                 GL_STATIC_DRAW);
+    glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(ends.size() * sizeof(glm::vec2)),
+                 ends.data(), GL_STATIC_DRAW);
     glEnableVertexAttribArray(0);
     glVertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, sizeof(glm::vec2), nullptr);
     glBindVertexArray(0);
@@ -97,9 +97,11 @@ void EnvironmentRenderer::upload_heat(const cubemap::CubeMap& contribution) {
     brightness.reserve(contribution.texels.size());
     for (const glm::vec3& texel : contribution.texels)
         brightness.push_back(0.2126f * texel.r + 0.7152f * texel.g + 0.0722f * texel.b);
-    const auto bright = brightness.begin() + static_cast<std::ptrdiff_t>(brightness.size() * 199 / 200);
+    const auto bright =
+        brightness.begin() + static_cast<std::ptrdiff_t>(brightness.size() * 199 / 200);
     std::nth_element(brightness.begin(), bright, brightness.end());
-    hottest_ = *bright > 0.0f ? *bright : std::max(*std::max_element(bright, brightness.end()), 1e-20f);
+    hottest_ =
+        *bright > 0.0f ? *bright : std::max(*std::max_element(bright, brightness.end()), 1e-20f);
 }
 
 void EnvironmentRenderer::draw(const LatLongView& view, const PixelRectangle& viewport,

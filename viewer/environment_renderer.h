@@ -1,4 +1,5 @@
-// Draws the environment as a lat-long, with the clusters' borders and what lights a receiver laid over it.
+// Draws the environment as a lat-long, with the clusters' borders and what lights a receiver laid
+// over it.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -15,11 +16,12 @@ namespace relumine::viewer {
 class EnvironmentRenderer {
 public:
     explicit EnvironmentRenderer(const prt::Quadtree& quadtree);
-    /// What lights the chosen receiver (relight::contribution_map()); the hottest colour is its brightest two-hundredth.
+    /// What lights the chosen receiver (relight::contribution_map()); the hottest colour is its
+    /// brightest two-hundredth.
     void upload_heat(const cubemap::CubeMap& contribution);
     /// Into the current viewport, which is `viewport`.
-    void draw(const LatLongView& view, const PixelRectangle& viewport, const CubeTexture& environment,
-              const EnvironmentLook& look) const;
+    void draw(const LatLongView& view, const PixelRectangle& viewport,
+              const CubeTexture& environment, const EnvironmentLook& look) const;
 
 private:
     GlProgram program_;

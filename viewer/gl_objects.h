@@ -69,7 +69,8 @@ private:
     GLuint id_ = 0;
 };
 
-/// `vec3 shown(vec3 radiance)`: exposure and the sRGB curve, as relight::save_picture() writes a PNG; with its uniform `exposure`.
+/// `vec3 shown(vec3 radiance)`: exposure and the sRGB curve, as relight::save_picture() writes a
+/// PNG; with its uniform `exposure`.
 [[nodiscard]] std::string shown_source();
 
 } // namespace relumine::viewer

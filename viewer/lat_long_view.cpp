@@ -12,7 +12,8 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// The picture stays inside: no more than its own height is ever seen, if it is higher than the view.
+/// The picture stays inside: no more than its own height is ever seen, if it is higher than the
+/// view.
 double clamped_v(double v, double half_height) {
     return half_height >= 0.5 ? 0.5 : std::clamp(v, half_height, 1.0 - half_height);
 }
@@ -34,7 +35,8 @@ void settle(LatLongView& view, const PixelRectangle& viewport) {
 
 glm::dvec2 lat_long(const glm::dvec3& direction) {
     const glm::dvec3 w = glm::normalize(direction);
-    return {0.5 - std::atan2(w.x, w.z) / (2.0 * Pi), 0.5 - std::asin(std::clamp(w.y, -1.0, 1.0)) / Pi};
+    return {0.5 - std::atan2(w.x, w.z) / (2.0 * Pi),
+            0.5 - std::asin(std::clamp(w.y, -1.0, 1.0)) / Pi};
 }
 
 glm::dvec3 direction_at(const glm::dvec2& uv) {
@@ -74,7 +76,8 @@ std::optional<glm::dvec3> LatLongView::direction(const PixelRectangle& viewport,
     return direction_at(uv);
 }
 
-glm::dvec2 LatLongView::pixel_of(const PixelRectangle& viewport, const glm::dvec3& direction) const {
+glm::dvec2 LatLongView::pixel_of(const PixelRectangle& viewport,
+                                 const glm::dvec3& direction) const {
     glm::dvec2 uv = lat_long(direction);
     uv.x += std::round(center.x - uv.x);
     return pixel_at(viewport, uv);

@@ -18,10 +18,12 @@ namespace {
 
 constexpr const char* Degrees = "%.1f\xc2\xb0";
 
-/// A layer of a kind where the environment's view looks, as bright as the scene's exposure asks for.
+/// A layer of a kind where the environment's view looks, as bright as the scene's exposure asks
+/// for.
 cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap::Region region,
                               cubemap::Effect effect) {
-    const glm::dvec3 direction = turned(direction_at(state.lat_long.center), -state.desk.editor().rotation());
+    const glm::dvec3 direction =
+        turned(direction_at(state.lat_long.center), -state.desk.editor().rotation());
     if (auto* disc = std::get_if<cubemap::Disc>(&region))
         disc->direction = direction;
     else if (auto* box = std::get_if<cubemap::Rectangle>(&region))
@@ -48,19 +50,21 @@ void next(const char* label) {
 void add_buttons(ViewState& state) {
     std::function<void()> later;
     if (ImGui::Button("+ Disc"))
-        state.desk.add(new_layer(state, "Disc", cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
+        state.desk.add(new_layer(state, "Disc",
+                                 cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
                                  cubemap::Emit{}));
     hint("a round light");
     next("+ Soft box");
     if (ImGui::Button("+ Soft box"))
-        state.desk.add(
-            new_layer(state, "Soft box",
-                      cubemap::Rectangle{.width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
-                      cubemap::Emit{}));
+        state.desk.add(new_layer(
+            state, "Soft box",
+            cubemap::Rectangle{.width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
+            cubemap::Emit{}));
     hint("a rectangle that gives light");
     next("+ Gain");
     if (ImGui::Button("+ Gain"))
-        state.desk.add(new_layer(state, "Gain", cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
+        state.desk.add(new_layer(state, "Gain",
+                                 cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
                                  cubemap::Gain{.factor = 0.25f}));
     hint("a disc that dims or brightens what is there");
     next("+ Lasso");
@@ -276,8 +280,8 @@ void files(ViewState& state) {
     if (std::exchange(state.wants_path, false))
         ImGui::SetKeyboardFocusHere();
     const bool entered =
-        ImGui::InputTextWithHint("##path", "file: .exr .hdr .json, or drop one on the window", &state.path,
-                                 ImGuiInputTextFlags_EnterReturnsTrue);
+        ImGui::InputTextWithHint("##path", "file: .exr .hdr .json, or drop one on the window",
+                                 &state.path, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
     if (ImGui::Button("Open") || entered)
         open(state, state.path);
@@ -299,7 +303,8 @@ void layer_panel(ViewState& state, const PanelLayout& layout) {
         std::function<void()> later;
         const float row = ImGui::GetFrameHeightWithSpacing();
         const float fields_height = row * static_cast<float>(num_field_rows(state)) + row + 14.0f;
-        const float list_height = std::max(ImGui::GetContentRegionAvail().y - fields_height, 2.5f * row);
+        const float list_height =
+            std::max(ImGui::GetContentRegionAvail().y - fields_height, 2.5f * row);
         ImGui::BeginChild("list", {0.0f, list_height}, true);
         for (std::size_t i = state.desk.layers().size(); i-- > 0;) // the top of the stack first
             if (std::function<void()> wanted = layer_row(state, i))
@@ -331,10 +336,10 @@ void status_panel(const ViewState& state, const PanelLayout& layout) {
     const EditCost& cost = state.desk.last_cost();
     ImGui::Text("frame %.1f ms", 1e3 * state.frame_seconds);
     ImGui::SameLine(0.0f, 22.0f);
-    const std::string last =
-        fmt::format("last edit {:.2f} ms: {} of {} clusters, {} of {} receivers", 1e3 * cost.seconds,
-                    cost.report.num_clusters, editor.relighter().transfer().num_clusters(),
-                    cost.report.num_receivers, editor.radiance().size());
+    const std::string last = fmt::format(
+        "last edit {:.2f} ms: {} of {} clusters, {} of {} receivers", 1e3 * cost.seconds,
+        cost.report.num_clusters, editor.relighter().transfer().num_clusters(),
+        cost.report.num_receivers, editor.radiance().size());
     ImGui::TextUnformatted(last.c_str());
     ImGui::SameLine(0.0f, 22.0f);
     if (state.message_is_error)

@@ -11,7 +11,8 @@
 
 namespace relumine::viewer {
 
-LightDesk::LightDesk(relight::LightEditor& editor, std::filesystem::path base_path) : editor_(editor) {
+LightDesk::LightDesk(relight::LightEditor& editor, std::filesystem::path base_path)
+    : editor_(editor) {
     editor_.forget_history();
     note_base_path(base_path);
     note_all_texels();
@@ -21,7 +22,8 @@ template<typename Edit>
 void LightDesk::timed(Edit edit) {
     const auto start = std::chrono::steady_clock::now();
     last_cost_.report = edit();
-    last_cost_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    last_cost_.seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::span<const cubemap::TexelRectangle> changed = editor_.changed_texels();
     changed_texels_.insert(changed_texels_.end(), changed.begin(), changed.end());
     ++version_;
@@ -42,8 +44,8 @@ std::vector<cubemap::TexelRectangle> LightDesk::take_changed_texels() {
 }
 
 std::optional<std::size_t> LightDesk::find(const std::string& name) const {
-    const auto found =
-        std::find_if(layers().begin(), layers().end(), [&](const auto& layer) { return layer.name == name; });
+    const auto found = std::find_if(layers().begin(), layers().end(),
+                                    [&](const auto& layer) { return layer.name == name; });
     return found == layers().end()
                ? std::nullopt
                : std::optional<std::size_t>(static_cast<std::size_t>(found - layers().begin()));
@@ -114,7 +116,8 @@ LightDesk::Held LightDesk::held_at(const glm::dvec3& direction, double tolerance
     for (std::size_t i = layers().size(); i-- > 0;) {
         if (!layers()[i].on)
             continue;
-        if (const Grip grip = grip_at(layers()[i].region, before_turn, tolerance_degrees); grip != Grip::None)
+        if (const Grip grip = grip_at(layers()[i].region, before_turn, tolerance_degrees);
+            grip != Grip::None)
             return {.index = i, .grip = grip};
     }
     return {};

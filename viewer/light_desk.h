@@ -1,4 +1,5 @@
-// What the window edits: layers over an environment, what is selected and dragged, and what each edit cost. Without a window.
+// What the window edits: layers over an environment, what is selected and dragged, and what each
+// edit cost. Without a window.
 #pragma once
 
 #include <cstddef>
@@ -23,14 +24,15 @@ namespace relumine::viewer {
 /// What the last edit did.
 struct EditCost {
     relight::UpdateReport report;
-    double seconds = 0.0; ///< compositing, relighting and publishing together
+    /// Compositing, relighting and publishing together
+    double seconds = 0.0;
 };
 
 /// Directions are as seen: after the rotation.
 class LightDesk {
 public:
-    /// The editor must outlive the desk, and be edited through it alone. Its present state becomes the one before all steps of undo.
-    /// `base_path`: the file of its base.
+    /// The editor must outlive the desk, and be edited through it alone. Its present state becomes
+    /// the one before all steps of undo. `base_path`: the file of its base.
     explicit LightDesk(relight::LightEditor& editor, std::filesystem::path base_path = {});
 
     [[nodiscard]] const relight::LightEditor& editor() const { return editor_; }
@@ -42,7 +44,8 @@ public:
 
     // Each of these is one edit and one step of undo.
 
-    /// On top; its name gets a number if there is one of that name. Selects it and returns its index.
+    /// On top; its name gets a number if there is one of that name. Selects it and returns its
+    /// index.
     std::size_t add(cubemap::LightLayer layer);
     void remove(std::size_t index);
     /// Up to where another layer is now.
@@ -63,7 +66,8 @@ public:
     /// The file of the present base, after an undo too; empty where there is none.
     [[nodiscard]] std::filesystem::path base_path() const;
 
-    /// The layer under a direction: the selected one first, then from the top; those that are off only if selected. Nothing: None.
+    /// The layer under a direction: the selected one first, then from the top; those that are off
+    /// only if selected. Nothing: None.
     struct Held {
         std::size_t index = 0;
         Grip grip = Grip::None;
@@ -76,14 +80,16 @@ public:
     void end_drag();
     [[nodiscard]] bool is_dragging() const { return drag_.has_value(); }
 
-    /// Begins a stroke on top of the layers, extends it, and ends it. Points closer than a quarter of the radius are left out.
+    /// Begins a stroke on top of the layers, extends it, and ends it. Points closer than a quarter
+    /// of the radius are left out.
     void begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3& direction);
     void stroke_to(const glm::dvec3& direction);
     void end_stroke();
     [[nodiscard]] bool is_painting() const { return painting_; }
 
-    /// Draws an outline, at first without any effect; the end adds `layer` on top, its lasso with these points, as one step of undo, and
-    /// selects it. False, with nothing added, when there are too few points. Throws std::invalid_argument for an outline that no lasso can have.
+    /// Draws an outline, at first without any effect; the end adds `layer` on top, its lasso with
+    /// these points, as one step of undo, and selects it. False, with nothing added, when there are
+    /// too few points. Throws std::invalid_argument for an outline that no lasso can have.
     void begin_lasso(const glm::dvec3& direction);
     /// Points closer to the last than this are left out.
     void lasso_to(const glm::dvec3& direction, double spacing_degrees);
@@ -113,7 +119,9 @@ private:
     void note_all_texels();
     void note_base_path(const std::filesystem::path& path);
     [[nodiscard]] std::string unused_name(const std::string& name) const;
-    [[nodiscard]] std::vector<cubemap::LightLayer> copy() const { return {layers().begin(), layers().end()}; }
+    [[nodiscard]] std::vector<cubemap::LightLayer> copy() const {
+        return {layers().begin(), layers().end()};
+    }
 
     relight::LightEditor& editor_;
     std::optional<std::size_t> selected_;
@@ -121,7 +129,8 @@ private:
     bool painting_ = false;
     std::vector<glm::dvec3> lasso_;
     /// The files of bases that the history may come back to.
-    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, std::filesystem::path>> base_paths_;
+    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, std::filesystem::path>>
+        base_paths_;
     EditCost last_cost_;
     std::vector<double> drag_seconds_;
     std::vector<cubemap::TexelRectangle> changed_texels_;

@@ -6,13 +6,16 @@ namespace relumine::viewer {
 struct SceneLook {
     float exposure_ev = 0.0f;
     bool wireframe = false;
-    bool background = true; ///< the environment behind the mesh
+    /// The environment behind the mesh
+    bool background = true;
 };
 
 struct EnvironmentLook {
     float exposure_ev = 0.0f;
-    bool quadtree = false; ///< the clusters' borders
-    bool heat = false;     ///< what lights the chosen receiver
+    /// The clusters' borders
+    bool quadtree = false;
+    /// What lights the chosen receiver
+    bool heat = false;
 };
 
 } // namespace relumine::viewer

@@ -21,7 +21,8 @@ float radians(float degrees) {
 }
 
 float aspect(const PixelRectangle& viewport) {
-    return static_cast<float>(std::max(viewport.width, 1)) / static_cast<float>(std::max(viewport.height, 1));
+    return static_cast<float>(std::max(viewport.width, 1)) /
+           static_cast<float>(std::max(viewport.height, 1));
 }
 
 } // namespace
@@ -51,12 +52,14 @@ void OrbitCamera::zoom(float steps) {
 
 OrbitCamera orbit_camera(const relight::Camera& camera) {
     const glm::vec3 from_target = camera.eye - camera.target;
-    OrbitCamera result{
-        .target = camera.target, .distance = glm::length(from_target), .fov_degrees = camera.fov_degrees};
+    OrbitCamera result{.target = camera.target,
+                       .distance = glm::length(from_target),
+                       .fov_degrees = camera.fov_degrees};
     if (result.distance > 0.0f) {
         result.yaw = std::atan2(from_target.x, from_target.z);
-        result.pitch = std::clamp(std::asin(std::clamp(from_target.y / result.distance, -1.0f, 1.0f)),
-                                  -MaxPitch, MaxPitch);
+        result.pitch =
+            std::clamp(std::asin(std::clamp(from_target.y / result.distance, -1.0f, 1.0f)),
+                       -MaxPitch, MaxPitch);
     }
     return result;
 }
@@ -80,9 +83,9 @@ glm::mat4 clip_from_world(const OrbitCamera& camera, const PixelRectangle& viewp
 
 Ray ray_through(const OrbitCamera& camera, const PixelRectangle& viewport, const glm::vec2& pixel) {
     const CameraFrame axes = frame(camera, viewport);
-    const float across =
-        2.0f * (pixel.x - static_cast<float>(viewport.x)) / static_cast<float>(std::max(viewport.width, 1)) -
-        1.0f;
+    const float across = 2.0f * (pixel.x - static_cast<float>(viewport.x)) /
+                             static_cast<float>(std::max(viewport.width, 1)) -
+                         1.0f;
     const float upwards = 1.0f - 2.0f * (pixel.y - static_cast<float>(viewport.y)) /
                                      static_cast<float>(std::max(viewport.height, 1));
     return {.origin = camera.eye(),

@@ -15,7 +15,8 @@ struct OrbitCamera {
     glm::vec3 target{0.0f};
     float distance = 1.0f;
     float yaw = 0.0f;
-    float pitch = 0.0f; ///< above the horizon, within a quarter turn
+    /// Above the horizon, within a quarter turn
+    float pitch = 0.0f;
     float fov_degrees = 35.0f;
 
     /// Drags by pixels: to the right turns the scene to the right, down shows more of its top.
@@ -30,7 +31,8 @@ struct OrbitCamera {
 
 struct Ray {
     glm::vec3 origin{0.0f};
-    glm::vec3 direction{0.0f, 0.0f, -1.0f}; ///< unit
+    /// unit
+    glm::vec3 direction{0.0f, 0.0f, -1.0f};
 };
 
 /// Axes of the picture: right and up reach its edges at distance 1 along `forward`.

@@ -13,18 +13,27 @@ PanelLayout panel_layout(int width, int height) {
     const int right_width = std::clamp(width * 46 / 100, 1, 900);
     const int left_width = std::max(width - right_width - Gap, 1);
     const int right_x = left_width + Gap;
-    const int environment_height = std::max(std::min(right_width / 2, body - EnvironmentToolsHeight), 1);
+    const int environment_height =
+        std::max(std::min(right_width / 2, body - EnvironmentToolsHeight), 1);
     const int layers_y = EnvironmentToolsHeight + environment_height + Gap;
-    return {
-        .scene_tools = {.x = 0, .y = 0, .width = left_width, .height = ToolsHeight},
-        .scene = {.x = 0, .y = ToolsHeight, .width = left_width, .height = std::max(body - ToolsHeight, 1)},
-        .environment_tools = {.x = right_x, .y = 0, .width = right_width, .height = EnvironmentToolsHeight},
-        .environment = {.x = right_x,
-                        .y = EnvironmentToolsHeight,
-                        .width = right_width,
-                        .height = environment_height},
-        .layers = {.x = right_x, .y = layers_y, .width = right_width, .height = std::max(body - layers_y, 1)},
-        .status = {.x = 0, .y = body + Gap, .width = width, .height = StatusHeight}};
+    return {.scene_tools = {.x = 0, .y = 0, .width = left_width, .height = ToolsHeight},
+            .scene = {.x = 0,
+                      .y = ToolsHeight,
+                      .width = left_width,
+                      .height = std::max(body - ToolsHeight, 1)},
+            .environment_tools = {.x = right_x,
+                                  .y = 0,
+                                  .width = right_width,
+                                  .height = EnvironmentToolsHeight},
+            .environment = {.x = right_x,
+                            .y = EnvironmentToolsHeight,
+                            .width = right_width,
+                            .height = environment_height},
+            .layers = {.x = right_x,
+                       .y = layers_y,
+                       .width = right_width,
+                       .height = std::max(body - layers_y, 1)},
+            .status = {.x = 0, .y = body + Gap, .width = width, .height = StatusHeight}};
 }
 
 } // namespace relumine::viewer

@@ -1,4 +1,5 @@
-// Where the parts of the window lie. Depends on the window's size alone, so that a script knows its pixels.
+// Where the parts of the window lie. Depends on the window's size alone, so that a script knows its
+// pixels.
 #pragma once
 
 namespace relumine::viewer {
@@ -16,12 +17,14 @@ struct PixelRectangle {
     }
 };
 
-/// Left the scene under its tools; right the environment under its own, the layers below; a line of figures at the bottom.
+/// Left the scene under its tools; right the environment under its own, the layers below; a line of
+/// figures at the bottom.
 struct PanelLayout {
     PixelRectangle scene_tools;
     PixelRectangle scene;
     PixelRectangle environment_tools;
-    PixelRectangle environment; ///< twice as wide as high
+    /// Twice as wide as high
+    PixelRectangle environment;
     PixelRectangle layers;
     PixelRectangle status;
 };

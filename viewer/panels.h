@@ -1,5 +1,6 @@
-// The window's panels, drawn with Dear ImGui between its NewFrame() and Render(). The two pictures are drawn before, with OpenGL; here
-// are the tools, the outlines over the pictures and what the pointer does there.
+// The window's panels, drawn with Dear ImGui between its NewFrame() and Render(). The two pictures
+// are drawn before, with OpenGL; here are the tools, the outlines over the pictures and what the
+// pointer does there.
 #pragma once
 
 #include "viewer/panel_layout.h"
@@ -14,7 +15,8 @@ void status_panel(const ViewState& state, const PanelLayout& layout);
 /// Asks what a dropped picture is to be, as long as there is one.
 void drop_dialogue(ViewState& state);
 
-/// A panel without a frame of its own at a place; end with ImGui::End(). `over_picture`: nothing behind it.
+/// A panel without a frame of its own at a place; end with ImGui::End(). `over_picture`: nothing
+/// behind it.
 void begin_panel(const char* name, const PixelRectangle& place, bool over_picture = false);
 
 } // namespace relumine::viewer

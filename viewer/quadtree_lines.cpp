@@ -10,7 +10,8 @@ namespace relumine::viewer {
 
 std::vector<glm::vec2> quadtree_lines(const prt::Quadtree& quadtree) {
     std::vector<glm::vec2> ends;
-    const auto append_line = [&](cubemap::Face face, glm::dvec2 from, glm::dvec2 to, int num_pieces) {
+    const auto append_line = [&](cubemap::Face face, glm::dvec2 from, glm::dvec2 to,
+                                 int num_pieces) {
         std::vector<glm::dvec3> line;
         for (int i = 0; i <= num_pieces; ++i) {
             const glm::dvec2 at = from + (to - from) * (static_cast<double>(i) / num_pieces);
@@ -27,14 +28,17 @@ std::vector<glm::vec2> quadtree_lines(const prt::Quadtree& quadtree) {
         const int num_pieces = std::max(1, 32 >> std::min<int>(cell.level, 5));
         const double size = cell.size();
         const glm::dvec2 corner(cell.x * size, cell.y * size);
-        // Left and top of every cell; right and bottom only at the face's edge, elsewhere a neighbour draws them.
+        // Left and top of every cell; right and bottom only at the face's edge, elsewhere a
+        // neighbour draws them.
         append_line(cell.face, corner, corner + glm::dvec2(size, 0.0), num_pieces);
         append_line(cell.face, corner, corner + glm::dvec2(0.0, size), num_pieces);
         const std::uint32_t last = (1u << cell.level) - 1u;
         if (cell.x == last)
-            append_line(cell.face, corner + glm::dvec2(size, 0.0), corner + glm::dvec2(size), num_pieces);
+            append_line(cell.face, corner + glm::dvec2(size, 0.0), corner + glm::dvec2(size),
+                        num_pieces);
         if (cell.y == last)
-            append_line(cell.face, corner + glm::dvec2(0.0, size), corner + glm::dvec2(size), num_pieces);
+            append_line(cell.face, corner + glm::dvec2(0.0, size), corner + glm::dvec2(size),
+                        num_pieces);
     }
     return ends;
 }

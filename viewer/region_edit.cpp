@@ -29,11 +29,12 @@ glm::dmat3 rotation_between(const glm::dvec3& from, const glm::dvec3& to) {
         return glm::dmat3(1.0);
     // Rodrigues' formula: R = c I + [axis]x + axis axis^T / (1 + c); columns.
     const double k = 1.0 / (1.0 + cosine);
-    return {
-        glm::dvec3(cosine + k * axis.x * axis.x, axis.z + k * axis.x * axis.y, -axis.y + k * axis.x * axis.z),
-        glm::dvec3(-axis.z + k * axis.x * axis.y, cosine + k * axis.y * axis.y, axis.x + k * axis.y * axis.z),
-        glm::dvec3(axis.y + k * axis.x * axis.z, -axis.x + k * axis.y * axis.z,
-                   cosine + k * axis.z * axis.z)};
+    return {glm::dvec3(cosine + k * axis.x * axis.x, axis.z + k * axis.x * axis.y,
+                       -axis.y + k * axis.x * axis.z),
+            glm::dvec3(-axis.z + k * axis.x * axis.y, cosine + k * axis.y * axis.y,
+                       axis.x + k * axis.y * axis.z),
+            glm::dvec3(axis.y + k * axis.x * axis.z, -axis.x + k * axis.y * axis.z,
+                       cosine + k * axis.z * axis.z)};
 }
 
 struct Move {
@@ -48,7 +49,8 @@ struct Move {
     }
 };
 
-/// Degrees from a direction to the nearest point of a line; exact at its points, a chord's error between them.
+/// Degrees from a direction to the nearest point of a line; exact at its points, a chord's error
+/// between them.
 double distance_to(std::span<const glm::dvec3> line, const glm::dvec3& direction) {
     const glm::dvec3 w = glm::normalize(direction);
     double best = std::numeric_limits<double>::infinity();
@@ -66,7 +68,8 @@ struct Resize {
     glm::dvec3 from, to;
 
     void operator()(cubemap::Disc& disc) const {
-        const double grown = angle_between(disc.direction, to) - angle_between(disc.direction, from);
+        const double grown =
+            angle_between(disc.direction, to) - angle_between(disc.direction, from);
         disc.radius_degrees = std::clamp(disc.radius_degrees + grown, 0.05, 180.0);
     }
     void operator()(cubemap::Rectangle& box) const {
@@ -89,15 +92,18 @@ struct Resize {
         double widest = 0.0;
         for (const glm::dvec3& point : lasso.points)
             widest = std::max(widest, angle_between(center, point));
-        const double wanted = angle_between(center, to) / std::max(angle_between(center, from), 1e-3);
-        // The mean moves when points spread: a good way short of the 89.9 degrees that a lasso may have.
+        const double wanted =
+            angle_between(center, to) / std::max(angle_between(center, from), 1e-3);
+        // The mean moves when points spread: a good way short of the 89.9 degrees that a lasso may
+        // have.
         const double scale = std::clamp(wanted, 0.01, std::max(1.0, 60.0 / std::max(widest, 1e-3)));
         for (glm::dvec3& point : lasso.points) {
             const double angle = angle_between(center, point) * RadiansPerDegree;
             const glm::dvec3 across =
                 glm::normalize(point) - center * glm::dot(glm::normalize(point), center);
             if (glm::length(across) > 0.0)
-                point = std::cos(scale * angle) * center + std::sin(scale * angle) * glm::normalize(across);
+                point = std::cos(scale * angle) * center +
+                        std::sin(scale * angle) * glm::normalize(across);
         }
     }
     void operator()(cubemap::Stroke& stroke) const {
@@ -143,7 +149,8 @@ cubemap::Region moved(const cubemap::Region& region, const glm::dvec3& from, con
     return result;
 }
 
-cubemap::Region resized(const cubemap::Region& region, const glm::dvec3& from, const glm::dvec3& to) {
+cubemap::Region resized(const cubemap::Region& region, const glm::dvec3& from,
+                        const glm::dvec3& to) {
     cubemap::Region result = region;
     std::visit(Resize{glm::normalize(from), glm::normalize(to)}, result);
     return result;

@@ -23,7 +23,8 @@ glm::dvec3 any_across(const glm::dvec3& unit) {
     return glm::normalize(glm::cross(unit, axis));
 }
 
-/// Appends points of the circle about `center`, from angle `begin` to `end` against `right` and `up`.
+/// Appends points of the circle about `center`, from angle `begin` to `end` against `right` and
+/// `up`.
 void append_circle(std::vector<glm::dvec3>& line, const glm::dvec3& center, const glm::dvec3& right,
                    double radius_degrees, double begin, double end, int num_points) {
     const glm::dvec3 up = glm::cross(center, right);
@@ -49,7 +50,8 @@ std::vector<glm::dvec3> stroke_outline(const cubemap::Stroke& stroke) {
                       CirclePoints);
         return line;
     }
-    // To the right of the way that the line takes at a point, as seen from the centre of the sphere.
+    // To the right of the way that the line takes at a point, as seen from the centre of the
+    // sphere.
     const auto side = [&](std::size_t i) {
         const glm::dvec3& before = points[i > 0 ? i - 1 : i];
         const glm::dvec3& after = points[i + 1 < points.size() ? i + 1 : i];
@@ -59,7 +61,8 @@ std::vector<glm::dvec3> stroke_outline(const cubemap::Stroke& stroke) {
     const double radius = stroke.radius_degrees * RadiansPerDegree;
     for (std::size_t i = 0; i < points.size(); ++i)
         line.push_back(std::cos(radius) * points[i] + std::sin(radius) * side(i));
-    append_circle(line, points.back(), side(points.size() - 1), stroke.radius_degrees, 0.0, Pi, SidePoints);
+    append_circle(line, points.back(), side(points.size() - 1), stroke.radius_degrees, 0.0, Pi,
+                  SidePoints);
     for (std::size_t i = points.size(); i-- > 0;)
         line.push_back(std::cos(radius) * points[i] - std::sin(radius) * side(i));
     append_circle(line, points.front(), -side(0), stroke.radius_degrees, 0.0, Pi, SidePoints);
@@ -71,20 +74,26 @@ struct Outline {
     std::vector<glm::dvec3> operator()(const cubemap::Disc& disc) const {
         std::vector<glm::dvec3> line;
         const glm::dvec3 center = glm::normalize(disc.direction);
-        append_circle(line, center, any_across(center), disc.radius_degrees, 0.0, 2.0 * Pi, CirclePoints);
+        append_circle(line, center, any_across(center), disc.radius_degrees, 0.0, 2.0 * Pi,
+                      CirclePoints);
         return line;
     }
     std::vector<glm::dvec3> operator()(const cubemap::Rectangle& box) const {
         const BoxFrame frame = box_frame(box);
-        const glm::dvec3 across = std::tan(0.5 * box.width_degrees * RadiansPerDegree) * frame.right;
+        const glm::dvec3 across =
+            std::tan(0.5 * box.width_degrees * RadiansPerDegree) * frame.right;
         const glm::dvec3 upwards = std::tan(0.5 * box.height_degrees * RadiansPerDegree) * frame.up;
         const std::vector<glm::dvec3> corners = {
-            frame.normal - across - upwards, frame.normal + across - upwards, frame.normal + across + upwards,
-            frame.normal - across + upwards};
+            frame.normal - across - upwards, frame.normal + across - upwards,
+            frame.normal + across + upwards, frame.normal - across + upwards};
         return polygon(corners);
     }
-    std::vector<glm::dvec3> operator()(const cubemap::Lasso& lasso) const { return polygon(lasso.points); }
-    std::vector<glm::dvec3> operator()(const cubemap::Stroke& stroke) const { return stroke_outline(stroke); }
+    std::vector<glm::dvec3> operator()(const cubemap::Lasso& lasso) const {
+        return polygon(lasso.points);
+    }
+    std::vector<glm::dvec3> operator()(const cubemap::Stroke& stroke) const {
+        return stroke_outline(stroke);
+    }
 
     static std::vector<glm::dvec3> polygon(std::span<const glm::dvec3> corners) {
         std::vector<glm::dvec3> line;
@@ -100,8 +109,12 @@ struct Outline {
 };
 
 struct Middle {
-    glm::dvec3 operator()(const cubemap::Disc& disc) const { return glm::normalize(disc.direction); }
-    glm::dvec3 operator()(const cubemap::Rectangle& box) const { return glm::normalize(box.direction); }
+    glm::dvec3 operator()(const cubemap::Disc& disc) const {
+        return glm::normalize(disc.direction);
+    }
+    glm::dvec3 operator()(const cubemap::Rectangle& box) const {
+        return glm::normalize(box.direction);
+    }
     glm::dvec3 operator()(const cubemap::Lasso& lasso) const { return mean(lasso.points); }
     glm::dvec3 operator()(const cubemap::Stroke& stroke) const { return mean(stroke.points); }
 
@@ -117,9 +130,11 @@ struct Middle {
 
 BoxFrame box_frame(const cubemap::Rectangle& box) {
     const glm::dvec3 normal = glm::normalize(box.direction);
-    // Upright: +Y up on the tangent plane; straight above its top points to +Z, straight below to -Z.
+    // Upright: +Y up on the tangent plane; straight above its top points to +Z, straight below to
+    // -Z.
     glm::dvec3 up = glm::dvec3(0, 1, 0) - normal * normal.y;
-    up = glm::length(up) > 1e-9 ? glm::normalize(up) : glm::dvec3(0.0, 0.0, normal.y > 0.0 ? 1.0 : -1.0);
+    up = glm::length(up) > 1e-9 ? glm::normalize(up)
+                                : glm::dvec3(0.0, 0.0, normal.y > 0.0 ? 1.0 : -1.0);
     const glm::dvec3 right = glm::cross(normal, up);
     const double roll = box.roll_degrees * RadiansPerDegree;
     return {.right = std::cos(roll) * right + std::sin(roll) * up,

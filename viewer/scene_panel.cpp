@@ -21,7 +21,8 @@ void tools(ViewState& state, const PixelRectangle& place, const PixelRectangle& 
     ImGui::TextUnformatted("Exposure");
     ImGui::SameLine();
     ImGui::SetNextItemWidth(150.0f);
-    ImGui::SliderFloat("##scene exposure", &state.scene_look.exposure_ev, -10.0f, 10.0f, "%+.2f EV");
+    ImGui::SliderFloat("##scene exposure", &state.scene_look.exposure_ev, -10.0f, 10.0f,
+                       "%+.2f EV");
     ImGui::SameLine();
     ImGui::Checkbox("Wireframe", &state.scene_look.wireframe);
     ImGui::SameLine();
@@ -63,9 +64,10 @@ void draw_receiver(const ViewState& state, const PixelRectangle& place) {
     const glm::vec4 clip = clip_from_world(state.camera, place, 1.0f) * glm::vec4(position, 1.0f);
     if (clip.w <= 0.0f)
         return;
-    const ImVec2 at(
-        static_cast<float>(place.x) + (0.5f + 0.5f * clip.x / clip.w) * static_cast<float>(place.width),
-        static_cast<float>(place.y) + (0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(place.height));
+    const ImVec2 at(static_cast<float>(place.x) +
+                        (0.5f + 0.5f * clip.x / clip.w) * static_cast<float>(place.width),
+                    static_cast<float>(place.y) +
+                        (0.5f - 0.5f * clip.y / clip.w) * static_cast<float>(place.height));
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddCircle(at, 7.0f, IM_COL32(0, 0, 0, 200), 0, 4.0f);
     list.AddCircle(at, 7.0f, IM_COL32(255, 190, 60, 255), 0, 2.0f);
@@ -77,8 +79,8 @@ void begin_panel(const char* name, const PixelRectangle& place, bool over_pictur
     ImGui::SetNextWindowPos({static_cast<float>(place.x), static_cast<float>(place.y)});
     ImGui::SetNextWindowSize({static_cast<float>(place.width), static_cast<float>(place.height)});
     ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
-                             ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoBringToFrontOnFocus |
-                             ImGuiWindowFlags_NoNav;
+                             ImGuiWindowFlags_NoSavedSettings |
+                             ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav;
     if (over_picture)
         flags |= ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollWithMouse;
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, over_picture ? ImVec2(0, 0) : ImVec2(10, 7));

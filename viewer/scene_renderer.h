@@ -20,8 +20,8 @@ public:
     /// [num_vertices]
     void upload_radiance(std::span<const glm::vec3> radiance);
     /// Into the current viewport, of which `viewport` tells the shape. Clears its depth.
-    void draw(const OrbitCamera& camera, const PixelRectangle& viewport, const CubeTexture& environment,
-              const SceneLook& look) const;
+    void draw(const OrbitCamera& camera, const PixelRectangle& viewport,
+              const CubeTexture& environment, const SceneLook& look) const;
 
 private:
     void draw_background(const OrbitCamera& camera, const PixelRectangle& viewport,

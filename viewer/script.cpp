@@ -18,7 +18,8 @@ namespace relumine::viewer {
 
 namespace {
 
-/// What follows the command's word: t a word or "words in quotes", v X,Y,Z, n a number; ? before what may be missing.
+/// What follows the command's word: t a word or "words in quotes", v X,Y,Z, n a number; ? before
+/// what may be missing.
 struct Form {
     std::string_view name;
     Action action;
@@ -100,7 +101,8 @@ bool append_vector(std::string_view text, std::vector<double>& numbers) {
 }
 
 /// False when the words do not fit the form.
-bool read_arguments(const Form& form, const std::vector<std::string>& words, ScriptCommand& command) {
+bool read_arguments(const Form& form, const std::vector<std::string>& words,
+                    ScriptCommand& command) {
     std::size_t next = 1;
     bool optional = false;
     for (const char kind : form.arguments) {
@@ -167,19 +169,20 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
 
         const std::optional<std::vector<std::string>> words = words_of(line);
         if (!words)
-            throw std::runtime_error(
-                fmt::format("{}:{}: expected a closing quote, got the line's end", source, line_number));
+            throw std::runtime_error(fmt::format(
+                "{}:{}: expected a closing quote, got the line's end", source, line_number));
         if (words->empty())
             continue;
-        const auto form =
-            std::find_if(Forms.begin(), Forms.end(), [&](const Form& f) { return f.name == words->front(); });
+        const auto form = std::find_if(Forms.begin(), Forms.end(),
+                                       [&](const Form& f) { return f.name == words->front(); });
         if (form == Forms.end())
-            throw std::runtime_error(fmt::format("{}:{}: expected a command of docs/viewer.md, got '{}'",
-                                                 source, line_number, words->front()));
+            throw std::runtime_error(
+                fmt::format("{}:{}: expected a command of docs/viewer.md, got '{}'", source,
+                            line_number, words->front()));
         ScriptCommand command{.action = form->action, .line = line_number};
         if (!read_arguments(*form, *words, command))
-            throw std::runtime_error(
-                fmt::format("{}:{}: expected {}, got '{}'", source, line_number, form->usage, line));
+            throw std::runtime_error(fmt::format("{}:{}: expected {}, got '{}'", source,
+                                                 line_number, form->usage, line));
         commands.push_back(std::move(command));
     }
     return commands;

@@ -41,16 +41,20 @@ enum class Action {
 /// One line of a script.
 struct ScriptCommand {
     Action action = Action::Wait;
-    std::string text = {};            ///< a layer's name or a path
-    std::vector<double> numbers = {}; ///< in the order of the line; X,Y,Z is three
-    std::size_t line = 0;             ///< counted from 1
+    /// A layer's name or a path
+    std::string text = {};
+    /// In the order of the line; X,Y,Z is three
+    std::vector<double> numbers = {};
+    /// Counted from 1
+    std::size_t line = 0;
 };
 
 /// How many frames a command takes: a drag is spread over frames, each of them one event.
 [[nodiscard]] std::size_t num_frames(const ScriptCommand& command);
 
 /// Throws std::runtime_error "source:line: expected X, got Y".
-[[nodiscard]] std::vector<ScriptCommand> parse_script(std::string_view text, const std::string& source);
+[[nodiscard]] std::vector<ScriptCommand> parse_script(std::string_view text,
+                                                      const std::string& source);
 [[nodiscard]] std::vector<ScriptCommand> load_script(const std::filesystem::path& path);
 
 } // namespace relumine::viewer

@@ -31,7 +31,8 @@ std::size_t layer_of(const ScriptCommand& command, const ViewState& state) {
 
 /// The pointer arrives, presses and goes, and lets go.
 Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
-    const double t = frame < 2 ? 0.0 : static_cast<double>(frame - 1) / static_cast<double>(num_frames - 3);
+    const double t =
+        frame < 2 ? 0.0 : static_cast<double>(frame - 1) / static_cast<double>(num_frames - 3);
     const glm::dvec2 from(numbers[0], numbers[1]);
     const glm::dvec2 to(numbers[2], numbers[3]);
     return {.pixel = glm::vec2(from + (to - from) * std::min(t, 1.0)),
@@ -44,8 +45,8 @@ Pointer lassoed(const std::vector<double>& numbers, std::size_t frame, std::size
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(pointer.pixel.x);
     const glm::dvec2 from(numbers[0], numbers[1]);
     const glm::dvec2 to(numbers[2], numbers[3]);
-    pointer.pixel =
-        glm::vec2(0.5 * (from + to) + 0.5 * (to - from) * glm::dvec2(std::cos(angle), std::sin(angle)));
+    pointer.pixel = glm::vec2(0.5 * (from + to) +
+                              0.5 * (to - from) * glm::dvec2(std::cos(angle), std::sin(angle)));
     return pointer;
 }
 
@@ -90,7 +91,8 @@ ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
     return frame;
 }
 
-void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::size_t count, Frame& frame) {
+void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::size_t count,
+                         Frame& frame) {
     const std::vector<double>& n = command.numbers;
     const double t = static_cast<double>(frame_ + 1) / static_cast<double>(count);
     const bool is_last = frame_ + 1 == count;
@@ -102,23 +104,27 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
     case Action::Wait:
         break;
     case Action::AddDisc:
-        state.desk.add({.name = command.text,
-                        .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]}});
+        state.desk.add(
+            {.name = command.text,
+             .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]}});
         break;
     case Action::AddRectangle:
         state.desk.add({.name = command.text,
-                        .region = cubemap::Rectangle{
-                            .direction = vector_of(command), .width_degrees = n[3], .height_degrees = n[4]}});
+                        .region = cubemap::Rectangle{.direction = vector_of(command),
+                                                     .width_degrees = n[3],
+                                                     .height_degrees = n[4]}});
         break;
     case Action::AddGain:
-        state.desk.add({.name = command.text,
-                        .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]},
-                        .effect = cubemap::Gain{.factor = static_cast<float>(n[4])}});
+        state.desk.add(
+            {.name = command.text,
+             .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]},
+             .effect = cubemap::Gain{.factor = static_cast<float>(n[4])}});
         break;
     case Action::DragLayer: {
         const std::size_t index = layer_of(command, state);
         if (frame_ == 0) {
-            from_ = turned(middle(state.desk.layers()[index].region), state.desk.editor().rotation());
+            from_ =
+                turned(middle(state.desk.layers()[index].region), state.desk.editor().rotation());
             state.desk.begin_drag({.index = index, .grip = Grip::Body}, from_);
         }
         const glm::dvec3 on_way = from_ + (vector_of(command) - from_) * t;
@@ -149,7 +155,8 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
     case Action::DragEnvironment:
     case Action::PaintEnvironment:
     case Action::DragMesh:
-        state.tool = command.action == Action::PaintEnvironment && !is_last ? Tool::Paint : Tool::Move;
+        state.tool =
+            command.action == Action::PaintEnvironment && !is_last ? Tool::Paint : Tool::Move;
         frame.pointer = dragged(n, frame_, count);
         break;
     case Action::LassoEnvironment:

@@ -19,21 +19,27 @@ public:
     /// What the script asks of one frame of the window.
     struct Frame {
         std::optional<Pointer> pointer = {};
-        std::filesystem::path screenshot = {}; ///< to be taken when the frame is drawn; empty: none
+        /// To be taken when the frame is drawn; empty: none
+        std::filesystem::path screenshot = {};
     };
 
     [[nodiscard]] bool is_done() const { return next_ >= commands_.size(); }
-    /// Goes on by one frame. Throws std::runtime_error naming the line for a layer that does not exist or a file that cannot be opened.
+    /// Goes on by one frame. Throws std::runtime_error naming the line for a layer that does not
+    /// exist or a file that cannot be opened.
     Frame step(ViewState& state);
 
 private:
-    void apply(const ScriptCommand& command, ViewState& state, std::size_t num_frames, Frame& frame);
+    void apply(const ScriptCommand& command, ViewState& state, std::size_t num_frames,
+               Frame& frame);
 
     std::vector<ScriptCommand> commands_;
     std::size_t next_ = 0;
-    std::size_t frame_ = 0;  ///< of the present command
-    glm::dvec3 from_{0.0};   ///< where a drag of a layer began
-    double size_from_ = 0.0; ///< where a resize began
+    /// Of the present command
+    std::size_t frame_ = 0;
+    /// Where a drag of a layer began
+    glm::dvec3 from_{0.0};
+    /// Where a resize began
+    double size_from_ = 0.0;
 };
 
 } // namespace relumine::viewer

@@ -40,7 +40,8 @@ public:
         // While a layer is dragged the heat map stays as it was: it costs as much as a relighting.
         if (state.heat_is_stale && state.receiver && state.environment_look.heat &&
             !state.desk.is_dragging() && !state.desk.is_painting()) {
-            environment_.upload_heat(relight::contribution_map(editor.relighter(), {&*state.receiver, 1}));
+            environment_.upload_heat(
+                relight::contribution_map(editor.relighter(), {&*state.receiver, 1}));
             state.heat_is_stale = false;
         }
     }
@@ -92,8 +93,9 @@ class Idleness {
 public:
     void count() {
         const ImGuiIO& io = ImGui::GetIO();
-        const bool busy = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f || io.MouseWheel != 0.0f ||
-                          ImGui::IsAnyMouseDown() || ImGui::IsAnyItemActive();
+        const bool busy = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f ||
+                          io.MouseWheel != 0.0f || ImGui::IsAnyMouseDown() ||
+                          ImGui::IsAnyItemActive();
         idle_frames_ = busy ? 0 : idle_frames_ + 1;
     }
     [[nodiscard]] double wait_seconds() const { return idle_frames_ > 5 ? 0.1 : 0.0; }

@@ -16,21 +16,27 @@ namespace relumine::viewer {
 struct ViewOptions {
     int width = 1440;
     int height = 860;
-    std::optional<std::vector<ScriptCommand>> script = {}; ///< played, then the window closes
-    std::filesystem::path screenshot = {};                 ///< the last frame of the script; empty: none
-    std::stop_token stop = {};                             ///< closes the window
+    /// Played, then the window closes
+    std::optional<std::vector<ScriptCommand>> script = {};
+    /// The last frame of the script; empty: none
+    std::filesystem::path screenshot = {};
+    /// Closes the window
+    std::stop_token stop = {};
 };
 
 /// What happened.
 struct ViewReport {
-    std::string renderer; ///< OpenGL's own words
+    /// OpenGL's own words
+    std::string renderer;
     std::size_t num_frames = 0;
     double mean_frame_seconds = 0.0;
-    std::vector<double> drag_seconds = {}; ///< relighting, for every event of a drag
+    /// Relighting, for every event of a drag
+    std::vector<double> drag_seconds = {};
 };
 
-/// Shows the state, all of the mesh first, until the window is closed or the script ends. Throws std::runtime_error when no window can be opened, for what a
-/// script cannot do and for a screenshot that cannot be written.
+/// Shows the state, all of the mesh first, until the window is closed or the script ends. Throws
+/// std::runtime_error when no window can be opened, for what a script cannot do and for a
+/// screenshot that cannot be written.
 ViewReport view(ViewState& state, const ViewOptions& options = {});
 
 } // namespace relumine::viewer

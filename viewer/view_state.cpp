@@ -48,7 +48,8 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
     // Layers may be saved to another folder than they came from.
     for (cubemap::LightLayer& layer : file.layers)
         if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
-            patch->path = std::filesystem::absolute(path.parent_path() / patch->path).lexically_normal();
+            patch->path =
+                std::filesystem::absolute(path.parent_path() / patch->path).lexically_normal();
     state.desk.replace(std::move(file.layers));
     state.desk.select(std::nullopt);
     state.frames = std::move(file.frames);
@@ -74,7 +75,9 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
     const glm::vec3 weights(1.0f - hit->barycentric.x - hit->barycentric.y, hit->barycentric.x,
                             hit->barycentric.y);
     // The triangle's corner with the largest weight: the nearest, in all but needles of triangles.
-    const int corner = weights.x >= weights.y && weights.x >= weights.z ? 0 : weights.y >= weights.z ? 1 : 2;
+    const int corner = weights.x >= weights.y && weights.x >= weights.z ? 0
+                       : weights.y >= weights.z                         ? 1
+                                                                        : 2;
     state.receiver = state.mesh.triangles[hit->triangle][static_cast<std::size_t>(corner)];
     state.heat_is_stale = true;
 }
@@ -84,8 +87,8 @@ bool open(ViewState& state, const std::filesystem::path& path) {
         if (path.extension() == ".json")
             return open_layers(state, path);
         if (!is_picture(path))
-            throw std::runtime_error(fmt::format("{}: expected .exr, .hdr or .json, got '{}'", path.string(),
-                                                 path.extension().string()));
+            throw std::runtime_error(fmt::format("{}: expected .exr, .hdr or .json, got '{}'",
+                                                 path.string(), path.extension().string()));
         set_environment(state, path);
         state.desk.finish();
         return fmt::format("{}: {} texels a face", path.string(),
@@ -105,11 +108,10 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
         if (!is_picture(path)) {
             state.wants_path = true;
             throw std::runtime_error(
-                path.empty()
-                    ? std::string(
-                          "Which picture? Type its path (.exr, .hdr) below, or drop it on the window.")
-                    : fmt::format("{}: expected .exr or .hdr for an image layer, got '{}'", path.string(),
-                                  path.extension().string()));
+                path.empty() ? std::string("Which picture? Type its path (.exr, .hdr) below, or "
+                                           "drop it on the window.")
+                             : fmt::format("{}: expected .exr or .hdr for an image layer, got '{}'",
+                                           path.string(), path.extension().string()));
         }
         cubemap::ImagePatch patch{.path = std::filesystem::absolute(path).lexically_normal(),
                                   .picture = cubemap::load_picture(path)};
@@ -121,12 +123,13 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
         const auto degrees = [&](double pixels) {
             return std::max(0.1, 2.0 * std::atan(half * pixels / longer) * DegreesPerRadian);
         };
-        state.desk.add({.name = path.stem().string(),
-                        .region = cubemap::Rectangle{.direction = turned(direction_at(state.lat_long.center),
-                                                                         -state.desk.editor().rotation()),
-                                                     .width_degrees = degrees(full.width),
-                                                     .height_degrees = degrees(full.height)},
-                        .effect = std::move(patch)});
+        state.desk.add(
+            {.name = path.stem().string(),
+             .region = cubemap::Rectangle{.direction = turned(direction_at(state.lat_long.center),
+                                                              -state.desk.editor().rotation()),
+                                          .width_degrees = degrees(full.width),
+                                          .height_degrees = degrees(full.height)},
+             .effect = std::move(patch)});
         state.heat_is_stale = true;
         return fmt::format("{}: {} x {} pixels as a layer", path.string(), full.width, full.height);
     });
@@ -134,9 +137,11 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
 
 bool save_layers(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
-        cubemap::LightLayers file{.layers = {state.desk.layers().begin(), state.desk.layers().end()},
-                                  .frames = state.frames};
-        const std::filesystem::path folder = std::filesystem::absolute(path).lexically_normal().parent_path();
+        cubemap::LightLayers file{
+            .layers = {state.desk.layers().begin(), state.desk.layers().end()},
+            .frames = state.frames};
+        const std::filesystem::path folder =
+            std::filesystem::absolute(path).lexically_normal().parent_path();
         const auto from_folder = [&](const std::filesystem::path& named) {
             return std::filesystem::absolute(named).lexically_normal().lexically_proximate(folder);
         };
@@ -147,7 +152,8 @@ bool save_layers(ViewState& state, const std::filesystem::path& path) {
                 patch->path = from_folder(patch->path);
         // Key frames of layers that are gone go with them.
         for (cubemap::KeyFrame& frame : file.frames)
-            std::erase_if(frame.changes, [&](const auto& key) { return !state.desk.find(key.layer); });
+            std::erase_if(frame.changes,
+                          [&](const auto& key) { return !state.desk.find(key.layer); });
         std::erase_if(file.frames, [](const auto& frame) { return frame.changes.empty(); });
         cubemap::save_layers(path, file);
         return fmt::format("{}: saved {} layers", path.string(), file.layers.size());
@@ -156,7 +162,8 @@ bool save_layers(ViewState& state, const std::filesystem::path& path) {
 
 bool save_environment(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
-        cubemap::save_environment(path, state.desk.editor().environment(), cubemap::Layout::LatLong);
+        cubemap::save_environment(path, state.desk.editor().environment(),
+                                  cubemap::Layout::LatLong);
         return fmt::format("{}: saved the environment with its layers", path.string());
     });
 }

@@ -1,4 +1,5 @@
-// What the window's panels and scripts share: the scene, the desk, both views, what is shown and chosen. Without a window.
+// What the window's panels and scripts share: the scene, the desk, both views, what is shown and
+// chosen. Without a window.
 #pragma once
 
 #include <cstdint>
@@ -39,26 +40,35 @@ struct ViewState {
                               .region = cubemap::Lasso{.points = {}, .softness_degrees = 3.0},
                               .effect = cubemap::Gain{.factor = 0.25f}};
 
-    std::optional<std::uint32_t> receiver = {}; ///< the vertex that was clicked
-    bool heat_is_stale = false;                 ///< the contribution map has to be made anew
+    /// The vertex that was clicked
+    std::optional<std::uint32_t> receiver = {};
+    /// The contribution map has to be made anew
+    bool heat_is_stale = false;
 
-    std::vector<cubemap::KeyFrame> frames = {}; ///< of the layer file, kept for saving
-    std::string path = {};                      ///< the text field
-    bool wants_path = false;                    ///< the text field is to be typed into
-    std::filesystem::path dropped =
-        {}; ///< a picture of which the dialogue asks what it is to be; empty: none
+    /// Of the layer file, kept for saving
+    std::vector<cubemap::KeyFrame> frames = {};
+    /// The text field
+    std::string path = {};
+    /// The text field is to be typed into
+    bool wants_path = false;
+    /// A picture of which the dialogue asks what it is to be; empty: none
+    std::filesystem::path dropped = {};
     std::string message = {};
     bool message_is_error = false;
     double frame_seconds = 0.0;
 };
 
-/// The camera that shows all of the mesh but the ground, as `relumine relight` takes it for a picture of this size.
-[[nodiscard]] OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh, const PixelRectangle& viewport);
+/// The camera that shows all of the mesh but the ground, as `relumine relight` takes it for a
+/// picture of this size.
+[[nodiscard]] OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh,
+                                        const PixelRectangle& viewport);
 
-/// Chooses the receiver nearest to where a pixel's ray meets the mesh, or none, and shows what lights it.
+/// Chooses the receiver nearest to where a pixel's ray meets the mesh, or none, and shows what
+/// lights it.
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel);
 
-// Files. These report in `message` whether they worked and do not throw for what files may do; false for a failure.
+// Files. These report in `message` whether they worked and do not throw for what files may do;
+// false for a failure.
 
 /// A file that was dropped on the window: .json opens, a picture becomes `dropped`.
 bool drop(ViewState& state, const std::filesystem::path& path);

@@ -65,13 +65,14 @@ void set_style() {
 
 /// A font that most Linux systems have; Dear ImGui's own small one where none is found.
 void load_font(float scale) {
-    constexpr std::array Candidates = {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf",
-                                       "/usr/share/fonts/TTF/DejaVuSans.ttf",
-                                       "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
-                                       "/usr/share/fonts/noto/NotoSans-Regular.ttf"};
+    constexpr std::array Candidates = {
+        "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf",
+        "/usr/share/fonts/truetype/liberation/LiberationSans-Regular.ttf",
+        "/usr/share/fonts/noto/NotoSans-Regular.ttf"};
     ImGuiIO& io = ImGui::GetIO();
     for (const char* path : Candidates)
-        if (std::filesystem::exists(path) && io.Fonts->AddFontFromFileTTF(path, std::round(14.0f * scale)))
+        if (std::filesystem::exists(path) &&
+            io.Fonts->AddFontFromFileTTF(path, std::round(14.0f * scale)))
             return;
     io.Fonts->AddFontDefault();
 }
@@ -138,11 +139,11 @@ Window::Window(int width, int height, const std::string& title, bool scripted)
     glfwSetDropCallback(impl_->window, [](GLFWwindow* window, int count, const char** paths) {
         static_cast<Impl*>(glfwGetWindowUserPointer(window))->dropped.assign(paths, paths + count);
     });
-    glfwSetKeyCallback(
-        impl_->window, [](GLFWwindow* window, int key, int scancode, int action, int modifiers) {
-            if (action != GLFW_RELEASE)
-                static_cast<Impl*>(glfwGetWindowUserPointer(window))->on_key(key, scancode, modifiers);
-        });
+    glfwSetKeyCallback(impl_->window, [](GLFWwindow* window, int key, int scancode, int action,
+                                         int modifiers) {
+        if (action != GLFW_RELEASE)
+            static_cast<Impl*>(glfwGetWindowUserPointer(window))->on_key(key, scancode, modifiers);
+    });
 
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();

@@ -24,8 +24,8 @@ enum class Shortcut { Undo, Redo, Delete, FrameAll, Wireframe, Quadtree };
 
 class Window {
 public:
-    /// Throws std::runtime_error when there is no display or no OpenGL 3.3. If `scripted`, nothing of a person's mouse
-    /// reaches it, and frames come as fast as they are drawn.
+    /// Throws std::runtime_error when there is no display or no OpenGL 3.3. If `scripted`, nothing
+    /// of a person's mouse reaches it, and frames come as fast as they are drawn.
     Window(int width, int height, const std::string& title, bool scripted);
     ~Window();
     Window(const Window&) = delete;
@@ -35,7 +35,8 @@ public:
     /// In pixels of the window; the frame buffer may be finer.
     [[nodiscard]] PanelLayout layout() const;
 
-    /// Takes events (waits for one up to `wait_seconds`) and begins a frame of Dear ImGui. A script's pointer replaces the real one.
+    /// Takes events (waits for one up to `wait_seconds`) and begins a frame of Dear ImGui. A
+    /// script's pointer replaces the real one.
     void begin_frame(double wait_seconds, const std::optional<Pointer>& pointer);
     /// The OpenGL viewport of a part of the window.
     void set_viewport(const PixelRectangle& part) const;

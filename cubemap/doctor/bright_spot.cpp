@@ -12,14 +12,16 @@ namespace {
 
 constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
 
-/// The surroundings are a ring about the peak. Its inner radius leaves out the bloom that lenses put around the sun; its width is
-/// that of a piece of sky. Both are at least some texels in coarse maps.
+/// The surroundings are a ring about the peak. Its inner radius leaves out the bloom that lenses
+/// put around the sun; its width is that of a piece of sky. Both are at least some texels in coarse
+/// maps.
 constexpr double RingInnerDegrees = 8.0, RingOuterDegrees = 20.0;
 constexpr double RingInnerTexels = 3.0, RingOuterTexels = 6.0;
 /// No other spot is looked for closer to a peak.
 constexpr double ApartDegrees = 5.0;
 constexpr double ApartTexels = 2.0;
-/// A spot ends where the light is less than this part of its peak, or this many times its surroundings.
+/// A spot ends where the light is less than this part of its peak, or this many times its
+/// surroundings.
 constexpr double PeakPart = 0.01;
 constexpr double TimesSurroundings = 2.0;
 /// Peaks below this part of the brightest are not worth a look.
@@ -73,10 +75,10 @@ struct Finder {
     }
 
     [[nodiscard]] double surroundings(const glm::vec3& direction) const {
-        const double inner =
-            distance_of_angle(std::max(RingInnerDegrees * RadiansPerDegree, RingInnerTexels * texel_angle));
-        const double outer =
-            distance_of_angle(std::max(RingOuterDegrees * RadiansPerDegree, RingOuterTexels * texel_angle));
+        const double inner = distance_of_angle(
+            std::max(RingInnerDegrees * RadiansPerDegree, RingInnerTexels * texel_angle));
+        const double outer = distance_of_angle(
+            std::max(RingOuterDegrees * RadiansPerDegree, RingOuterTexels * texel_angle));
         std::vector<float> ring;
         near(direction, outer, [&](std::uint32_t texel, float squared) {
             if (squared > static_cast<float>(inner * inner))
@@ -94,9 +96,10 @@ struct Finder {
         spot.peak_direction = glm::normalize(glm::dvec3(directions[start]));
         spot.peak_luminance = luminances[start];
         spot.surrounding_luminance = surroundings(directions[start]);
-        const double level = std::max(TimesSurroundings * spot.surrounding_luminance,
-                                      spot.surrounding_luminance +
-                                          PeakPart * (spot.peak_luminance - spot.surrounding_luminance));
+        const double level =
+            std::max(TimesSurroundings * spot.surrounding_luminance,
+                     spot.surrounding_luminance +
+                         PeakPart * (spot.peak_luminance - spot.surrounding_luminance));
         const double farthest = distance_of_angle(std::max(max_radius, 2.0 * texel_angle));
         std::vector<std::uint32_t> front = {start};
         spot.texels = {start};
@@ -110,7 +113,8 @@ struct Finder {
                 seen[texel] = true;
                 if (luminances[texel] <= level)
                     continue;
-                if (glm::distance(directions[texel], directions[start]) > static_cast<float>(farthest)) {
+                if (glm::distance(directions[texel], directions[start]) >
+                    static_cast<float>(farthest)) {
                     spot.is_cut = true;
                     continue;
                 }
@@ -122,7 +126,8 @@ struct Finder {
         std::sort(spot.texels.begin(), spot.texels.end());
         for (const std::uint32_t texel : spot.texels) {
             spot.solid_angle += solid_angle(texel);
-            spot.irradiance += (luminances[texel] - spot.surrounding_luminance) * solid_angle(texel);
+            spot.irradiance +=
+                (luminances[texel] - spot.surrounding_luminance) * solid_angle(texel);
         }
         return spot;
     }
@@ -133,7 +138,8 @@ struct Finder {
             taken[texel] = true;
         const double apart =
             distance_of_angle(std::max(ApartDegrees * RadiansPerDegree, ApartTexels * texel_angle));
-        near(glm::vec3(spot.peak_direction), apart, [&](std::uint32_t texel, float) { taken[texel] = true; });
+        near(glm::vec3(spot.peak_direction), apart,
+             [&](std::uint32_t texel, float) { taken[texel] = true; });
     }
 
     std::uint32_t resolution;
@@ -155,7 +161,8 @@ std::uint32_t texel_index(const glm::dvec3& direction, std::uint32_t resolution)
            texel(point.s);
 }
 
-std::vector<std::uint32_t> grown(const std::vector<std::uint32_t>& texels, std::uint32_t resolution) {
+std::vector<std::uint32_t> grown(const std::vector<std::uint32_t>& texels,
+                                 std::uint32_t resolution) {
     std::vector<std::uint32_t> result;
     result.reserve(9 * texels.size());
     const std::uint32_t per_face = resolution * resolution;
@@ -166,13 +173,13 @@ std::vector<std::uint32_t> grown(const std::vector<std::uint32_t>& texels, std::
             for (std::int64_t dx = -1; dx <= 1; ++dx) {
                 const std::int64_t column = x + dx, row = y + dy;
                 if (column >= 0 && row >= 0 && column < resolution && row < resolution)
-                    result.push_back(
-                        static_cast<std::uint32_t>(static_cast<std::int64_t>(texel) + dy * resolution + dx));
+                    result.push_back(static_cast<std::uint32_t>(static_cast<std::int64_t>(texel) +
+                                                                dy * resolution + dx));
                 else // a point just beyond the face's border lies on its neighbour
-                    result.push_back(
-                        texel_index(cube_point(face, (static_cast<double>(column) + 0.5) / resolution,
-                                               (static_cast<double>(row) + 0.5) / resolution),
-                                    resolution));
+                    result.push_back(texel_index(
+                        cube_point(face, (static_cast<double>(column) + 0.5) / resolution,
+                                   (static_cast<double>(row) + 0.5) / resolution),
+                        resolution));
             }
         }
     }
@@ -187,7 +194,8 @@ std::vector<BrightSpot> bright_spots(const CubeMap& map, const SpotOptions& opti
     while (spots.size() < options.max_spots) {
         const std::uint32_t peak = finder.peak();
         if (peak == map.texels.size() ||
-            (!spots.empty() && finder.luminances[peak] < FaintestPeak * spots.front().peak_luminance))
+            (!spots.empty() &&
+             finder.luminances[peak] < FaintestPeak * spots.front().peak_luminance))
             break;
         spots.push_back(finder.spot(peak, options.max_radius_degrees * RadiansPerDegree));
         finder.take(spots.back());

@@ -13,25 +13,33 @@ namespace relumine::cubemap {
 
 /// One spot. Luminance has Rec. 709 weights.
 struct BrightSpot {
-    std::vector<std::uint32_t>
-        texels; ///< indices into CubeMap::texels, connected (also over face edges and corners), ascending
-    glm::dvec3 peak_direction{0.0}; ///< unit; the brightest texel
+    /// Indices into CubeMap::texels, connected (also over face edges and corners), ascending
+    std::vector<std::uint32_t> texels;
+    /// Unit; the brightest texel
+    glm::dvec3 peak_direction{0.0};
     double peak_luminance = 0.0;
-    double surrounding_luminance = 0.0; ///< median around the spot
-    double irradiance = 0.0;  ///< luminance above the surroundings, summed over the texels' solid angles
-    double solid_angle = 0.0; ///< of all texels
-    bool is_cut = false;      ///< wider than SpotOptions::max_radius_degrees: the texels are those within it
+    /// Median around the spot
+    double surrounding_luminance = 0.0;
+    /// Luminance above the surroundings, summed over the texels' solid angles
+    double irradiance = 0.0;
+    /// Of all texels
+    double solid_angle = 0.0;
+    /// Wider than SpotOptions::max_radius_degrees: the texels are those within it
+    bool is_cut = false;
 };
 
 struct SpotOptions {
     std::size_t max_spots = 8;
-    double max_radius_degrees = 12.0; ///< how far from its peak a spot is followed
+    /// How far from its peak a spot is followed
+    double max_radius_degrees = 12.0;
 };
 
-/// The spots around the brightest texels, in the order of their peaks; none in a map without light. A texel belongs to a spot when its luminance
-/// is above twice the surroundings' and above a hundredth of the peak's, and when such texels join it with the peak.
-/// What lies close around a spot (bloom, aureole) is no spot of its own.
-[[nodiscard]] std::vector<BrightSpot> bright_spots(const CubeMap& map, const SpotOptions& options = {});
+/// The spots around the brightest texels, in the order of their peaks; none in a map without light.
+/// A texel belongs to a spot when its luminance is above twice the surroundings' and above a
+/// hundredth of the peak's, and when such texels join it with the peak. What lies close around a
+/// spot (bloom, aureole) is no spot of its own.
+[[nodiscard]] std::vector<BrightSpot> bright_spots(const CubeMap& map,
+                                                   const SpotOptions& options = {});
 
 /// The texels given and those next to them, also over edges and corners of faces; ascending.
 [[nodiscard]] std::vector<std::uint32_t> grown(const std::vector<std::uint32_t>& texels,

@@ -19,9 +19,11 @@ constexpr float LargestHalf = 65504.0f;
 constexpr float AtMaximum = 0.998f;
 constexpr std::size_t LeastPlateau = 4;
 constexpr double WidestPlateauDegrees = 10.0;
-constexpr double SunContrast = 5000.0; ///< a sun seen through clear air has ten times that
+/// A sun seen through clear air has ten times that
+constexpr double SunContrast = 5000.0;
 constexpr double GlowContrast = 2.5, MaxGlowContrast = 100.0;
-constexpr double BrightSky = 1.2; ///< surroundings of a glow, over the mean
+/// Surroundings of a glow, over the mean
+constexpr double BrightSky = 1.2;
 constexpr double LowestGlowDegrees = -5.0;
 constexpr double LeastSunOverSky = 0.25, HighSunDegrees = 10.0;
 
@@ -37,8 +39,8 @@ struct BrightPixel {
     PixelPlace place;
 };
 
-/// The largest group of adjacent pixels at the maximum. Neighbours may have a texel between them: texels at a cube's corners are
-/// half as wide as a lat-long's pixels.
+/// The largest group of adjacent pixels at the maximum. Neighbours may have a texel between them:
+/// texels at a cube's corners are half as wide as a lat-long's pixels.
 Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint32_t resolution) {
     std::vector<BrightPixel> pixels;
     for_each_pixel({image.layout, image.sampling, image.width, image.height},
@@ -103,9 +105,11 @@ std::optional<ClippedSun> clipped_plateau(const EnvironmentImage& image, const S
         const double contrast = spot.peak_luminance / spot.surrounding_luminance; // may be infinite
         constexpr double Near = 0.1;                                              // 6 degrees
         if (glm::distance(spot.peak_direction, direction) < Near && contrast >= GlowContrast &&
-            contrast < SunContrast && disc_diameter_degrees(spot.solid_angle) < WidestPlateauDegrees)
-            return ClippedSun{direction, fmt::format("{} adjacent pixels at the map's maximum of {:.4g}",
-                                                     plateau.num_pixels, maximum)};
+            contrast < SunContrast &&
+            disc_diameter_degrees(spot.solid_angle) < WidestPlateauDegrees)
+            return ClippedSun{direction,
+                              fmt::format("{} adjacent pixels at the map's maximum of {:.4g}",
+                                          plateau.num_pixels, maximum)};
     }
     return std::nullopt;
 }
@@ -131,19 +135,23 @@ std::optional<ClippedSun> clipped_sun(const EnvironmentImage& image, const SunSe
         if (contrast >= GlowContrast && contrast < MaxGlowContrast &&
             brightest.surrounding_luminance >= BrightSky * mean &&
             sky_angles(brightest.peak_direction).elevation_degrees > LowestGlowDegrees)
-            return ClippedSun{brightest.peak_direction,
-                              fmt::format("a glow in the sky, but at its peak only {:.2g} times as bright "
-                                          "as what is around it",
-                                          contrast)};
+            return ClippedSun{
+                brightest.peak_direction,
+                fmt::format("a glow in the sky, but at its peak only {:.2g} times as bright "
+                            "as what is around it",
+                            contrast)};
         return std::nullopt;
     }
     const Sun& sun = *search.sun;
     const double from_sun = luminance(sun.irradiance);
-    const double from_sky = luminance(statistics.axis_irradiance[static_cast<std::size_t>(Face::PositiveY)]) -
-                            from_sun * std::max(sun.direction.y, 0.0);
-    if (sky_angles(sun.direction).elevation_degrees > HighSunDegrees && from_sun < LeastSunOverSky * from_sky)
-        return ClippedSun{sun.direction, fmt::format("the sun gives only {:.2g} of what the sky gives",
-                                                     from_sun / from_sky)};
+    const double from_sky =
+        luminance(statistics.axis_irradiance[static_cast<std::size_t>(Face::PositiveY)]) -
+        from_sun * std::max(sun.direction.y, 0.0);
+    if (sky_angles(sun.direction).elevation_degrees > HighSunDegrees &&
+        from_sun < LeastSunOverSky * from_sky)
+        return ClippedSun{
+            sun.direction,
+            fmt::format("the sun gives only {:.2g} of what the sky gives", from_sun / from_sky)};
     return std::nullopt;
 }
 

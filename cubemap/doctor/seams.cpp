@@ -16,12 +16,17 @@ namespace relumine::cubemap {
 
 namespace {
 
-// How far out of line is a fault, in stops. The factors are chosen so that none of some twenty measured environments has a fault that
-// cannot be seen in it, and that a lost row or a turned face has one.
-constexpr double WrapFactor = 2.0, WrapLeastEv = 0.15; ///< against the most uneven hundredth of the columns
-constexpr double PoleFactor = 3.0, PoleLeastEv = 0.2;  ///< against the most uneven of the next rows
-constexpr double AroundFactor = 4.0, AroundLeastEv = 0.4; ///< around the pole, against one row's step
-constexpr double EdgeFactor = 2.5, EdgeLeastEv = 0.15;    ///< against one texel's step beside the edge
+// How far out of line is a fault, in stops. The factors are chosen so that none of some twenty
+// measured environments has a fault that cannot be seen in it, and that a lost row or a turned face
+// has one.
+/// Against the most uneven hundredth of the columns
+constexpr double WrapFactor = 2.0, WrapLeastEv = 0.15;
+/// Against the most uneven of the next rows
+constexpr double PoleFactor = 3.0, PoleLeastEv = 0.2;
+/// Around the pole, against one row's step
+constexpr double AroundFactor = 4.0, AroundLeastEv = 0.4;
+/// Against one texel's step beside the edge
+constexpr double EdgeFactor = 2.5, EdgeLeastEv = 0.15;
 constexpr std::size_t NumPoleRows = 8;
 constexpr std::uint32_t LeastHeight = 16, LeastFace = 8;
 /// Luminance below this part of the mean is dark, however many stops it varies.
@@ -46,7 +51,8 @@ std::vector<double> stops(const EnvironmentImage& image) {
     std::vector<double> result;
     result.reserve(image.pixels.size());
     for (const glm::vec3& pixel : image.pixels)
-        result.push_back(mean > 0.0 ? std::log2(luminance(glm::dvec3(pixel)) / mean + DarkPart) : 0.0);
+        result.push_back(mean > 0.0 ? std::log2(luminance(glm::dvec3(pixel)) / mean + DarkPart)
+                                    : 0.0);
     return result;
 }
 
@@ -75,7 +81,8 @@ public:
         std::vector<double> levels;
         for (std::size_t i = 0; i <= NumPoleRows; ++i)
             levels.push_back(median({row(i).begin(), row(i).end()}));
-        // Rows change from one to the next, and grain makes the pole, where all pixels may be one sample, differ from the mean.
+        // Rows change from one to the next, and grain makes the pole, where all pixels may be one
+        // sample, differ from the mean.
         double usual = 0.0;
         for (std::size_t i = 1; i < NumPoleRows; ++i) {
             std::vector<double> grain;
@@ -105,7 +112,8 @@ private:
     [[nodiscard]] double step(std::size_t first, std::size_t second) const {
         double sum = 0.0, weights = 0.0;
         for (std::size_t y = 0; y < height_; ++y) {
-            sum += rows_[y].height * std::abs(stops_[y * width_ + first] - stops_[y * width_ + second]);
+            sum += rows_[y].height *
+                   std::abs(stops_[y * width_ + first] - stops_[y * width_ + second]);
             weights += rows_[y].height;
         }
         return sum / weights;
@@ -133,29 +141,34 @@ Texel inwards(Texel texel, bool across, std::uint32_t resolution) {
 /// A face's border, and what lies beyond.
 struct Border {
     Face face;
-    bool across; ///< left or right border, else top or bottom
-    bool far;    ///< right or bottom
+    /// Left or right border, else top or bottom
+    bool across;
+    /// Right or bottom
+    bool far;
 };
 
 /// The texel beyond a border, and whether it lies on a left or right border of its face.
 std::pair<Texel, bool> beyond(const Border& border, double along, std::uint32_t resolution) {
     constexpr double Outside = 1e-7;
     const double out = border.far ? 1.0 + Outside : -Outside;
-    const FacePoint point =
-        face_point(border.across ? cube_point(border.face, out, along) : cube_point(border.face, along, out));
+    const FacePoint point = face_point(border.across ? cube_point(border.face, out, along)
+                                                     : cube_point(border.face, along, out));
     const auto index = [&](double position) {
         return static_cast<std::uint32_t>(std::clamp(position * resolution, 0.0, resolution - 1.0));
     };
-    const double from_side = std::min(point.s, 1.0 - point.s), from_top = std::min(point.t, 1.0 - point.t);
+    const double from_side = std::min(point.s, 1.0 - point.s),
+                 from_top = std::min(point.t, 1.0 - point.t);
     return {{point.face, index(point.s), index(point.t)}, from_side < from_top};
 }
 
 std::string_view axis_name(Face face) {
-    static constexpr std::array<std::string_view, NumFaces> Names = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+    static constexpr std::array<std::string_view, NumFaces> Names = {"+X", "-X", "+Y",
+                                                                     "-Y", "+Z", "-Z"};
     return Names[static_cast<std::size_t>(face)];
 }
 
-void check_edges(const EnvironmentImage& image, const FaceCells& cells, std::vector<SeamFault>& faults) {
+void check_edges(const EnvironmentImage& image, const FaceCells& cells,
+                 std::vector<SeamFault>& faults) {
     const std::uint32_t resolution = cells.resolution();
     const std::vector<double> values = stops(image);
     const auto at = [&](const Texel& texel) {
@@ -169,17 +182,21 @@ void check_edges(const EnvironmentImage& image, const FaceCells& cells, std::vec
             for (std::uint32_t i = 0; i < resolution; ++i) {
                 const std::uint32_t end = border.far ? resolution - 1 : 0;
                 const Texel here = border.across ? Texel{face, end, i} : Texel{face, i, end};
-                // Texel i has the same number on the other face, or the same counted from the other end, with either sampling.
-                const auto [there, there_across] = beyond(border, (i + 0.5) / resolution, resolution);
+                // Texel i has the same number on the other face, or the same counted from the other
+                // end, with either sampling.
+                const auto [there, there_across] =
+                    beyond(border, (i + 0.5) / resolution, resolution);
                 other = there.face;
                 over.push_back(std::abs(at(here) - at(there)));
                 beside.push_back(std::abs(at(here) - at(inwards(here, border.across, resolution))));
-                beside.push_back(std::abs(at(there) - at(inwards(there, there_across, resolution))));
+                beside.push_back(
+                    std::abs(at(there) - at(inwards(there, there_across, resolution))));
             }
             const double step = median(over), usual = median(beside);
             if (face < other && step > EdgeFactor * usual && step > EdgeLeastEv)
                 faults.push_back(
-                    {fmt::format("edge of {} and {}", axis_name(face), axis_name(other)), step, usual});
+                    {fmt::format("edge of {} and {}", axis_name(face), axis_name(other)), step,
+                     usual});
         }
     }
 }

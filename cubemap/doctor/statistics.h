@@ -9,14 +9,20 @@
 
 namespace relumine::cubemap {
 
-/// Figures of an environment image. Sums are solid-angle weighted and in double; bad pixels are left out of all but the counts.
+/// Figures of an environment image. Sums are solid-angle weighted and in double; bad pixels are
+/// left out of all but the counts.
 struct EnvironmentStatistics {
-    glm::dvec3 mean_radiance{0.0}; ///< over the sphere, per channel
-    double mean_luminance = 0.0;   ///< Rec. 709 weights
+    /// Over the sphere, per channel
+    glm::dvec3 mean_radiance{0.0};
+    /// Rec. 709 weights
+    double mean_luminance = 0.0;
     double max_luminance = 0.0;
-    double min_positive_luminance = 0.0; ///< smallest luminance above zero, 0 when there is none
-    double dynamic_range_ev = 0.0;       ///< log2(max / min positive)
-    glm::dvec3 brightest_direction{0.0}; ///< unit; centre of the brightest pixel
+    /// Smallest luminance above zero, 0 when there is none
+    double min_positive_luminance = 0.0;
+    /// log2(max / min positive)
+    double dynamic_range_ev = 0.0;
+    /// Unit; centre of the brightest pixel
+    glm::dvec3 brightest_direction{0.0};
     /// Irradiance of unshadowed surfaces that face +X, -X, +Y (up), -Y, +Z, -Z, the order of Face.
     std::array<glm::dvec3, 6> axis_irradiance{};
 };

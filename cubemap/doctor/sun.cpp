@@ -18,32 +18,39 @@ namespace relumine::cubemap {
 
 namespace {
 
-// What makes a spot a sun. The figures come from measured environments: suns there are 0.6 to 4 degrees wide with their bloom,
-// 100 times their surroundings and more, 1 % to 50 % of the light; lamps and windows of interiors have rivals of half their strength.
+// What makes a spot a sun. The figures come from measured environments: suns there are 0.6 to 4
+// degrees wide with their bloom, 100 times their surroundings and more, 1 % to 50 % of the light;
+// lamps and windows of interiors have rivals of half their strength.
 constexpr double MaxDiameterDegrees = 5.0;
 constexpr double MaxDiameterPixels = 3.0;
 constexpr double MinContrast = 8.0;
 constexpr double MinShare = 0.005;
-constexpr double RivalIrradiance = 0.5; ///< of the strongest spot's ...
-constexpr double RivalPeak = 0.1;       ///< ... if it is this bright too: a wide glow is no rival
-/// Spots are looked for at this resolution at most (a texel of 0.18 degrees); the sun is then measured in the pixels themselves.
+/// Of the strongest spot's ...
+constexpr double RivalIrradiance = 0.5;
+/// ... if it is this bright too: a wide glow is no rival
+constexpr double RivalPeak = 0.1;
+/// Spots are looked for at this resolution at most (a texel of 0.18 degrees); the sun is then
+/// measured in the pixels themselves.
 constexpr std::uint32_t SearchResolution = 512;
 constexpr std::uint32_t CoarsestResolution = 8;
 
-// What belongs to the sun. Pixels at its rim that it hardly covers are found two texels around the spot.
+// What belongs to the sun. Pixels at its rim that it hardly covers are found two texels around the
+// spot.
 constexpr int RegionRings = 2;
-constexpr int SkyRings = 2; ///< the next texels outwards show the sky
+/// The next texels outwards show the sky
+constexpr int SkyRings = 2;
 constexpr double PeakPart = 2e-4;
 constexpr double SkyPart = 0.25;
-constexpr double BrightestSky =
-    3.0; ///< times the ring's upper quartile: another light in the ring is not sky
+/// Times the ring's upper quartile: another light in the ring is not sky
+constexpr double BrightestSky = 3.0;
 
 struct Pixels {
     ImageShape shape;
     std::span<const glm::vec3> radiance;
 };
 
-/// The sky carried over a hole: mean of the texels around it, weighted with inverse squared distances.
+/// The sky carried over a hole: mean of the texels around it, weighted with inverse squared
+/// distances.
 class SkyOverHole {
 public:
     SkyOverHole(const CubeMap& map, const std::vector<std::uint32_t>& hole) {
@@ -51,7 +58,8 @@ public:
         for (int i = 0; i < SkyRings; ++i)
             outer = grown(outer, map.resolution);
         std::vector<std::uint32_t> ring;
-        std::set_difference(outer.begin(), outer.end(), hole.begin(), hole.end(), std::back_inserter(ring));
+        std::set_difference(outer.begin(), outer.end(), hole.begin(), hole.end(),
+                            std::back_inserter(ring));
         if (ring.empty())
             return;
         std::vector<double> luminances;
@@ -65,9 +73,10 @@ public:
             if (luminances[i] > BrightestSky * *quartile)
                 continue;
             const std::uint32_t per_face = map.resolution * map.resolution;
-            samples_.push_back({texel_direction(AllFaces[ring[i] / per_face], ring[i] % map.resolution,
-                                                ring[i] % per_face / map.resolution, map.resolution),
-                                glm::dvec3(map.texels[ring[i]])});
+            samples_.push_back(
+                {texel_direction(AllFaces[ring[i] / per_face], ring[i] % map.resolution,
+                                 ring[i] % per_face / map.resolution, map.resolution),
+                 glm::dvec3(map.texels[ring[i]])});
         }
     }
 
@@ -93,7 +102,8 @@ private:
 /// A sun's pixel with what it adds.
 struct Part {
     glm::dvec3 direction;
-    glm::dvec3 power; ///< above the sky
+    /// Above the sky
+    glm::dvec3 power;
     double solid_angle;
 };
 
@@ -117,13 +127,15 @@ Sun measure(const Pixels& image, const CubeMap& map, const BrightSpot& spot, dou
         const glm::vec3& radiance = image.radiance[index];
         const glm::dvec3 around = sky.radiance(place.direction);
         const double value = luminance(glm::dvec3(radiance)), sky_value = luminance(around);
-        if (value <= sky_value + std::max(SkyPart * sky_value, PeakPart * (spot.peak_luminance - sky_value)))
+        if (value <=
+            sky_value + std::max(SkyPart * sky_value, PeakPart * (spot.peak_luminance - sky_value)))
             return;
-        // In a channel where the sky is brighter the pixel stays as it is, so that the sun has no negative light.
+        // In a channel where the sky is brighter the pixel stays as it is, so that the sun has no
+        // negative light.
         const glm::vec3 without = glm::min(radiance, glm::vec3(around));
         sun.pixels.push_back({index, without});
-        parts.push_back(
-            {place.direction, glm::dvec3(radiance - without) * place.solid_angle, place.solid_angle});
+        parts.push_back({place.direction, glm::dvec3(radiance - without) * place.solid_angle,
+                         place.solid_angle});
         sun.peak_luminance = std::max(sun.peak_luminance, value);
         sky_sum += sky_value * place.solid_angle;
         solid_angles += place.solid_angle;
@@ -157,8 +169,8 @@ SunSearch search(const Pixels& image, const CubeMap& map) {
         ++num_pixels;
     });
     result.spot_resolution = map.resolution;
-    result.pixel_diameter_degrees =
-        disc_diameter_degrees(solid_angles / static_cast<double>(std::max<std::size_t>(num_pixels, 1)));
+    result.pixel_diameter_degrees = disc_diameter_degrees(
+        solid_angles / static_cast<double>(std::max<std::size_t>(num_pixels, 1)));
     if (map.resolution < CoarsestResolution) {
         result.why_none = "the map is too coarse to show one";
         return result;
@@ -189,8 +201,8 @@ SunSearch search(const Pixels& image, const CubeMap& map) {
     if (diameter > max_diameter)
         result.why_none = fmt::format("the brightest light is {:.2g} degrees wide", diameter);
     else if (sun.share_of_power < MinShare)
-        result.why_none =
-            fmt::format("the brightest small light is {:.2g} % of the power", 100.0 * sun.share_of_power);
+        result.why_none = fmt::format("the brightest small light is {:.2g} % of the power",
+                                      100.0 * sun.share_of_power);
     else
         result.sun = std::move(sun);
     return result;

@@ -16,36 +16,50 @@ namespace relumine::cubemap {
 
 /// A pixel that shows the sun, and what would be seen there without it.
 struct SunPixel {
-    std::size_t index = 0; ///< into the image's or the cube map's pixels
+    /// Into the image's or the cube map's pixels
+    std::size_t index = 0;
     glm::vec3 sky{
-        0.0f}; ///< radiance of the sky around, carried over the sun; no channel above the pixel's own
+        /// Radiance of the sky around, carried over the sun; no channel above the pixel's own
+        0.0f};
 };
 
 /// The sun is what its pixels have above the sky around it.
 struct Sun {
-    glm::dvec3 direction{0.0, 1.0, 0.0}; ///< unit; the mean direction of its light
-    glm::dvec3 irradiance{0.0};          ///< RGB, on a surface that faces it
-    /// Of the uniform disc whose light is spread as widely (same variance of directions), a pixel being a disc of its own solid angle:
-    /// exact for a sun of one pixel; a sun smaller than a pixel has the pixel's.
+    /// Unit; the mean direction of its light
+    glm::dvec3 direction{0.0, 1.0, 0.0};
+    /// RGB, on a surface that faces it
+    glm::dvec3 irradiance{0.0};
+    /// Of the uniform disc whose light is spread as widely (same variance of directions), a pixel
+    /// being a disc of its own solid angle: exact for a sun of one pixel; a sun smaller than a
+    /// pixel has the pixel's.
     double solid_angle = 0.0;
     double peak_luminance = 0.0;
-    double sky_luminance = 0.0;  ///< mean over its pixels of what is around it
-    double share_of_power = 0.0; ///< of all light (luminance over the sphere), 0 to 1
+    /// Mean over its pixels of what is around it
+    double sky_luminance = 0.0;
+    /// Of all light (luminance over the sphere), 0 to 1
+    double share_of_power = 0.0;
     std::vector<SunPixel> pixels = {};
 };
 
 struct SunSearch {
     std::optional<Sun> sun = {};
-    std::string why_none = {}; ///< one phrase, "the brightest light is 12 degrees wide"; empty with a sun
-    std::vector<BrightSpot> spots = {};  ///< where it was looked for; at most 512 texels along a face's edge
-    std::uint32_t spot_resolution = 0;   ///< of the cube map that the spots' texels belong to
-    double power = 0.0;                  ///< luminance over the sphere
-    double pixel_diameter_degrees = 0.0; ///< of the disc as large as the mean pixel
+    /// One phrase, "the brightest light is 12 degrees wide"; empty with a sun
+    std::string why_none = {};
+    /// Where it was looked for; at most 512 texels along a face's edge
+    std::vector<BrightSpot> spots = {};
+    /// Of the cube map that the spots' texels belong to
+    std::uint32_t spot_resolution = 0;
+    /// Luminance over the sphere
+    double power = 0.0;
+    /// Of the disc as large as the mean pixel
+    double pixel_diameter_degrees = 0.0;
 };
 
-/// The strongest of the bright spots, if it is a sun: at most 5 degrees wide (or 3 pixels), at least 8 times as bright as its surroundings, half a
-/// percent or more of all light, and with no other spot of nearly its strength: rooms have several lamps or windows. Finds it anywhere: over
-/// the seam, the edges of faces and at the poles. Radiance must be finite and not negative. Bitwise independent of the thread count.
+/// The strongest of the bright spots, if it is a sun: at most 5 degrees wide (or 3 pixels), at
+/// least 8 times as bright as its surroundings, half a percent or more of all light, and with no
+/// other spot of nearly its strength: rooms have several lamps or windows. Finds it anywhere: over
+/// the seam, the edges of faces and at the poles. Radiance must be finite and not negative. Bitwise
+/// independent of the thread count.
 [[nodiscard]] SunSearch find_sun(const EnvironmentImage& image);
 [[nodiscard]] SunSearch find_sun(const CubeMap& map);
 

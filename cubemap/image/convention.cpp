@@ -11,9 +11,10 @@ namespace {
 
 constexpr std::array<Layout, 1> LatLongOnly = {Layout::LatLong};
 constexpr std::array<Layout, 2> LatLongAndBall = {Layout::LatLong, Layout::MirrorBall};
-constexpr std::array<Layout, 3> LatLongAndFaces = {Layout::LatLong, Layout::Cube, Layout::HorizontalStrip};
-constexpr std::array<Layout, 4> Faces = {Layout::Cube, Layout::HorizontalStrip, Layout::VerticalCross,
-                                         Layout::HorizontalCross};
+constexpr std::array<Layout, 3> LatLongAndFaces = {Layout::LatLong, Layout::Cube,
+                                                   Layout::HorizontalStrip};
+constexpr std::array<Layout, 4> Faces = {Layout::Cube, Layout::HorizontalStrip,
+                                         Layout::VerticalCross, Layout::HorizontalCross};
 constexpr std::array<Layout, 1> OctahedralOnly = {Layout::Octahedral};
 
 glm::dmat3 diagonal(double x, double y, double z) {
@@ -26,69 +27,74 @@ const glm::dmat3 QuarterTurn = {{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.
 const std::array<Convention, 8>& table() {
     static const std::array<Convention, 8> Table = {
         // ImfEnvmap.h.
-        Convention{.name = "openexr",
-                   .mathematics =
-                       "u = 1/2 - atan2(x, z) / 2 pi, v = acos(y) / pi; cube faces +X -X +Y -Y +Z -Z as "
-                       "ImfEnvmap.h draws them; samples on the borders in .exr",
-                   .usual_layout = Layout::LatLong,
-                   .layouts = AllLayouts,
-                   .has_attribute = true},
+        Convention{
+            .name = "openexr",
+            .mathematics =
+                "u = 1/2 - atan2(x, z) / 2 pi, v = acos(y) / pi; cube faces +X -X +Y -Y +Z -Z as "
+                "ImfEnvmap.h draws them; samples on the borders in .exr",
+            .usual_layout = Layout::LatLong,
+            .layouts = AllLayouts,
+            .has_attribute = true},
         // UsdLuxDomeLight: "adheres to the OpenEXR specification for latitude-longitude maps".
         Convention{.name = "usd",
-                   .mathematics = "u = 1/2 - atan2(x, z) / 2 pi, v = acos(y) / pi (DomeLight, pole axis Y)",
+                   .mathematics =
+                       "u = 1/2 - atan2(x, z) / 2 pi, v = acos(y) / pi (DomeLight, pole axis Y)",
                    .usual_layout = Layout::LatLong,
                    .layouts = LatLongOnly},
-        // Mitsuba 3, emitter `envmap`, eval(): u = atan2(x, -z) / 2 pi, v = acos(y) / pi; the same as OpenEXR's.
+        // Mitsuba 3, emitter `envmap`, eval(): u = atan2(x, -z) / 2 pi, v = acos(y) / pi; the same
+        // as OpenEXR's.
         Convention{.name = "mitsuba",
-                   .mathematics =
-                       "u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi (emitter envmap, identity to_world)",
+                   .mathematics = "u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi (emitter "
+                                  "envmap, identity to_world)",
                    .usual_layout = Layout::LatLong,
                    .layouts = LatLongOnly},
-        // Cycles, direction_to_equirectangular() and direction_to_mirrorball() in kernel/camera/projection.h. The middle of the
+        // Cycles, direction_to_equirectangular() and direction_to_mirrorball() in
+        // kernel/camera/projection.h. The middle of the
         // lat-long is Blender's +X, that of the ball Blender's -Y, our +Z.
-        Convention{.name = "blender",
-                   .mathematics =
-                       "u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) / pi in Blender's axes, Z up: Blender's "
-                       "(x, y, z) is our (x, z, -y)",
-                   .usual_layout = Layout::LatLong,
-                   .layouts = LatLongAndBall,
-                   .world_from_lat_long = QuarterTurn},
-        // equirectUv() in three.js' ShaderChunk `common`; cubes are looked up at (-x, y, z) (flipEnvMap) in OpenGL's faces.
         Convention{
-            .name = "threejs",
+            .name = "blender",
             .mathematics =
-                "u = 1/2 + atan2(z, x) / 2 pi, v = acos(y) / pi; six files: OpenGL's faces at (-x, y, z)",
+                "u = 1/2 - atan2(y, x) / 2 pi, v = acos(z) / pi in Blender's axes, Z up: Blender's "
+                "(x, y, z) is our (x, z, -y)",
             .usual_layout = Layout::LatLong,
-            .layouts = LatLongAndFaces,
-            .world_from_lat_long = QuarterTurn,
-            .world_from_faces = diagonal(-1.0, 1.0, -1.0),
-            .swaps_z_faces = true},
-        // OpenGL 4.6, table 8.19, with the world direction as the texture coordinate: sc, tc = (-z, -y) (z, -y) (x, z) (x, -z) (x, -y) (-x, -y).
+            .layouts = LatLongAndBall,
+            .world_from_lat_long = QuarterTurn},
+        // equirectUv() in three.js' ShaderChunk `common`; cubes are looked up at (-x, y, z)
+        // (flipEnvMap) in OpenGL's faces.
+        Convention{.name = "threejs",
+                   .mathematics = "u = 1/2 + atan2(z, x) / 2 pi, v = acos(y) / pi; six files: "
+                                  "OpenGL's faces at (-x, y, z)",
+                   .usual_layout = Layout::LatLong,
+                   .layouts = LatLongAndFaces,
+                   .world_from_lat_long = QuarterTurn,
+                   .world_from_faces = diagonal(-1.0, 1.0, -1.0),
+                   .swaps_z_faces = true},
+        // OpenGL 4.6, table 8.19, with the world direction as the texture coordinate: sc, tc = (-z,
+        // -y) (z, -y) (x, z) (x, -z) (x, -y) (-x, -y).
         Convention{.name = "opengl",
-                   .mathematics =
-                       "cube faces of OpenGL's table 8.19 looked up at (x, y, z): OpenEXR's with +Z and -Z "
-                       "exchanged and z negated",
+                   .mathematics = "cube faces of OpenGL's table 8.19 looked up at (x, y, z): "
+                                  "OpenEXR's with +Z and -Z "
+                                  "exchanged and z negated",
                    .usual_layout = Layout::Cube,
                    .layouts = Faces,
                    .world_from_faces = diagonal(1.0, 1.0, -1.0),
                    .swaps_z_faces = true},
         // Direct3D 9 and later, "Cubic Environment Mapping": the same faces in a left-handed world.
-        Convention{
-            .name = "directx",
-            .mathematics =
-                "the same faces looked up at (x, y, z) in Direct3D's left-handed axes, our (x, y, -z): "
-                "OpenEXR's with +Z and -Z exchanged",
-            .usual_layout = Layout::Cube,
-            .layouts = Faces,
-            .swaps_z_faces = true},
-        // pbrt-v4, EqualAreaSquareToSphere() with imgtool makeequiarea's Z up; Layout::Octahedral has these axes already.
-        Convention{
-            .name = "pbrt",
-            .mathematics =
-                "(u, v) = EqualAreaSphereToSquare(x, y, z) in pbrt's axes, Z up: pbrt's (x, y, z) is our "
-                "(x, z, -y)",
-            .usual_layout = Layout::Octahedral,
-            .layouts = OctahedralOnly},
+        Convention{.name = "directx",
+                   .mathematics = "the same faces looked up at (x, y, z) in Direct3D's left-handed "
+                                  "axes, our (x, y, -z): "
+                                  "OpenEXR's with +Z and -Z exchanged",
+                   .usual_layout = Layout::Cube,
+                   .layouts = Faces,
+                   .swaps_z_faces = true},
+        // pbrt-v4, EqualAreaSquareToSphere() with imgtool makeequiarea's Z up; Layout::Octahedral
+        // has these axes already.
+        Convention{.name = "pbrt",
+                   .mathematics = "(u, v) = EqualAreaSphereToSquare(x, y, z) in pbrt's axes, Z up: "
+                                  "pbrt's (x, y, z) is our "
+                                  "(x, z, -y)",
+                   .usual_layout = Layout::Octahedral,
+                   .layouts = OctahedralOnly},
     };
     return Table;
 }

@@ -12,19 +12,25 @@
 
 namespace relumine::cubemap {
 
-/// A program's or format's way to read environment pictures. docs/environments.md has the table with sources.
+/// A program's or format's way to read environment pictures. docs/environments.md has the table
+/// with sources.
 ///
-/// World axes: ours, right-handed with +Y up. Programs with Z up (Blender, pbrt) have their (x, y, z) at our (x, z, -y), as glTF exporters turn
-/// it; Direct3D, left-handed, has its (x, y, z) at our (x, y, -z).
+/// World axes: ours, right-handed with +Y up. Programs with Z up (Blender, pbrt) have their (x, y,
+/// z) at our (x, z, -y), as glTF exporters turn it; Direct3D, left-handed, has its (x, y, z) at our
+/// (x, y, -z).
 struct Convention {
     std::string_view name;
-    std::string_view mathematics;    ///< one line
-    Layout usual_layout;             ///< what the program reads
-    std::span<const Layout> layouts; ///< all that it reads
+    /// One line
+    std::string_view mathematics;
+    /// What the program reads
+    Layout usual_layout;
+    /// All that it reads
+    std::span<const Layout> layouts;
     /// Our world direction of what Layout's own description (OpenEXR's axes) calls a direction.
     glm::dmat3 world_from_lat_long = glm::dmat3(1.0);
     glm::dmat3 world_from_faces = glm::dmat3(1.0);
-    /// The picture of a strip or of six files that is named +Z is the one that OpenEXR's cube has at -Z, and the other way round.
+    /// The picture of a strip or of six files that is named +Z is the one that OpenEXR's cube has
+    /// at -Z, and the other way round.
     bool swaps_z_faces = false;
     /// Samples of .exr files lie on the borders and the `envmap` attribute says so.
     bool has_attribute = false;

@@ -19,7 +19,8 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Width of an octahedral map over a cube face's resolution: pixels as wide as a lat-long's of width 4 R, 4 R / sqrt(pi).
+/// Width of an octahedral map over a cube face's resolution: pixels as wide as a lat-long's of
+/// width 4 R, 4 R / sqrt(pi).
 constexpr double OctahedralWidth = 2.25;
 
 /// The layout that the proportions suggest. Squares do not tell.
@@ -67,13 +68,14 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
             throw std::runtime_error(
                 image.width == image.height
                     ? fmt::format(
-                          "{}: expected --layout angular, mirrorball or octahedral for a square picture "
+                          "{}: expected --layout angular, mirrorball or octahedral for a square "
+                          "picture "
                           "(or a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 cross), got {}",
                           path, size)
-                    : fmt::format(
-                          "{}: expected a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 cross, or a 1:1 "
-                          "picture with --layout, got {}",
-                          path, size));
+                    : fmt::format("{}: expected a 2:1 lat-long, a 1:6 or 6:1 cube, a 3:4 or 4:3 "
+                                  "cross, or a 1:1 "
+                                  "picture with --layout, got {}",
+                                  path, size));
         image.layout = *layout;
         why = fmt::format("{} image without envmap attribute", proportions(image.layout));
     }
@@ -82,7 +84,8 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
                                              proportions(image.layout), name(image.layout), size));
     // The attribute's border rule belongs to the attribute's layout.
     image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;
-    why += image.sampling == Sampling::Borders ? ", samples on the borders" : ", samples at texel centres";
+    why += image.sampling == Sampling::Borders ? ", samples on the borders"
+                                               : ", samples at texel centres";
     image.assumptions =
         fmt::format("{}{}{}", why, file.remarks.empty() ? "" : ", ", fmt::join(file.remarks, ", "));
 }
@@ -142,9 +145,9 @@ constexpr std::string_view FacePlace = "{face}";
 ImageFile decode(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
     if (!is_exr(bytes) && !is_hdr(bytes))
-        throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}",
-                                             path.string(),
-                                             bytes.empty() ? "an empty file" : "something else"));
+        throw std::runtime_error(
+            fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}", path.string(),
+                        bytes.empty() ? "an empty file" : "something else"));
     return is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
 }
 
@@ -154,12 +157,12 @@ ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
     for (const std::filesystem::path& path : paths) {
         ImageFile face = decode(path);
         if (face.width != face.height)
-            throw std::runtime_error(fmt::format("{}: expected a square cube face, got {}x{}", path.string(),
-                                                 face.width, face.height));
+            throw std::runtime_error(fmt::format("{}: expected a square cube face, got {}x{}",
+                                                 path.string(), face.width, face.height));
         if (!all.pixels.empty() && face.width != all.width)
             throw std::runtime_error(fmt::format("{}: expected {}x{} pixels as in {}, got {}x{}",
-                                                 path.string(), all.width, all.width, paths.front().string(),
-                                                 face.width, face.height));
+                                                 path.string(), all.width, all.width,
+                                                 paths.front().string(), face.width, face.height));
         all.width = face.width;
         all.height += face.height;
         all.pixels.insert(all.pixels.end(), face.pixels.begin(), face.pixels.end());
@@ -185,16 +188,16 @@ std::vector<std::filesystem::path> environment_files(const std::filesystem::path
         return {path};
     std::vector<std::filesystem::path> paths;
     for (const std::string_view face : FaceFileNames)
-        paths.emplace_back(
-            fmt::format("{}{}{}", text.substr(0, place), face, text.substr(place + FacePlace.size())));
+        paths.emplace_back(fmt::format("{}{}{}", text.substr(0, place), face,
+                                       text.substr(place + FacePlace.size())));
     return paths;
 }
 
 EnvironmentImage load_environment(const std::filesystem::path& path, const LoadOptions& options) {
     const std::vector<std::filesystem::path> paths = environment_files(path);
     if (paths.size() > 1 && options.layout && *options.layout != Layout::Cube)
-        throw std::runtime_error(fmt::format("{}: expected layout cube for six files, got {}", path.string(),
-                                             name(*options.layout)));
+        throw std::runtime_error(fmt::format("{}: expected layout cube for six files, got {}",
+                                             path.string(), name(*options.layout)));
     ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
     EnvironmentImage image;
     image.width = file.width;
@@ -210,11 +213,11 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
     if (options.fix_bad_pixels)
         fix_bad_pixels(image);
     else if (options.refuse_bad_pixels)
-        throw std::runtime_error(
-            fmt::format("{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels, first at "
-                        "({}, {}); use --fix-env",
-                        path.string(), image.bad_pixels.num_nan + image.bad_pixels.num_infinite,
-                        image.bad_pixels.num_negative, image.bad_pixels.first_x, image.bad_pixels.first_y));
+        throw std::runtime_error(fmt::format(
+            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels, first at "
+            "({}, {}); use --fix-env",
+            path.string(), image.bad_pixels.num_nan + image.bad_pixels.num_infinite,
+            image.bad_pixels.num_negative, image.bad_pixels.first_x, image.bad_pixels.first_y));
     return image;
 }
 
@@ -252,16 +255,16 @@ ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
 void check_environment_name(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     if (extension != ".exr" && extension != ".hdr")
-        throw std::invalid_argument(
-            fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(), extension));
+        throw std::invalid_argument(fmt::format(
+            "{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(), extension));
 }
 
 void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {
     check_environment_name(path);
     const std::vector<std::filesystem::path> paths = environment_files(path);
     if (paths.size() > 1 && image.layout != Layout::Cube)
-        throw std::invalid_argument(
-            fmt::format("{}: expected layout cube for six files, got {}", path.string(), name(image.layout)));
+        throw std::invalid_argument(fmt::format("{}: expected layout cube for six files, got {}",
+                                                path.string(), name(image.layout)));
     const auto encode = [&](const EnvironmentImage& part) {
         return extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
     };
@@ -277,7 +280,8 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
             face.sampling = Sampling::TexelCentres;
             const std::size_t num_pixels = std::size_t{face.width} * face.width;
             for (std::size_t i = 0; i < paths.size(); ++i) {
-                const auto first = image.pixels.begin() + static_cast<std::ptrdiff_t>(i * num_pixels);
+                const auto first =
+                    image.pixels.begin() + static_cast<std::ptrdiff_t>(i * num_pixels);
                 face.pixels.assign(first, first + static_cast<std::ptrdiff_t>(num_pixels));
                 outputs[i]->write(encode(face));
             }
@@ -290,8 +294,10 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
 }
 
 Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
-    // The specification of the `envmap` attribute puts samples on the borders; it knows two layouts, and .hdr no attribute.
-    const bool has_attribute = extension_of(path) == ".exr" && environment_files(path).size() == 1 &&
+    // The specification of the `envmap` attribute puts samples on the borders; it knows two
+    // layouts, and .hdr no attribute.
+    const bool has_attribute = extension_of(path) == ".exr" &&
+                               environment_files(path).size() == 1 &&
                                (layout == Layout::LatLong || layout == Layout::Cube);
     return has_attribute ? Sampling::Borders : Sampling::TexelCentres;
 }
@@ -301,7 +307,8 @@ void save_environment(const std::filesystem::path& path, const CubeMap& map, Lay
     const ImageSize size = natural_size(layout, map.resolution);
     for (const std::filesystem::path& each : environment_files(path))
         files::OutputFile{each}; // whatever cannot be written is found before the work
-    save_image(path, to_image(map, layout, size.width, size.height, default_sampling(path, layout)));
+    save_image(path,
+               to_image(map, layout, size.width, size.height, default_sampling(path, layout)));
 }
 
 } // namespace relumine::cubemap

@@ -75,8 +75,10 @@ private:
 /// Where a part keeps what its pixels look like.
 struct Channels {
     enum class Kind { Rgb, LuminanceChroma, Luminance } kind = Kind::Rgb;
-    std::array<std::string, 3> names; ///< of red, green and blue, or three times luminance
-    std::string layer;                ///< their common prefix with its dot, or nothing
+    /// Of red, green and blue, or three times luminance
+    std::array<std::string, 3> names;
+    /// Their common prefix with its dot, or nothing
+    std::string layer;
 };
 
 /// The channels of plain R, G and B; else of the only layer that has all three; else of luminance.
@@ -97,7 +99,8 @@ std::optional<Channels> find_channels(const Imf::ChannelList& list) {
     }
     if (!has("Y"))
         return std::nullopt;
-    return Channels{has("RY") && has("BY") ? Channels::Kind::LuminanceChroma : Channels::Kind::Luminance,
+    return Channels{has("RY") && has("BY") ? Channels::Kind::LuminanceChroma
+                                           : Channels::Kind::Luminance,
                     {"Y", "Y", "Y"},
                     ""};
 }
@@ -106,7 +109,8 @@ std::string names_of(const Imf::ChannelList& list) {
     std::vector<std::string> names;
     for (auto channel = list.begin(); channel != list.end(); ++channel)
         names.emplace_back(channel.name());
-    return names.empty() ? "none" : fmt::format("{:.200}", fmt::format("{}", fmt::join(names, ", ")));
+    return names.empty() ? "none"
+                         : fmt::format("{:.200}", fmt::format("{}", fmt::join(names, ", ")));
 }
 
 struct Window {
@@ -116,7 +120,8 @@ struct Window {
 
 class Decoder {
 public:
-    Decoder(std::span<const std::byte> bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+    Decoder(std::span<const std::byte> bytes, const std::string& name)
+        : bytes_(bytes), name_(name) {}
 
     ImageFile decode() {
         MemoryInput stream(bytes_);
@@ -164,7 +169,8 @@ private:
         for (int part = 0; part < file.parts(); ++part) {
             const Imf::Header& header = file.header(part);
             const bool deep = header.hasType() && Imf::isDeepData(header.type());
-            found += (part == 0 ? "" : "; ") + names_of(header.channels()) + (deep ? " (deep)" : "");
+            found +=
+                (part == 0 ? "" : "; ") + names_of(header.channels()) + (deep ? " (deep)" : "");
             const auto channels = deep ? std::nullopt : find_channels(header.channels());
             if (!channels || (is_chosen && channels->kind != Channels::Kind::Rgb))
                 continue;
@@ -182,10 +188,12 @@ private:
         const auto extent = [](int low, int high) {
             return static_cast<std::int64_t>(high) - low + 1;
         };
-        const std::int64_t width = extent(box.min.x, box.max.x), height = extent(box.min.y, box.max.y);
+        const std::int64_t width = extent(box.min.x, box.max.x),
+                           height = extent(box.min.y, box.max.y);
         if (width < 1 || height < 1)
             return {box.min.x, box.min.y, 0, 0};
-        return {box.min.x, box.min.y, static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height)};
+        return {box.min.x, box.min.y, static_cast<std::uint32_t>(width),
+                static_cast<std::uint32_t>(height)};
     }
 
     /// Refuses what the file cannot hold before anything is allocated for it.
@@ -194,23 +202,25 @@ private:
         const std::string size = fmt::format("{}x{}", window_.width, window_.height);
         if (num_pixels == 0 || num_pixels > MaxPixels)
             fail("a size that an environment can have", size);
-        // Measured on black pictures of 4096x2048: 12 bytes per pixel are up to 1862 times the file, with DWA 23426 times.
-        const bool is_dwa =
-            header.compression() == Imf::DWAA_COMPRESSION || header.compression() == Imf::DWAB_COMPRESSION;
+        // Measured on black pictures of 4096x2048: 12 bytes per pixel are up to 1862 times the
+        // file, with DWA 23426 times.
+        const bool is_dwa = header.compression() == Imf::DWAA_COMPRESSION ||
+                            header.compression() == Imf::DWAB_COMPRESSION;
         const std::uint64_t largest_ratio = is_dwa ? 50000 : 4000;
         constexpr std::uint64_t AlwaysAllowed = std::uint64_t{64} << 20;
         if (num_pixels * 12 > std::max(AlwaysAllowed, bytes_.size() * largest_ratio))
             fail(fmt::format("data for {} pixels", size), fmt::format("{} bytes", bytes_.size()));
         if (header.hasTileDescription()) {
             const Imf::TileDescription& tiles = header.tileDescription();
-            if (std::uint64_t{tiles.xSize} * tiles.ySize > std::max(num_pixels * 4, AlwaysAllowed / 12))
+            if (std::uint64_t{tiles.xSize} * tiles.ySize >
+                std::max(num_pixels * 4, AlwaysAllowed / 12))
                 fail(fmt::format("tiles for {} pixels", size),
                      fmt::format("{}x{}", tiles.xSize, tiles.ySize));
         }
     }
 
-    /// Bands of rows, each through its own reader of the same bytes: OpenEXR's own threads would have to be switched on for the whole
-    /// program.
+    /// Bands of rows, each through its own reader of the same bytes: OpenEXR's own threads would
+    /// have to be switched on for the whole program.
     void read_bands(const Imf::Header& header, ImageFile& image) const {
         // Divisible by the rows of every compression's blocks (1, 16, 32 or 256).
         const std::uint32_t band_height =
@@ -220,11 +230,12 @@ private:
             MemoryInput stream(bytes_);
             Imf::MultiPartInputFile file(stream, 0);
             Imf::InputPart part(file, part_);
-            // The frame buffer is addressed by the data window's coordinates, so its base lies before the pixels.
+            // The frame buffer is addressed by the data window's coordinates, so its base lies
+            // before the pixels.
             const auto stride = static_cast<std::ptrdiff_t>(sizeof(glm::vec3));
             const std::ptrdiff_t row_stride = stride * window_.width;
-            char* base =
-                reinterpret_cast<char*>(image.pixels.data()) - window_.x * stride - window_.y * row_stride;
+            char* base = reinterpret_cast<char*>(image.pixels.data()) - window_.x * stride -
+                         window_.y * row_stride;
             Imf::FrameBuffer buffer;
             const std::size_t num_channels = channels_.kind == Channels::Kind::Luminance ? 1 : 3;
             for (std::size_t i = 0; i < num_channels; ++i)
@@ -234,7 +245,8 @@ private:
             part.setFrameBuffer(buffer);
             const std::uint32_t first = band * band_height;
             const std::uint32_t last = std::min(first + band_height, window_.height) - 1;
-            part.readPixels(window_.y + static_cast<int>(first), window_.y + static_cast<int>(last));
+            part.readPixels(window_.y + static_cast<int>(first),
+                            window_.y + static_cast<int>(last));
         });
         if (channels_.kind == Channels::Kind::Luminance) {
             for (glm::vec3& pixel : image.pixels)
@@ -253,7 +265,8 @@ private:
             file.setFrameBuffer(row.data() - window_.x, 1, 0);
             file.readPixels(line);
             for (std::uint32_t x = 0; x < image.width; ++x)
-                image.pixels[static_cast<std::size_t>(y) * image.width + x] = {row[x].r, row[x].g, row[x].b};
+                image.pixels[static_cast<std::size_t>(y) * image.width + x] = {row[x].r, row[x].g,
+                                                                               row[x].b};
         }
     }
 
@@ -278,7 +291,8 @@ private:
         fill_display_window(header, image);
     }
 
-    /// A data window smaller than an environment's display window is the part of it that is not black.
+    /// A data window smaller than an environment's display window is the part of it that is not
+    /// black.
     [[nodiscard]] static bool fills_display_window(const Imf::Header& header) {
         if (Imf::hasEnvmap(header) &&
             (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
@@ -306,11 +320,13 @@ private:
             fail(fmt::format("data for {}x{} pixels", display.width, display.height),
                  fmt::format("{}x{}", image.width, image.height));
         std::vector<glm::vec3> pixels(num_pixels, glm::vec3(0.0f));
-        const auto left = static_cast<std::size_t>(static_cast<std::int64_t>(window_.x) - display.x);
+        const auto left =
+            static_cast<std::size_t>(static_cast<std::int64_t>(window_.x) - display.x);
         const auto top = static_cast<std::size_t>(static_cast<std::int64_t>(window_.y) - display.y);
         for (std::size_t y = 0; y < image.height; ++y)
-            std::copy_n(image.pixels.begin() + static_cast<std::ptrdiff_t>(y * image.width), image.width,
-                        pixels.begin() + static_cast<std::ptrdiff_t>((top + y) * display.width + left));
+            std::copy_n(
+                image.pixels.begin() + static_cast<std::ptrdiff_t>(y * image.width), image.width,
+                pixels.begin() + static_cast<std::ptrdiff_t>((top + y) * display.width + left));
         image.pixels = std::move(pixels);
         image.width = display.width;
         image.height = display.height;
@@ -347,7 +363,8 @@ auto with_own_messages(const std::string& name, const Read& read) {
         // OpenEXR quotes the name of the stream, which is always "file" here.
         for (std::size_t at = 0; (at = message.find("\"file\"")) != std::string::npos;)
             message.replace(at, 6, "it");
-        throw std::runtime_error(fmt::format("{}: expected an intact OpenEXR image, got: {}", name, message));
+        throw std::runtime_error(
+            fmt::format("{}: expected an intact OpenEXR image, got: {}", name, message));
     }
 }
 
@@ -367,7 +384,8 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const
     header.compression() = Imf::ZIP_COMPRESSION;
     if (image.sampling == Sampling::Borders &&
         (image.layout == Layout::LatLong || image.layout == Layout::Cube))
-        Imf::addEnvmap(header, image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
+        Imf::addEnvmap(header,
+                       image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
     Imf::FrameBuffer buffer;
     // OpenEXR reads only, but its frame buffers are for both ways.
     char* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data()));
@@ -381,7 +399,8 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const
     if (!alpha.empty()) {
         header.channels().insert("A", Imf::Channel(Imf::FLOAT));
         buffer.insert("A",
-                      Imf::Slice(Imf::FLOAT, const_cast<char*>(reinterpret_cast<const char*>(alpha.data())),
+                      Imf::Slice(Imf::FLOAT,
+                                 const_cast<char*>(reinterpret_cast<const char*>(alpha.data())),
                                  sizeof(float), sizeof(float) * image.width));
     }
     MemoryOutput stream;

@@ -15,20 +15,24 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// What decides how much OpenEXR allocates for a part. All 64 bits wide, so that differences and products of windows fit.
+/// What decides how much OpenEXR allocates for a part. All 64 bits wide, so that differences and
+/// products of windows fit.
 struct Part {
     std::int64_t width = 0, height = 0;
-    std::int64_t tile_width = 0, tile_height = 0; ///< 0: rows
+    /// 0: rows
+    std::int64_t tile_width = 0, tile_height = 0;
     std::int64_t rows_per_block = 1;
     std::int64_t bytes_per_pixel = 0;
-    std::optional<std::int64_t> num_chunks = {}; ///< as declared
+    /// As declared
+    std::optional<std::int64_t> num_chunks = {};
 };
 
-/// By the number that stands for the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+/// By the number that stands for the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A,
+/// DWAA, DWAB.
 constexpr std::array<std::int64_t, 10> RowsPerBlock = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-/// Blocks up to this size are allowed for any file, larger ones for files that are not this many times smaller: as for whole
-/// images in exr_file.cpp.
+/// Blocks up to this size are allowed for any file, larger ones for files that are not this many
+/// times smaller: as for whole images in exr_file.cpp.
 constexpr std::uint64_t CheapBlock = std::uint64_t{256} << 20, LargestRatio = 4000;
 
 struct FixedSize {
@@ -62,7 +66,8 @@ constexpr std::array FixedSizes = {FixedSize{"box2f", 16},
 
 class HeaderWalk {
 public:
-    HeaderWalk(Imf::IStream& stream, std::uint64_t num_bytes) : stream_(stream), num_bytes_(num_bytes) {}
+    HeaderWalk(Imf::IStream& stream, std::uint64_t num_bytes)
+        : stream_(stream), num_bytes_(num_bytes) {}
 
     void check() {
         static_cast<void>(number()); // the magic number
@@ -79,8 +84,8 @@ public:
             check_block(part);
             num_chunks += chunks_of(part);
             if (num_chunks > rest() / sizeof(std::uint64_t))
-                throw std::runtime_error(fmt::format("a table of {} or more chunks in a file of {} bytes",
-                                                     num_chunks, num_bytes_));
+                throw std::runtime_error(fmt::format(
+                    "a table of {} or more chunks in a file of {} bytes", num_chunks, num_bytes_));
         }
         stream_.seekg(0);
     }
@@ -131,8 +136,10 @@ private:
         return is_empty ? std::nullopt : std::optional(part);
     }
 
-    /// OpenEXR reads a known type as far as its content says, whatever size is declared, and the next attribute begins there.
-    void read_attribute(const std::string& name, const std::string& type, std::int64_t size, Part& part) {
+    /// OpenEXR reads a known type as far as its content says, whatever size is declared, and the
+    /// next attribute begins there.
+    void read_attribute(const std::string& name, const std::string& type, std::int64_t size,
+                        Part& part) {
         const auto fixed = std::find_if(FixedSizes.begin(), FixedSizes.end(),
                                         [&](const FixedSize& known) { return known.type == type; });
         if (fixed != FixedSizes.end() && fixed->size != size)
@@ -176,7 +183,8 @@ private:
                 static_cast<void>(number());
         }
         if (stream_.tellg() != end)
-            throw std::runtime_error(fmt::format("a list of channels that is not {} bytes long", size));
+            throw std::runtime_error(
+                fmt::format("a list of channels that is not {} bytes long", size));
         return bytes_per_pixel;
     }
 
@@ -200,7 +208,8 @@ private:
                      : static_cast<double>(part.width) * static_cast<double>(part.rows_per_block);
         const double size = num_pixels * static_cast<double>(part.bytes_per_pixel);
         if (size > static_cast<double>(std::max(CheapBlock, num_bytes_ * LargestRatio)))
-            throw std::runtime_error(fmt::format("blocks of {:.0f} bytes in a file of {}", size, num_bytes_));
+            throw std::runtime_error(
+                fmt::format("blocks of {:.0f} bytes in a file of {}", size, num_bytes_));
     }
 
     /// Of the finest level; the others are fewer.

@@ -104,8 +104,8 @@ FrameRange FrameRange::parse(const std::string& text) {
         fail();
     FrameRange range{.first = *first, .last = *first};
     if (dash != std::string::npos) {
-        const auto last = whole_number(
-            std::string_view(text).substr(dash + 1, cross == std::string::npos ? cross : cross - dash - 1));
+        const auto last = whole_number(std::string_view(text).substr(
+            dash + 1, cross == std::string::npos ? cross : cross - dash - 1));
         if (!last || *last < *first)
             fail();
         range.last = *last;

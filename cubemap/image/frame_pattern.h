@@ -9,24 +9,28 @@
 
 namespace relumine::cubemap {
 
-/// A file name with a place for the frame's number: `%d`, `%04d` as in printf, or `####`, one # per digit; longer numbers take more.
+/// A file name with a place for the frame's number: `%d`, `%04d` as in printf, or `####`, one # per
+/// digit; longer numbers take more.
 class FramePattern {
 public:
-    /// Nothing when the name of the file (folders are taken as they are) has no such place. Throws std::runtime_error when it has two.
+    /// Nothing when the name of the file (folders are taken as they are) has no such place. Throws
+    /// std::runtime_error when it has two.
     [[nodiscard]] static std::optional<FramePattern> parse(const std::string& text);
 
     /// The path of a frame, number >= 0.
     [[nodiscard]] std::string name(std::int64_t number) const;
     /// The path with a text in the number's place.
     [[nodiscard]] std::string name_of_all(std::string_view text) const;
-    /// The number of the frame that has this path, or nothing. Leading zeros count: frame.07.exr is no frame of frame.%d.exr.
+    /// The number of the frame that has this path, or nothing. Leading zeros count: frame.07.exr is
+    /// no frame of frame.%d.exr.
     [[nodiscard]] std::optional<std::int64_t> number(std::string_view path) const;
 
 private:
     FramePattern(std::string prefix, std::size_t digits, std::string suffix);
 
     std::string prefix_;
-    std::size_t digits_; ///< at least so many
+    /// At least so many
+    std::size_t digits_;
     std::string suffix_;
 };
 

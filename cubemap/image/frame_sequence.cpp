@@ -16,10 +16,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More frames than any sequence has; beyond it a range is taken for a slip before a list of it is made.
+/// More frames than any sequence has; beyond it a range is taken for a slip before a list of it is
+/// made.
 constexpr std::int64_t MaxFrames = 10'000'000;
 
-[[noreturn]] void fail(const std::string& name, const std::string& expected, const std::string& got) {
+[[noreturn]] void fail(const std::string& name, const std::string& expected,
+                       const std::string& got) {
     throw std::runtime_error(fmt::format("{}: expected {}, got {}", name, expected, got));
 }
 
@@ -58,13 +60,15 @@ std::vector<FrameFile> frames_of(const std::string& name, const FramePattern& pa
             found.emplace(*number, pattern.name(*number));
     }
     if (error)
-        throw std::runtime_error(fmt::format("{}: cannot read the folder: {}", name, error.message()));
+        throw std::runtime_error(
+            fmt::format("{}: cannot read the folder: {}", name, error.message()));
     if (found.empty())
         fail(name, "frames", "no file of such a name");
 
     const FrameRange all = range.value_or(FrameRange{found.begin()->first, found.rbegin()->first});
     if ((all.last - all.first) / all.step >= MaxFrames)
-        fail(name, fmt::format("at most {} frames", MaxFrames), fmt::format("{} to {}", all.first, all.last));
+        fail(name, fmt::format("at most {} frames", MaxFrames),
+             fmt::format("{} to {}", all.first, all.last));
     std::vector<FrameFile> frames;
     std::vector<std::int64_t> missing;
     for (std::int64_t number = all.first; number <= all.last; number += all.step) {
@@ -94,7 +98,8 @@ std::optional<std::int64_t> last_number(const fs::path& path) {
     return number;
 }
 
-std::vector<FrameFile> frames_of_glob(const std::string& name, const std::optional<FrameRange>& range) {
+std::vector<FrameFile> frames_of_glob(const std::string& name,
+                                      const std::optional<FrameRange>& range) {
     glob_t matches{};
     const int status = ::glob(name.c_str(), 0, nullptr, &matches);
     std::vector<fs::path> paths(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc); // sorted
@@ -123,7 +128,8 @@ std::vector<FrameFile> frames_of_glob(const std::string& name, const std::option
 
 } // namespace
 
-std::vector<FrameFile> find_frames(const std::string& name, const std::optional<FrameRange>& range) {
+std::vector<FrameFile> find_frames(const std::string& name,
+                                   const std::optional<FrameRange>& range) {
     std::error_code error;
     const bool is_file = fs::is_regular_file(name, error); // whatever characters its name has
     if (!is_file)

@@ -23,9 +23,12 @@ struct FrameFile {
     std::filesystem::path path = {};
 };
 
-/// The frames that a name stands for, numbers ascending: a FramePattern, a glob (* ? [...]) or one file.
-/// - A pattern's frames must follow each other without a gap: all from the first to the last file, or all of `range`.
-/// - A glob takes what is there. The number is the last one in the file's name; where two names have the same, the files are
+/// The frames that a name stands for, numbers ascending: a FramePattern, a glob (* ? [...]) or one
+/// file.
+/// - A pattern's frames must follow each other without a gap: all from the first to the last file,
+/// or all of `range`.
+/// - A glob takes what is there. The number is the last one in the file's name; where two names
+/// have the same, the files are
 ///   counted from 1 in the order of their names. Of them `range` chooses.
 /// Throws std::runtime_error "NAME: expected ..., got ..." where there are none, or a gap.
 [[nodiscard]] std::vector<FrameFile> find_frames(const std::string& name,
@@ -36,24 +39,28 @@ class FrameSequence {
 public:
     using Loader = std::function<EnvironmentImage(const std::filesystem::path&)>;
 
-    /// Reads the header of every frame. Throws std::runtime_error naming the first that cannot be read or has not the size of
-    /// the first frame. The loader may be called by another thread.
+    /// Reads the header of every frame. Throws std::runtime_error naming the first that cannot be
+    /// read or has not the size of the first frame. The loader may be called by another thread.
     explicit FrameSequence(std::vector<FrameFile> files, Loader loader = default_loader());
     FrameSequence(const FrameSequence&) = delete;
     FrameSequence& operator=(const FrameSequence&) = delete;
 
     [[nodiscard]] std::size_t size() const { return files_.size(); }
-    [[nodiscard]] const std::filesystem::path& path(std::size_t frame) const { return files_[frame].path; }
+    [[nodiscard]] const std::filesystem::path& path(std::size_t frame) const {
+        return files_[frame].path;
+    }
     [[nodiscard]] std::int64_t number(std::size_t frame) const { return files_[frame].number; }
     [[nodiscard]] std::span<const FrameFile> files() const { return files_; }
     /// Width and height of all frames.
     [[nodiscard]] ImageSize image_size() const { return size_; }
 
-    /// The frame as the loader gives it, and starts loading the next. Any order; in ascending order the frame has mostly been
-    /// loaded while the caller was busy. Throws what the loader throws.
+    /// The frame as the loader gives it, and starts loading the next. Any order; in ascending order
+    /// the frame has mostly been loaded while the caller was busy. Throws what the loader throws.
     [[nodiscard]] EnvironmentImage load(std::size_t frame) { return ahead_.get(frame); }
     /// The frame alone; for callers who read ahead themselves.
-    [[nodiscard]] EnvironmentImage read(std::size_t frame) const { return loader_(files_[frame].path); }
+    [[nodiscard]] EnvironmentImage read(std::size_t frame) const {
+        return loader_(files_[frame].path);
+    }
 
     /// load_environment() without options.
     [[nodiscard]] static Loader default_loader();

@@ -1,7 +1,8 @@
 // Radiance pictures (.hdr, .pic): RGBE, flat or run-length encoded the old or the new way.
 //
-// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991, and the file format page of Radiance. Written out here because the
-// widespread single-file decoders read truncated files as if they were whole, or never return from them.
+// Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991, and the file format page of Radiance.
+// Written out here because the widespread single-file decoders read truncated files as if they were
+// whole, or never return from them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,8 +29,8 @@ class Decoder {
 public:
     /// `num_bytes`: of the whole file, of which `bytes` may be the beginning.
     Decoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
-        : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()), num_bytes_(num_bytes),
-          name_(name) {}
+        : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
+          num_bytes_(num_bytes), name_(name) {}
 
     ImageSize size() {
         read_header();
@@ -69,7 +70,8 @@ private:
             ++position_;
         if (position_ == bytes_.size())
             fail("a Radiance header", "the end of the file");
-        std::string_view line(reinterpret_cast<const char*>(bytes_.data()) + begin, position_ - begin);
+        std::string_view line(reinterpret_cast<const char*>(bytes_.data()) + begin,
+                              position_ - begin);
         ++position_;
         if (!line.empty() && line.back() == '\r')
             line.remove_suffix(1);
@@ -104,7 +106,8 @@ private:
         char* end = nullptr;
         const double value = std::strtod(number.c_str(), &end);
         if (end == number.c_str())
-            fail("a number after EXPOSURE= or COLORCORR=", fmt::format("'{:.60}'", printable(text)));
+            fail("a number after EXPOSURE= or COLORCORR=",
+                 fmt::format("'{:.60}'", printable(text)));
         return value;
     }
 
@@ -113,9 +116,10 @@ private:
         const std::string line(read_line());
         std::array<char, 2> signs{}, axes{};
         std::array<unsigned long long, 2> sizes{};
-        if (std::sscanf(line.c_str(), "%c%c %19llu %c%c %19llu", &signs[0], &axes[0], &sizes[0], &signs[1],
-                        &axes[1], &sizes[1]) != 6)
-            fail("a resolution line such as -Y 512 +X 1024", fmt::format("'{:.60}'", printable(line)));
+        if (std::sscanf(line.c_str(), "%c%c %19llu %c%c %19llu", &signs[0], &axes[0], &sizes[0],
+                        &signs[1], &axes[1], &sizes[1]) != 6)
+            fail("a resolution line such as -Y 512 +X 1024",
+                 fmt::format("'{:.60}'", printable(line)));
         const auto is_sign = [](char c) {
             return c == '+' || c == '-';
         };
@@ -125,14 +129,16 @@ private:
         right_to_left_ = signs[1] == '-';
 
         const auto [height, width] = sizes;
-        // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1; the old runs could, but hardly do.
+        // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1; the old runs could,
+        // but hardly do.
         constexpr std::size_t AlwaysAllowed = std::size_t{1} << 22;
         const std::size_t num_bytes = num_bytes_ - position_;
         if (width == 0 || height == 0 || width > MaxPixels || height > MaxPixels ||
             width * height > MaxPixels)
             fail("a size that an environment can have", fmt::format("{}x{}", width, height));
         if (width * height > std::max(AlwaysAllowed, num_bytes * 16))
-            fail(fmt::format("data for {}x{} pixels", width, height), fmt::format("{} bytes", num_bytes));
+            fail(fmt::format("data for {}x{} pixels", width, height),
+                 fmt::format("{} bytes", num_bytes));
         width_ = static_cast<std::uint32_t>(width);
         height_ = static_cast<std::uint32_t>(height);
     }
@@ -147,12 +153,14 @@ private:
 
     void read_scanline(std::vector<Rgbe>& scanline, std::uint32_t row) {
         const Rgbe start = next_pixel(row);
-        if (!can_be_run_length_encoded(width_) || start[0] != 2 || start[1] != 2 || (start[2] & 0x80) != 0) {
+        if (!can_be_run_length_encoded(width_) || start[0] != 2 || start[1] != 2 ||
+            (start[2] & 0x80) != 0) {
             read_old_scanline(scanline, start, row);
             return;
         }
         if ((start[2] << 8 | start[3]) != static_cast<int>(width_))
-            fail(fmt::format("{} pixels in row {}", width_, row), std::to_string(start[2] << 8 | start[3]));
+            fail(fmt::format("{} pixels in row {}", width_, row),
+                 std::to_string(start[2] << 8 | start[3]));
         for (std::size_t channel = 0; channel < 4; ++channel) {
             for (std::uint32_t x = 0; x < width_;) {
                 const std::uint32_t code = next(row);
@@ -171,7 +179,8 @@ private:
         }
     }
 
-    /// Flat pixels; (1, 1, 1, n) repeats the pixel before n times, and right after another repetition n * 256 times.
+    /// Flat pixels; (1, 1, 1, n) repeats the pixel before n times, and right after another
+    /// repetition n * 256 times.
     void read_old_scanline(std::vector<Rgbe>& scanline, Rgbe pixel, std::uint32_t row) {
         std::uint32_t shift = 0;
         for (std::uint32_t x = 0; x < width_;) {
@@ -194,8 +203,8 @@ private:
     [[nodiscard]] glm::vec3 radiance(const Rgbe& pixel) const {
         if (pixel[3] == 0)
             return glm::vec3(0.0f);
-        return glm::vec3(glm::dvec3(pixel[0], pixel[1], pixel[2]) * std::ldexp(1.0, pixel[3] - 136) /
-                         exposure_);
+        return glm::vec3(glm::dvec3(pixel[0], pixel[1], pixel[2]) *
+                         std::ldexp(1.0, pixel[3] - 136) / exposure_);
     }
 
     [[nodiscard]] static std::string printable(std::string_view text) {
@@ -237,7 +246,8 @@ Rgbe rgbe(const glm::vec3& radiance) {
 }
 
 /// One channel of a scanline in runs of up to 127 equal bytes and stretches of up to 128 others.
-void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel, std::vector<std::uint8_t>& out) {
+void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel,
+                 std::vector<std::uint8_t>& out) {
     constexpr std::size_t ShortestRun = 4, LongestRun = 127, LongestStretch = 128;
     const auto run_length = [&](std::size_t begin) {
         std::size_t end = begin + 1;
@@ -249,7 +259,8 @@ void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel, std::ve
     for (std::size_t x = 0; x < scanline.size();) {
         std::size_t stretch = 0;
         std::size_t run = run_length(x);
-        while (run < ShortestRun && stretch + run <= LongestStretch && x + stretch < scanline.size()) {
+        while (run < ShortestRun && stretch + run <= LongestStretch &&
+               x + stretch < scanline.size()) {
             stretch += run;
             run = x + stretch < scanline.size() ? run_length(x + stretch) : 0;
         }
@@ -276,13 +287,14 @@ ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name) 
     return Decoder(bytes, bytes.size(), name).decode();
 }
 
-ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes, const std::string& name) {
+ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
+                   const std::string& name) {
     return Decoder(head, num_bytes, name).size();
 }
 
 std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {
-    const std::string header =
-        fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+    const std::string header = fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n",
+                                           image.height, image.width);
     std::vector<std::uint8_t> out(header.begin(), header.end());
     std::vector<Rgbe> scanline(image.width);
     for (std::size_t y = 0; y < image.height; ++y) {
@@ -295,8 +307,8 @@ std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {
             continue;
         }
         const auto width = static_cast<std::uint16_t>(image.width);
-        out.insert(out.end(),
-                   {2, 2, static_cast<std::uint8_t>(width >> 8), static_cast<std::uint8_t>(width & 0xff)});
+        out.insert(out.end(), {2, 2, static_cast<std::uint8_t>(width >> 8),
+                               static_cast<std::uint8_t>(width & 0xff)});
         for (std::size_t channel = 0; channel < 4; ++channel)
             append_runs(scanline, channel, out);
     }

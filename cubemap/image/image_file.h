@@ -19,18 +19,23 @@ namespace relumine::cubemap {
 struct ImageFile {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::vector<glm::vec3> pixels; ///< [height * width] row by row from the top; linear RGB radiance
-    std::optional<Layout> envmap;  ///< the layout that the file itself states (OpenEXR's `envmap` attribute)
-    std::vector<std::string> remarks; ///< what a user may want to know, e.g. "luminance only"
+    /// [height * width] row by row from the top; linear RGB radiance
+    std::vector<glm::vec3> pixels;
+    /// The layout that the file itself states (OpenEXR's `envmap` attribute)
+    std::optional<Layout> envmap;
+    /// What a user may want to know, e.g. "luminance only"
+    std::vector<std::string> remarks;
 };
 
-/// More pixels than any environment has (a cube of 6 x 9459^2); beyond it a file is taken for damaged before memory is allocated.
+/// More pixels than any environment has (a cube of 6 x 9459^2); beyond it a file is taken for
+/// damaged before memory is allocated.
 inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 
 [[nodiscard]] bool is_exr(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_hdr(std::span<const std::byte> bytes);
 
-/// Decode a file's content. `name` stands for it in messages: std::runtime_error "name: expected X, got Y".
+/// Decode a file's content. `name` stands for it in messages: std::runtime_error "name: expected X,
+/// got Y".
 [[nodiscard]] ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name);
 
@@ -40,11 +45,12 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 [[nodiscard]] ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                                  const std::string& name);
 
-/// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders, and a channel A where `alpha` is given,
-/// one for each pixel.
+/// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders, and a
+/// channel A where `alpha` is given, one for each pixel.
 [[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
                                                 std::span<const float> alpha = {});
-/// RGBE, run-length encoded, rounded to nearest. Throws std::invalid_argument for radiance that RGBE cannot hold.
+/// RGBE, run-length encoded, rounded to nearest. Throws std::invalid_argument for radiance that
+/// RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);
 
 } // namespace relumine::cubemap

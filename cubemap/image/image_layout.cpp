@@ -51,7 +51,8 @@ std::vector<double> cell_borders(std::uint32_t num_cells, Sampling sampling) {
     const double n = num_cells;
     for (std::size_t i = 0; i <= num_cells; ++i) {
         const auto position = static_cast<double>(i);
-        borders[i] = sampling == Sampling::TexelCentres ? position / n : (position - 0.5) / (n - 1.0);
+        borders[i] =
+            sampling == Sampling::TexelCentres ? position / n : (position - 0.5) / (n - 1.0);
     }
     borders.front() = 0.0;
     borders.back() = 1.0;
@@ -103,7 +104,8 @@ std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& d
         const auto x = sample(point.s, cells.resolution()), y = sample(point.t, cells.resolution());
         if (!x || !y)
             return std::nullopt;
-        return cells.pixel(point.face, static_cast<std::uint32_t>(*x), static_cast<std::uint32_t>(*y));
+        return cells.pixel(point.face, static_cast<std::uint32_t>(*x),
+                           static_cast<std::uint32_t>(*y));
     }
     glm::dvec2 point(0.0);
     if (const Projection* picture = projection(shape.layout))
@@ -120,8 +122,8 @@ std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& d
 FaceCells::FaceCells(Layout layout, std::uint32_t width, std::uint32_t height)
     : width_(width), resolution_(0), cells_{} {
     if (!has_faces(layout) || !fits(layout, width, height))
-        throw std::invalid_argument(fmt::format("expected an image of six cube faces, got a {} of {}x{}",
-                                                name(layout), width, height));
+        throw std::invalid_argument(fmt::format(
+            "expected an image of six cube faces, got a {} of {}x{}", name(layout), width, height));
     if (layout == Layout::Cube) {
         resolution_ = width;
         for (std::size_t face = 0; face < NumFaces; ++face)
@@ -138,7 +140,8 @@ FaceCells::FaceCells(Layout layout, std::uint32_t width, std::uint32_t height)
         cells_ = {Cell{2, 1, false}, Cell{0, 1, false}, Cell{1, 0, false},
                   Cell{1, 2, false}, Cell{3, 1, false}, Cell{1, 1, false}};
     } else {
-        // The cross unfolds the cube around -Z, as HDR Shop and Debevec's probes do; +Z hangs at the bottom, upside down:
+        // The cross unfolds the cube around -Z, as HDR Shop and Debevec's probes do; +Z hangs at
+        // the bottom, upside down:
         //
         //          +Y
         //      -X  -Z  +X
@@ -170,7 +173,8 @@ std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape) {
     std::vector<LatLongColumn> columns(shape.width);
     for (std::uint32_t x = 0; x < shape.width; ++x) {
         const double longitude = 2.0 * Pi * (0.5 - sample_position(x, shape.width, shape.sampling));
-        columns[x] = {std::sin(longitude), std::cos(longitude), 2.0 * Pi * (borders[x + 1] - borders[x])};
+        columns[x] = {std::sin(longitude), std::cos(longitude),
+                      2.0 * Pi * (borders[x + 1] - borders[x])};
     }
     return columns;
 }

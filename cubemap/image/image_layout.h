@@ -1,4 +1,5 @@
-// Where the pixels of an environment image lie on the sphere. The names of layouts and samplings are in environment.h.
+// Where the pixels of an environment image lie on the sphere. The names of layouts and samplings
+// are in environment.h.
 #pragma once
 
 #include <array>
@@ -23,15 +24,18 @@ struct ImageShape {
     bool operator==(const ImageShape&) const = default;
 };
 
-/// The borders of n cells side by side over [0, 1], [n + 1] ascending from 0 to 1. At texel centres all cells are equally wide;
-/// with samples on the borders the first and the last cell are half as wide as the others.
+/// The borders of n cells side by side over [0, 1], [n + 1] ascending from 0 to 1. At texel centres
+/// all cells are equally wide; with samples on the borders the first and the last cell are half as
+/// wide as the others.
 [[nodiscard]] std::vector<double> cell_borders(std::uint32_t num_cells, Sampling sampling);
 
-/// Position in [0, 1] of sample i of n: the cell's centre, or i / (n - 1) with samples on the borders.
-[[nodiscard]] double sample_position(std::uint32_t index, std::uint32_t num_samples, Sampling sampling);
+/// Position in [0, 1] of sample i of n: the cell's centre, or i / (n - 1) with samples on the
+/// borders.
+[[nodiscard]] double sample_position(std::uint32_t index, std::uint32_t num_samples,
+                                     Sampling sampling);
 
-/// True if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n for VerticalCross and so on; n x n for a
-/// Projection.
+/// True if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n for
+/// VerticalCross and so on; n x n for a Projection.
 [[nodiscard]] bool fits(Layout layout, std::uint32_t width, std::uint32_t height);
 
 /// The squares of an image that hold the six faces.
@@ -63,21 +67,25 @@ private:
 
 /// A pixel's place on the sphere.
 struct PixelPlace {
-    glm::dvec3 direction{0.0}; ///< unit, where the pixel's sample lies
-    double solid_angle = 0.0;  ///< of the patch it stands for
+    /// Unit, where the pixel's sample lies
+    glm::dvec3 direction{0.0};
+    /// Of the patch it stands for
+    double solid_angle = 0.0;
 };
 
 /// The pixel whose sample lies in a unit direction to 1e-6 of a pixel's width, if there is one.
-[[nodiscard]] std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction);
+[[nodiscard]] std::optional<std::size_t> pixel_at(const ImageShape& shape,
+                                                  const glm::dvec3& direction);
 
-/// Calls `visit(pixel_index, PixelPlace)` for every pixel that shows a part of the sphere (a cross has cells that do not), in an order
-/// that depends on the shape only.
+/// Calls `visit(pixel_index, PixelPlace)` for every pixel that shows a part of the sphere (a cross
+/// has cells that do not), in an order that depends on the shape only.
 template<typename Visit>
 void for_each_pixel(const ImageShape& shape, const Visit& visit);
 
 namespace detail {
 
-/// One row of a lat-long image: sine and cosine of its samples' polar angle and the row's share of the sphere per turn.
+/// One row of a lat-long image: sine and cosine of its samples' polar angle and the row's share of
+/// the sphere per turn.
 struct LatLongRow {
     double cos_polar, sin_polar, height;
 };
@@ -89,7 +97,8 @@ struct LatLongColumn {
 };
 [[nodiscard]] std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape);
 
-/// All pixels of a Projection, [height * width]. On the rim of a disc a pixel stands for its part inside, with the mean direction.
+/// All pixels of a Projection, [height * width]. On the rim of a disc a pixel stands for its part
+/// inside, with the mean direction.
 [[nodiscard]] std::vector<PixelPlace> projected_places(const ImageShape& shape);
 
 } // namespace detail
@@ -123,9 +132,10 @@ void for_each_pixel(const ImageShape& shape, const Visit& visit) {
         for (std::uint32_t y = 0; y < resolution; ++y) {
             for (std::uint32_t x = 0; x < resolution; ++x)
                 visit(cells.pixel(face, x, y),
-                      PixelPlace{direction(face, sample_position(x, resolution, shape.sampling),
-                                           sample_position(y, resolution, shape.sampling)),
-                                 solid_angle(borders[x], borders[y], borders[x + 1], borders[y + 1])});
+                      PixelPlace{
+                          direction(face, sample_position(x, resolution, shape.sampling),
+                                    sample_position(y, resolution, shape.sampling)),
+                          solid_angle(borders[x], borders[y], borders[x + 1], borders[y + 1])});
         }
     }
 }

@@ -28,7 +28,8 @@ ImageSize size_of_file(const std::filesystem::path& path) {
     if (is_hdr(head))
         return hdr_size(head, num_bytes, path.string());
     throw std::runtime_error(fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got {}",
-                                         path.string(), head.empty() ? "an empty file" : "something else"));
+                                         path.string(),
+                                         head.empty() ? "an empty file" : "something else"));
 }
 
 } // namespace
@@ -42,8 +43,8 @@ ImageSize read_image_size(const std::filesystem::path& path) {
     for (const std::filesystem::path& file : files)
         if (const ImageSize other = size_of_file(file); other != size)
             throw std::runtime_error(fmt::format("{}: expected {}x{} as the first face, got {}x{}",
-                                                 file.string(), size.width, size.height, other.width,
-                                                 other.height));
+                                                 file.string(), size.width, size.height,
+                                                 other.width, other.height));
     size.height *= static_cast<std::uint32_t>(files.size());
     return size;
 }

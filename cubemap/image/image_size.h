@@ -7,8 +7,8 @@
 
 namespace relumine::cubemap {
 
-/// The size that load_environment() would find, without reading the pixels: an intact header says nothing about them.
-/// Throws std::runtime_error "path: expected X, got Y".
+/// The size that load_environment() would find, without reading the pixels: an intact header says
+/// nothing about them. Throws std::runtime_error "path: expected X, got Y".
 [[nodiscard]] ImageSize read_image_size(const std::filesystem::path& path);
 
 } // namespace relumine::cubemap

@@ -8,16 +8,18 @@
 
 namespace relumine::cubemap {
 
-/// Values 0, 1, ... of a list, each made by a function that takes its time. While the caller works on one, the next is made by a
-/// thread of its own; so two exist at a time. One thread at a time may call get().
+/// Values 0, 1, ... of a list, each made by a function that takes its time. While the caller works
+/// on one, the next is made by a thread of its own; so two exist at a time. One thread at a time
+/// may call get().
 template<typename T>
 class ReadAhead {
 public:
     /// `make(index)` may run on another thread, though never twice at once.
-    ReadAhead(std::size_t size, std::function<T(std::size_t)> make) : size_(size), make_(std::move(make)) {}
+    ReadAhead(std::size_t size, std::function<T(std::size_t)> make)
+        : size_(size), make_(std::move(make)) {}
 
-    /// The value of an index below the size; throws what make() throws. In ascending order it was mostly made already; any
-    /// other order works, too.
+    /// The value of an index below the size; throws what make() throws. In ascending order it was
+    /// mostly made already; any other order works, too.
     [[nodiscard]] T get(std::size_t index) {
         std::future<T> next = std::exchange(next_, {});
         const bool is_here = next.valid() && next_index_ == index;
@@ -35,7 +37,8 @@ private:
     std::size_t size_;
     std::function<T(std::size_t)> make_;
     std::size_t next_index_ = 0;
-    std::future<T> next_; ///< last: its destructor waits for the thread, which uses the others
+    /// Last: its destructor waits for the thread, which uses the others
+    std::future<T> next_;
 };
 
 } // namespace relumine::cubemap

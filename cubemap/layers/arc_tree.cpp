@@ -23,7 +23,8 @@ double squared_length(const glm::dvec3& v) {
 
 double ArcTree::Arc::squared_distance(const glm::dvec3& w) const {
     if (glm::dot(w, after_from) > 0.0 && glm::dot(w, before_to) > 0.0) {
-        // The foot on the great circle lies on the arc: 2 - 2 cos with sin = w.n, without cancellation.
+        // The foot on the great circle lies on the arc: 2 - 2 cos with sin = w.n, without
+        // cancellation.
         const double sine = glm::dot(w, normal);
         return 2.0 * sine * sine / (1.0 + std::sqrt(std::max(0.0, 1.0 - sine * sine)));
     }
@@ -60,7 +61,8 @@ void ArcTree::build(std::uint32_t begin, std::uint32_t end) {
     for (std::uint32_t i = begin; i < end; ++i)
         node.centre += arcs_[i].middle / static_cast<double>(end - begin);
     for (std::uint32_t i = begin; i < end; ++i)
-        node.radius = std::max(node.radius, glm::length(arcs_[i].middle - node.centre) + arcs_[i].half_chord);
+        node.radius =
+            std::max(node.radius, glm::length(arcs_[i].middle - node.centre) + arcs_[i].half_chord);
     if (end - begin > LeafSize) {
         const std::uint32_t middle = begin + (end - begin) / 2;
         build(begin, middle);
@@ -73,7 +75,8 @@ void ArcTree::build(std::uint32_t begin, std::uint32_t end) {
 double ArcTree::squared_distance(const glm::dvec3& w, double limit) const {
     struct Waiting {
         std::uint32_t node;
-        double distance; ///< to the ball's centre, less its radius
+        /// To the ball's centre, less its radius
+        double distance;
     };
     const auto waiting = [&](std::uint32_t node) {
         return Waiting{node, glm::length(w - nodes_[node].centre) - nodes_[node].radius};
@@ -175,8 +178,9 @@ bool ArcTree::encloses(const glm::dvec2& point) const {
 
 namespace {
 
-/// How far from a ball's centre an arc may be to matter in the ball. At any w in it, the nearest arc is no further than distance + chord, so
-/// no further than distance + 2 chord from the centre; one within `chord` of w is within 2 chord of it. A hair more for rounding.
+/// How far from a ball's centre an arc may be to matter in the ball. At any w in it, the nearest
+/// arc is no further than distance + chord, so no further than distance + 2 chord from the centre;
+/// one within `chord` of w is within 2 chord of it. A hair more for rounding.
 double reach_of(double distance, double chord) {
     return (distance + 2.0 * chord) * (1.0 + 1e-9) + 1e-12;
 }

@@ -23,8 +23,9 @@ double second_integral(double t) {
 double mean_smoothstep(double a, double p, double q) {
     if (std::abs(p) < std::abs(q))
         std::swap(p, q);
-    // Differences of the integrals lose digits where a slope is small, and are not needed there: the errors of the midpoint are
-    // the slope's square, 1e-7 in the first case, and 1e-9 in the second.
+    // Differences of the integrals lose digits where a slope is small, and are not needed there:
+    // the errors of the midpoint are the slope's square, 1e-7 in the first case, and 1e-9 in the
+    // second.
     if (std::abs(p) < 1e-3)
         return smoothstep(a + 0.5 * (p + q));
     double mean = 0.0;
@@ -48,8 +49,9 @@ detail::RampFit::RampFit(const std::array<double, 4>& corners, double centre) {
     if (none || full) {
         mean = full ? 1.0 : 0.0;
     } else {
-        // Two thirds of the centre and one of the corners make the mean of a quadratic function exactly, so what bending up to
-        // the bounds below leaves is of the next order. The energy tests say that they are good enough.
+        // Two thirds of the centre and one of the corners make the mean of a quadratic function
+        // exactly, so what bending up to the bounds below leaves is of the next order. The energy
+        // tests say that they are good enough.
         const double level = (2.0 * centre + corner_mean) / 3.0;
         mean = mean_smoothstep(level - 0.5 * (p + q), p, q);
     }

@@ -1,8 +1,9 @@
 // Mean coverage of a region over a square of a cube face, by its solid angle.
 //
-// Squares that the region's edge crosses are quartered until the ramps of region_shape.h are as good as linear over them; the
-// smoothstep of a linear function over a square has a closed form, whatever the width of the edge. So a straight hard
-// edge needs no quartering at all, a round one only until it looks straight.
+// Squares that the region's edge crosses are quartered until the ramps of region_shape.h are as
+// good as linear over them; the smoothstep of a linear function over a square has a closed form,
+// whatever the width of the edge. So a straight hard edge needs no quartering at all, a round one
+// only until it looks straight.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +20,8 @@
 
 namespace relumine::cubemap {
 
-/// A face's plane: the point (u, v) of [-1, 1]^2 is origin + u right + v down (face.h's cube_point with u = 2s - 1, v = 2t - 1).
+/// A face's plane: the point (u, v) of [-1, 1]^2 is origin + u right + v down (face.h's cube_point
+/// with u = 2s - 1, v = 2t - 1).
 struct FacePlane {
     explicit FacePlane(Face face)
         : origin(cube_point(face, 0.5, 0.5)), right(cube_point(face, 1.0, 0.5) - origin),
@@ -36,8 +38,8 @@ struct Cell {
     double u = 0.0;
     double v = 0.0;
     double half = 1.0;
-    /// No direction of the cell is further than this chord from its centre's: moving points of the plane to the sphere brings them
-    /// closer together.
+    /// No direction of the cell is further than this chord from its centre's: moving points of the
+    /// plane to the sphere brings them closer together.
     [[nodiscard]] double chord() const { return 1.4142135623730952 * half; }
     [[nodiscard]] Cell quarter(int i) const {
         const double h = 0.5 * half;
@@ -64,19 +66,25 @@ template<typename Shape>
 
 namespace detail {
 
-/// Mean of one ramp's smoothstep over a cell, from samples at the four corners (row by row) and the centre.
+/// Mean of one ramp's smoothstep over a cell, from samples at the four corners (row by row) and the
+/// centre.
 struct RampFit {
     RampFit(const std::array<double, 4>& corners, double centre);
     double mean = 0.0;
-    bool none = false;   ///< no sample above 0
-    bool full = false;   ///< no sample below 1
-    bool smooth = false; ///< the ramp changes little
-    bool linear = false; ///< the ramp may be steep but is straight
+    /// No sample above 0
+    bool none = false;
+    /// No sample below 1
+    bool full = false;
+    /// The ramp changes little
+    bool smooth = false;
+    /// The ramp may be steep but is straight
+    bool linear = false;
 };
 
 /// The fits' product, if it can be trusted.
 template<typename Shape>
-std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane, const Cell& cell) {
+std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane,
+                                      const Cell& cell) {
     constexpr std::size_t N = Shape::NumRamps;
     // Beyond this size the density of solid angle varies too much within a cell (by a percent).
     constexpr double LargestHalf = 1.0 / 256.0;
@@ -108,7 +116,8 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
         all_smooth = all_smooth && fit.smooth;
         trusted = trusted && (fit.smooth || straight);
     }
-    // The mean of a product is the product of the means where only one factor varies or all vary little.
+    // The mean of a product is the product of the means where only one factor varies or all vary
+    // little.
     if (!trusted || (num_partial > 1 && !all_smooth))
         return std::nullopt;
     return product;

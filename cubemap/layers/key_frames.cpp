@@ -25,9 +25,9 @@ Around keys_around(std::span<const KeyFrame> frames, double frame, const std::st
                    std::string_view field) {
     Around around;
     for (const KeyFrame& key : frames) {
-        const auto change = std::find_if(key.changes.begin(), key.changes.end(), [&](const KeyedValue& c) {
-            return c.layer == layer && c.field == field;
-        });
+        const auto change =
+            std::find_if(key.changes.begin(), key.changes.end(),
+                         [&](const KeyedValue& c) { return c.layer == layer && c.field == field; });
         if (change == key.changes.end())
             continue;
         if (key.frame <= frame) {
@@ -42,7 +42,8 @@ Around keys_around(std::span<const KeyFrame> frames, double frame, const std::st
     return around;
 }
 
-/// On the great circle at constant speed; the length goes linearly. Opposite directions turn about an axis across them.
+/// On the great circle at constant speed; the length goes linearly. Opposite directions turn about
+/// an axis across them.
 glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double t) {
     const double from_length = glm::length(from), to_length = glm::length(to);
     if (from == to || !(from_length > 0.0) || !(to_length > 0.0))
@@ -54,8 +55,9 @@ glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double t) {
     if (sine > 1e-12)
         side /= sine;
     else
-        side = glm::normalize(glm::cross(start, std::abs(start.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0)
-                                                                        : glm::dvec3(1.0, 0.0, 0.0)));
+        side =
+            glm::normalize(glm::cross(start, std::abs(start.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0)
+                                                                     : glm::dvec3(1.0, 0.0, 0.0)));
     const double length = from_length + (to_length - from_length) * t;
     return length * (start * std::cos(angle * t) + side * std::sin(angle * t));
 }
@@ -91,14 +93,16 @@ std::vector<LightLayer> layers_at(const LightLayers& layers, double frame) {
             const Around around = keys_around(layers.frames, frame, layer.name, field.name);
             if (around.before == nullptr && around.after == nullptr)
                 continue;
-            const auto& from = around.before != nullptr ? *around.values_before : *around.values_after;
+            const auto& from =
+                around.before != nullptr ? *around.values_before : *around.values_after;
             const auto& to = around.after != nullptr ? *around.values_after : from;
-            const bool fits =
-                field.points != nullptr ? from.size() % 3 == 0 : from.size() == values(field).size();
+            const bool fits = field.points != nullptr ? from.size() % 3 == 0
+                                                      : from.size() == values(field).size();
             if (!fits || from.size() != to.size())
-                throw std::invalid_argument(fmt::format(
-                    "light layer \"{}\": expected as many numbers of \"{}\" at all key frames, got {} and {}",
-                    layer.name, field.name, from.size(), to.size()));
+                throw std::invalid_argument(
+                    fmt::format("light layer \"{}\": expected as many numbers of \"{}\" at all key "
+                                "frames, got {} and {}",
+                                layer.name, field.name, from.size(), to.size()));
             if (around.before == nullptr || around.after == nullptr) {
                 set_values(field, from);
             } else {

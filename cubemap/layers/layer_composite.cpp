@@ -15,8 +15,9 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Tiles are cut from the whole face, not from the rectangles, so that every texel meets the same tests wherever rectangles begin.
-/// 32 x 32: a disc of 100 texels' radius has about as many tiles at its rim as inside it.
+/// Tiles are cut from the whole face, not from the rectangles, so that every texel meets the same
+/// tests wherever rectangles begin. 32 x 32: a disc of 100 texels' radius has about as many tiles
+/// at its rim as inside it.
 constexpr std::uint32_t TileSize = 32;
 
 /// A layer's effect with its gain multiplied in.
@@ -26,7 +27,9 @@ struct Light {
 };
 struct Filter {
     glm::vec3 factor;
-    void operator()(glm::vec3& texel, float coverage) const { texel *= 1.0f + coverage * (factor - 1.0f); }
+    void operator()(glm::vec3& texel, float coverage) const {
+        texel *= 1.0f + coverage * (factor - 1.0f);
+    }
 };
 struct Patch {
     const Picture* picture;
@@ -87,14 +90,15 @@ class PlacedPicture {
 public:
     PlacedPicture(const RectangleShape& rectangle, const Picture& picture, const FaceGrid& grid)
         : rectangle_(rectangle), picture_(picture), plane_(grid.plane) {
-        // One level for the whole picture, or a bright spot where two levels meet would be counted by neither or both: pixels of half a
-        // texel or more at the picture's and the face's middle, but at least eight of them.
+        // One level for the whole picture, or a bright spot where two levels meet would be counted
+        // by neither or both: pixels of half a texel or more at the picture's and the face's
+        // middle, but at least eight of them.
         const glm::dvec2& half = rectangle.half_sides();
         const double texel = std::min(0.25, grid.half_texel / std::sqrt(half.x * half.y));
         const Picture::Level& full = picture.levels().front();
         const double pixels = std::max(1.0, 0.5 * texel * std::max(full.width, full.height));
-        level_ =
-            std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))), picture.levels().size() - 1);
+        level_ = std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))),
+                          picture.levels().size() - 1);
         const Picture::Level& chosen = picture.levels()[level_];
         largest_part_ = LargestPart / std::max({chosen.width, chosen.height, 8u});
     }
@@ -105,7 +109,8 @@ public:
     }
 
 private:
-    static constexpr double LargestPart = 0.5; ///< of a pixel's side, so that every pixel is met evenly
+    /// Of a pixel's side, so that every pixel is met evenly
+    static constexpr double LargestPart = 0.5;
 
     /// Integral over the solid angle of a texel or a part of it.
     [[nodiscard]] glm::dvec3 light(const Cell& part, bool covered) const {
@@ -120,7 +125,8 @@ private:
                 sum += light(part.quarter(i), covered);
             return sum;
         }
-        const double covered_angle = covered ? angle : detail::covered_solid_angle(rectangle_, plane_, part);
+        const double covered_angle =
+            covered ? angle : detail::covered_solid_angle(rectangle_, plane_, part);
         return covered_angle * picture_.sample(level_, rectangle_.picture_position(middle));
     }
 
@@ -136,12 +142,13 @@ void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& t
     if (const auto* patch = std::get_if<Patch>(&layer.effect)) {
         const auto& region = std::get<RectangleShape>(layer.region);
         const PlacedPicture picture(region, *patch->picture, grid);
-        for_covered(region, grid, tile, rectangle, [&](std::uint32_t x, std::uint32_t y, double coverage) {
-            const glm::dvec3 light = picture.mean(grid.cell(x, y), coverage == 1.0);
-            glm::vec3& texel = target.at(grid.face, x, y);
-            texel = texel * static_cast<float>(patch->replace ? 1.0 - coverage : 1.0) +
-                    patch->gain * glm::vec3(light);
-        });
+        for_covered(region, grid, tile, rectangle,
+                    [&](std::uint32_t x, std::uint32_t y, double coverage) {
+                        const glm::dvec3 light = picture.mean(grid.cell(x, y), coverage == 1.0);
+                        glm::vec3& texel = target.at(grid.face, x, y);
+                        texel = texel * static_cast<float>(patch->replace ? 1.0 - coverage : 1.0) +
+                                patch->gain * glm::vec3(light);
+                    });
         return;
     }
     const auto change = [&](const auto& effect) {
@@ -164,7 +171,8 @@ void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> lay
         return (texel + TileSize - 1) / TileSize;
     };
     const tbb::blocked_range2d<std::uint32_t> tiles(rectangle.y0 / TileSize, end_tile(rectangle.y1),
-                                                    rectangle.x0 / TileSize, end_tile(rectangle.x1));
+                                                    rectangle.x0 / TileSize,
+                                                    end_tile(rectangle.x1));
     tbb::parallel_for(tiles, [&](const tbb::blocked_range2d<std::uint32_t>& some) {
         for (std::uint32_t row = some.rows().begin(); row < some.rows().end(); ++row) {
             for (std::uint32_t column = some.cols().begin(); column < some.cols().end(); ++column) {
@@ -194,14 +202,15 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
                std::span<const TexelRectangle> rectangles, CubeMap& target) {
     if (base.resolution != target.resolution || base.texels.size() != target.texels.size() ||
         base.texels.size() != NumFaces * std::size_t{base.resolution} * base.resolution)
-        throw std::invalid_argument(fmt::format("composite: expected maps of one resolution, got {} and {}",
-                                                base.resolution, target.resolution));
+        throw std::invalid_argument(
+            fmt::format("composite: expected maps of one resolution, got {} and {}",
+                        base.resolution, target.resolution));
     for (const TexelRectangle& r : rectangles) {
         if (r.x0 > r.x1 || r.y0 > r.y1 || r.x1 > base.resolution || r.y1 > base.resolution ||
             static_cast<std::size_t>(r.face) >= NumFaces)
-            throw std::invalid_argument(fmt::format(
-                "composite: expected a rectangle within {0} x {0} texels, got [{1}, {2}) x [{3}, {4})",
-                base.resolution, r.x0, r.x1, r.y0, r.y1));
+            throw std::invalid_argument(fmt::format("composite: expected a rectangle within {0} x "
+                                                    "{0} texels, got [{1}, {2}) x [{3}, {4})",
+                                                    base.resolution, r.x0, r.x1, r.y0, r.y1));
     }
     std::vector<PreparedLayer> ready;
     ready.reserve(layers.size());

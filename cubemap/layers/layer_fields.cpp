@@ -16,8 +16,10 @@ struct RegionFields {
     }
     void operator()(Rectangle& rectangle) const {
         out.push_back({.name = "direction", .required = true, .direction = &rectangle.direction});
-        out.push_back({.name = "width_degrees", .required = true, .number = &rectangle.width_degrees});
-        out.push_back({.name = "height_degrees", .required = true, .number = &rectangle.height_degrees});
+        out.push_back(
+            {.name = "width_degrees", .required = true, .number = &rectangle.width_degrees});
+        out.push_back(
+            {.name = "height_degrees", .required = true, .number = &rectangle.height_degrees});
         out.push_back({.name = "roll_degrees", .number = &rectangle.roll_degrees});
         out.push_back({.name = "softness", .number = &rectangle.softness});
     }
@@ -27,7 +29,8 @@ struct RegionFields {
     }
     void operator()(Stroke& stroke) const {
         out.push_back({.name = "points", .required = true, .points = &stroke.points});
-        out.push_back({.name = "radius_degrees", .required = true, .number = &stroke.radius_degrees});
+        out.push_back(
+            {.name = "radius_degrees", .required = true, .number = &stroke.radius_degrees});
         out.push_back({.name = "softness", .number = &stroke.softness});
     }
 };
@@ -74,8 +77,9 @@ std::vector<double> values(const LayerField& field) {
 }
 
 void set_values(const LayerField& field, std::span<const double> numbers) {
-    assert((field.points != nullptr ? numbers.size() % 3 == 0
-                                    : numbers.size() == (field.colour || field.direction ? 3u : 1u)) &&
+    assert((field.points != nullptr
+                ? numbers.size() % 3 == 0
+                : numbers.size() == (field.colour || field.direction ? 3u : 1u)) &&
            "a field takes as many numbers as it has");
     if (field.flag != nullptr) {
         *field.flag = numbers[0] != 0.0;

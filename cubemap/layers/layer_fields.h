@@ -12,7 +12,8 @@ namespace relumine::cubemap {
 /// Numbers of a layer under one name. One of the pointers is set.
 struct LayerField {
     std::string_view name;
-    bool required = false; ///< by a layer file; others have the default of light_layer.h
+    /// By a layer file; others have the default of light_layer.h
+    bool required = false;
     bool* flag = nullptr;
     double* number = nullptr;
     float* single = nullptr;
@@ -21,7 +22,8 @@ struct LayerField {
     std::vector<glm::dvec3>* points = nullptr;
 };
 
-/// The fields that a layer of this region and effect has, in the order they are written. Valid while neither is replaced.
+/// The fields that a layer of this region and effect has, in the order they are written. Valid
+/// while neither is replaced.
 [[nodiscard]] std::vector<LayerField> fields(LightLayer& layer);
 
 /// A field's numbers: 1, 3, or 3 per point; a flag is 0 or 1.

@@ -21,7 +21,8 @@ constexpr double Version = 1.0;
 
 class LayerFileReader {
 public:
-    explicit LayerFileReader(const std::filesystem::path& path) : path_(path), json_(path.string()) {}
+    explicit LayerFileReader(const std::filesystem::path& path)
+        : path_(path), json_(path.string()) {}
 
     LightLayers read() const {
         const files::JsonValue root = json_.parse(files::read(path_));
@@ -34,7 +35,8 @@ public:
         LightLayers result;
         if (const files::JsonValue* base = files::JsonReader::find(members, "base"))
             result.base = json_.string(*base, "\"base\"");
-        for (const files::JsonValue& value : json_.array(required(root, members, "layers"), "\"layers\""))
+        for (const files::JsonValue& value :
+             json_.array(required(root, members, "layers"), "\"layers\""))
             result.layers.push_back(layer(value, result.layers));
         if (const files::JsonValue* frames = files::JsonReader::find(members, "frames")) {
             for (const files::JsonValue& value : json_.array(*frames, "\"frames\""))
@@ -44,7 +46,8 @@ public:
     }
 
 private:
-    const files::JsonValue& required(const files::JsonValue& owner, const files::JsonValue::Object& members,
+    const files::JsonValue& required(const files::JsonValue& owner,
+                                     const files::JsonValue::Object& members,
                                      std::string_view field) const {
         const files::JsonValue* found = files::JsonReader::find(members, field);
         if (found == nullptr)
@@ -64,8 +67,10 @@ private:
     std::vector<double> vector3(const files::JsonValue& value, std::string_view what) const {
         const auto& array = json_.array(value, what);
         if (array.size() != 3)
-            json_.refuse(value.line, fmt::format("{} of 3 numbers", what), fmt::format("{}", array.size()));
-        return {json_.number(array[0], what), json_.number(array[1], what), json_.number(array[2], what)};
+            json_.refuse(value.line, fmt::format("{} of 3 numbers", what),
+                         fmt::format("{}", array.size()));
+        return {json_.number(array[0], what), json_.number(array[1], what),
+                json_.number(array[2], what)};
     }
 
     std::vector<double> numbers(const LayerField& field, const files::JsonValue& value) const {
@@ -86,7 +91,8 @@ private:
 
     /// The kind that a name stands for: variants are listed in the order of their names.
     template<typename Variant, std::size_t N>
-    Variant kind(const files::JsonValue& value, std::string_view what, const std::array<Variant, N>& kinds,
+    Variant kind(const files::JsonValue& value, std::string_view what,
+                 const std::array<Variant, N>& kinds,
                  std::string_view (*name)(const Variant&)) const {
         const std::string& text = json_.string(value, what);
         std::vector<std::string_view> names;
@@ -99,14 +105,16 @@ private:
                      fmt::format("\"{}\"", text));
     }
 
-    ImagePatch image_patch(const files::JsonValue& owner, const files::JsonValue::Object& members) const {
+    ImagePatch image_patch(const files::JsonValue& owner,
+                           const files::JsonValue::Object& members) const {
         ImagePatch patch;
         const files::JsonValue& path = required(owner, members, "path");
         patch.path = json_.string(path, "\"path\"");
         if (const files::JsonValue* blend = files::JsonReader::find(members, "blend")) {
             const std::string& text = json_.string(*blend, "\"blend\"");
             if (text != "replace" && text != "add")
-                json_.refuse(blend->line, "\"blend\" to be replace or add", fmt::format("\"{}\"", text));
+                json_.refuse(blend->line, "\"blend\" to be replace or add",
+                             fmt::format("\"{}\"", text));
             patch.blend = text == "add" ? ImagePatch::Blend::Add : ImagePatch::Blend::Replace;
         }
         try {
@@ -124,12 +132,14 @@ private:
         result.name = json_.string(name, "\"name\"");
         if (std::any_of(others.begin(), others.end(),
                         [&](const LightLayer& other) { return other.name == result.name; }))
-            json_.refuse(name.line, "layers of different names", fmt::format("a second \"{}\"", result.name));
+            json_.refuse(name.line, "layers of different names",
+                         fmt::format("a second \"{}\"", result.name));
         result.region =
             kind<Region>(required(value, members, "type"), "\"type\"",
                          std::array<Region, 4>{Disc{}, Rectangle{}, Lasso{}, Stroke{}}, type_name);
-        result.effect = kind<Effect>(required(value, members, "effect"), "\"effect\"",
-                                     std::array<Effect, 3>{Emit{}, Gain{}, ImagePatch{}}, effect_name);
+        result.effect =
+            kind<Effect>(required(value, members, "effect"), "\"effect\"",
+                         std::array<Effect, 3>{Emit{}, Gain{}, ImagePatch{}}, effect_name);
         std::vector<std::string_view> names = {"name", "type", "effect"};
         for (const LayerField& field : fields(result)) {
             names.push_back(field.name);
@@ -144,11 +154,13 @@ private:
             *patch = image_patch(value, members);
         }
         known(members, names,
-              fmt::format("a {} with the effect {}", type_name(result.region), effect_name(result.effect)));
+              fmt::format("a {} with the effect {}", type_name(result.region),
+                          effect_name(result.effect)));
         try {
             validate(result);
         } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(fmt::format("{}:{}: {}", json_.name(), value.line, error.what()));
+            throw std::runtime_error(
+                fmt::format("{}:{}: {}", json_.name(), value.line, error.what()));
         }
         return result;
     }
@@ -164,9 +176,9 @@ private:
                          fmt::format("{}", result.frame));
         for (const auto& [name, changes] :
              json_.object(required(value, members, "layers"), "\"layers\" of a key frame")) {
-            const auto found =
-                std::find_if(before.layers.begin(), before.layers.end(),
-                             [&, &layer_name = name](const LightLayer& l) { return l.name == layer_name; });
+            const auto found = std::find_if(
+                before.layers.begin(), before.layers.end(),
+                [&, &layer_name = name](const LightLayer& l) { return l.name == layer_name; });
             if (found == before.layers.end())
                 json_.refuse(changes.line, "the name of a layer", fmt::format("\"{}\"", name));
             keyed_layer(*found, changes, before, result);
@@ -178,7 +190,8 @@ private:
     void keyed_layer(LightLayer layer, const files::JsonValue& changes, const LightLayers& before,
                      KeyFrame& result) const {
         std::vector<std::string_view> names;
-        const auto& members = json_.object(changes, fmt::format("the change of layer \"{}\"", layer.name));
+        const auto& members =
+            json_.object(changes, fmt::format("the change of layer \"{}\"", layer.name));
         const std::vector<LayerField> all = fields(layer);
         names.reserve(all.size());
         for (const LayerField& field : all)
@@ -187,9 +200,9 @@ private:
               fmt::format("a key frame of a {} with the effect {}", type_name(layer.region),
                           effect_name(layer.effect)));
         for (const auto& [name, value] : members) {
-            const auto field = std::find_if(all.begin(), all.end(), [&, &member = name](const LayerField& f) {
-                return f.name == member;
-            });
+            const auto field =
+                std::find_if(all.begin(), all.end(),
+                             [&, &member = name](const LayerField& f) { return f.name == member; });
             KeyedValue change{.layer = layer.name, .field = name, .values = numbers(*field, value)};
             for (const KeyFrame& earlier : before.frames) {
                 for (const KeyedValue& other : earlier.changes) {
@@ -207,7 +220,8 @@ private:
         try {
             validate(layer);
         } catch (const std::invalid_argument& error) {
-            throw std::runtime_error(fmt::format("{}:{}: {}", json_.name(), changes.line, error.what()));
+            throw std::runtime_error(
+                fmt::format("{}:{}: {}", json_.name(), changes.line, error.what()));
         }
     }
 

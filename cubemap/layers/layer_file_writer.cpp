@@ -20,7 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The shortest decimal that reads back as the same float, rather than the float's many digits as a double.
+/// The shortest decimal that reads back as the same float, rather than the float's many digits as a
+/// double.
 double shortest(float value) {
     std::array<char, 32> text;
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
@@ -63,17 +64,19 @@ Json json(LightLayer layer) {
 Json json(const KeyFrame& key, std::vector<LightLayer> layers) {
     Json changes = Json::object();
     for (const KeyedValue& change : key.changes) {
-        const auto layer = std::find_if(layers.begin(), layers.end(),
-                                        [&](const LightLayer& l) { return l.name == change.layer; });
+        const auto layer = std::find_if(layers.begin(), layers.end(), [&](const LightLayer& l) {
+            return l.name == change.layer;
+        });
         if (layer == layers.end())
-            throw std::invalid_argument(fmt::format("key frame {}: expected the name of a layer, got \"{}\"",
-                                                    key.frame, change.layer));
+            throw std::invalid_argument(fmt::format(
+                "key frame {}: expected the name of a layer, got \"{}\"", key.frame, change.layer));
         const std::vector<LayerField> all = fields(*layer);
-        const auto field =
-            std::find_if(all.begin(), all.end(), [&](const LayerField& f) { return f.name == change.field; });
+        const auto field = std::find_if(
+            all.begin(), all.end(), [&](const LayerField& f) { return f.name == change.field; });
         const bool fits =
-            field != all.end() && (field->points != nullptr ? change.values.size() % 3 == 0
-                                                            : change.values.size() == values(*field).size());
+            field != all.end() &&
+            (field->points != nullptr ? change.values.size() % 3 == 0
+                                      : change.values.size() == values(*field).size());
         if (!fits || !std::all_of(change.values.begin(), change.values.end(),
                                   [](double value) { return std::isfinite(value); }))
             throw std::invalid_argument(
@@ -89,14 +92,16 @@ void check_for_save(const LightLayers& layers) {
         validate(layers.layers[i]);
         for (std::size_t j = 0; j < i; ++j) {
             if (layers.layers[i].name == layers.layers[j].name)
-                throw std::invalid_argument(fmt::format(
-                    "light layers: expected different names, got \"{}\" twice", layers.layers[i].name));
+                throw std::invalid_argument(
+                    fmt::format("light layers: expected different names, got \"{}\" twice",
+                                layers.layers[i].name));
         }
     }
     for (std::size_t i = 1; i < layers.frames.size(); ++i) {
         if (!(layers.frames[i - 1].frame < layers.frames[i].frame))
-            throw std::invalid_argument(fmt::format("key frames: expected ascending frames, got {} after {}",
-                                                    layers.frames[i].frame, layers.frames[i - 1].frame));
+            throw std::invalid_argument(
+                fmt::format("key frames: expected ascending frames, got {} after {}",
+                            layers.frames[i].frame, layers.frames[i - 1].frame));
     }
     for (const KeyFrame& key : layers.frames)
         (void)layers_at(layers, key.frame);

@@ -17,7 +17,8 @@ namespace relumine::cubemap {
 namespace {
 
 constexpr double DegreesPerRadian = 180.0 / std::numbers::pi;
-constexpr double LargestLassoAngle = 89.9; ///< degrees from the mean
+/// Degrees from the mean
+constexpr double LargestLassoAngle = 89.9;
 constexpr double LargestGainEv = 100.0;
 
 /// Angle between unit vectors in degrees, accurate near 0 and 180 as well.
@@ -40,7 +41,8 @@ void check_direction(std::string_view what, const glm::dvec3& direction) {
         refuse(what, "of finite length above 0", text(direction));
 }
 
-/// A star. Coverage of texels is found by cutting them until a shape is not small any more, which for no size at all has no end.
+/// A star. Coverage of texels is found by cutting them until a shape is not small any more, which
+/// for no size at all has no end.
 constexpr double SmallestSize = 1e-4;
 
 void check_size(std::string_view what, double degrees, double up_to) {
@@ -114,12 +116,14 @@ void check(const Stroke& stroke) {
 void check_colour(std::string_view what, const glm::vec3& colour, double scale) {
     for (const float value : {colour.x, colour.y, colour.z}) {
         if (!(value >= 0.0f) || !std::isfinite(static_cast<float>(value * scale)))
-            refuse(what, "to be finite and at least 0 (gain_ev included)", text(glm::dvec3(colour)));
+            refuse(what, "to be finite and at least 0 (gain_ev included)",
+                   text(glm::dvec3(colour)));
     }
 }
 
 struct CheckEffect {
-    double scale; ///< 2^gain_ev
+    /// 2^gain_ev
+    double scale;
     const Region& region;
     void operator()(const Emit& emit) const { check_colour("radiance", emit.radiance, scale); }
     void operator()(const Gain& gain) const {
@@ -133,16 +137,20 @@ struct CheckEffect {
         if (!patch.picture)
             refuse("an image", "with its picture loaded", "none");
         // The last level is the mean; no need to walk over all pixels for every edit.
-        check_colour("the picture's mean radiance", patch.picture->levels().back().pixels.front(), scale);
+        check_colour("the picture's mean radiance", patch.picture->levels().back().pixels.front(),
+                     scale);
     }
 };
 
 struct BoundingCone {
-    Cone operator()(const Disc& disc) const { return {glm::normalize(disc.direction), disc.radius_degrees}; }
+    Cone operator()(const Disc& disc) const {
+        return {glm::normalize(disc.direction), disc.radius_degrees};
+    }
     Cone operator()(const Rectangle& rectangle) const {
         const double x = std::tan(0.5 * rectangle.width_degrees / DegreesPerRadian);
         const double y = std::tan(0.5 * rectangle.height_degrees / DegreesPerRadian);
-        return {glm::normalize(rectangle.direction), std::atan(std::hypot(x, y)) * DegreesPerRadian};
+        return {glm::normalize(rectangle.direction),
+                std::atan(std::hypot(x, y)) * DegreesPerRadian};
     }
     Cone operator()(const Lasso& lasso) const {
         // A cap below a hemisphere that holds the corners holds the edges too.
@@ -155,9 +163,10 @@ struct BoundingCone {
                                                       glm::normalize(stroke.points[i + 1])));
         // No point of an arc is further from its nearer end than half its length.
         const Cone cap = around(stroke.points, 0.0);
-        return {cap.axis, std::min(180.0, (cap.radius_degrees < 90.0 ? cap.radius_degrees
-                                                                     : cap.radius_degrees + 0.5 * longest) +
-                                              stroke.radius_degrees)};
+        return {cap.axis,
+                std::min(180.0, (cap.radius_degrees < 90.0 ? cap.radius_degrees
+                                                           : cap.radius_degrees + 0.5 * longest) +
+                                    stroke.radius_degrees)};
     }
 
 private:
@@ -194,7 +203,8 @@ void validate(const LightLayer& layer) {
         validate(layer.region);
         std::visit(CheckEffect{std::exp2(layer.gain_ev), layer.region}, layer.effect);
     } catch (const std::invalid_argument& error) {
-        throw std::invalid_argument(fmt::format("light layer \"{}\": {}", layer.name, error.what()));
+        throw std::invalid_argument(
+            fmt::format("light layer \"{}\": {}", layer.name, error.what()));
     }
 }
 

@@ -20,27 +20,31 @@ bool is_radiance(const glm::vec3& value) {
            std::isfinite(value.y) && std::isfinite(value.z);
 }
 
-/// Half as many pixels each way (at least one), each the mean of those it covers, also where the number is odd.
+/// Half as many pixels each way (at least one), each the mean of those it covers, also where the
+/// number is odd.
 Picture::Level halved(const Picture::Level& from) {
-    Picture::Level to{
-        .width = std::max(1u, from.width / 2), .height = std::max(1u, from.height / 2), .pixels = {}};
+    Picture::Level to{.width = std::max(1u, from.width / 2),
+                      .height = std::max(1u, from.height / 2),
+                      .pixels = {}};
     to.pixels.reserve(std::size_t{to.width} * to.height);
-    // Calls visit(pixel, weight) for the pixels that pixel `index` of the halved row or column covers.
+    // Calls visit(pixel, weight) for the pixels that pixel `index` of the halved row or column
+    // covers.
     const auto for_covered = [](std::uint32_t index, std::uint32_t num_from, std::uint32_t num_to,
                                 const auto& visit) {
         const double scale = static_cast<double>(num_from) / num_to;
         const double begin = index * scale;
         const double end = index + 1 == num_to ? num_from : (index + 1) * scale;
         for (auto i = static_cast<std::uint32_t>(begin); i < end; ++i)
-            visit(i, (std::min(end, i + 1.0) - std::max(begin, static_cast<double>(i))) / (end - begin));
+            visit(i, (std::min(end, i + 1.0) - std::max(begin, static_cast<double>(i))) /
+                         (end - begin));
     };
     for (std::uint32_t y = 0; y < to.height; ++y) {
         for (std::uint32_t x = 0; x < to.width; ++x) {
             glm::dvec3 sum(0.0);
             for_covered(y, from.height, to.height, [&](std::uint32_t row, double row_weight) {
                 for_covered(x, from.width, to.width, [&](std::uint32_t column, double weight) {
-                    sum +=
-                        weight * row_weight * glm::dvec3(from.pixels[std::size_t{row} * from.width + column]);
+                    sum += weight * row_weight *
+                           glm::dvec3(from.pixels[std::size_t{row} * from.width + column]);
                 });
             });
             to.pixels.emplace_back(sum);
@@ -53,14 +57,15 @@ Picture::Level halved(const Picture::Level& from) {
 
 Picture::Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels) {
     if (width == 0 || height == 0 || pixels.size() != std::size_t{width} * height)
-        throw std::invalid_argument(fmt::format("picture: expected {} x {} pixels, at least one, got {}",
-                                                width, height, pixels.size()));
+        throw std::invalid_argument(
+            fmt::format("picture: expected {} x {} pixels, at least one, got {}", width, height,
+                        pixels.size()));
     const auto bad = std::find_if_not(pixels.begin(), pixels.end(), is_radiance);
     if (bad != pixels.end()) {
         const auto index = static_cast<std::size_t>(bad - pixels.begin());
-        throw std::invalid_argument(
-            fmt::format("picture: expected finite radiance of at least 0, got ({}, {}, {}) at pixel ({}, {})",
-                        bad->x, bad->y, bad->z, index % width, index / width));
+        throw std::invalid_argument(fmt::format(
+            "picture: expected finite radiance of at least 0, got ({}, {}, {}) at pixel ({}, {})",
+            bad->x, bad->y, bad->z, index % width, index / width));
     }
     levels_.push_back({.width = width, .height = height, .pixels = std::move(pixels)});
     while (levels_.back().pixels.size() > 1)

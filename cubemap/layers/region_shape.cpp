@@ -63,7 +63,9 @@ RegionShape shape(const Region& region) {
     validate(region);
     struct Prepare {
         RegionShape operator()(const Disc& disc) const { return DiscShape(disc); }
-        RegionShape operator()(const Rectangle& rectangle) const { return RectangleShape(rectangle); }
+        RegionShape operator()(const Rectangle& rectangle) const {
+            return RectangleShape(rectangle);
+        }
         RegionShape operator()(const Lasso& lasso) const { return LassoShape(lasso); }
         RegionShape operator()(const Stroke& stroke) const { return StrokeShape(stroke); }
     };
@@ -88,8 +90,10 @@ std::array<double, 1> DiscShape::ramps(const glm::dvec3& w) const {
     return {(squared_outer_ - squared_length(w - axis_)) * inverse_band_};
 }
 
-RectangleShape::RectangleShape(const Rectangle& rectangle) : forward_(glm::normalize(rectangle.direction)) {
-    // Right and up as seen from the centre; straight above and below as the cube faces +Y and -Y lie.
+RectangleShape::RectangleShape(const Rectangle& rectangle)
+    : forward_(glm::normalize(rectangle.direction)) {
+    // Right and up as seen from the centre; straight above and below as the cube faces +Y and -Y
+    // lie.
     glm::dvec3 right = glm::cross(forward_, glm::dvec3(0.0, 1.0, 0.0));
     const double length = glm::length(right);
     right = length > 1e-9 ? right / length : glm::dvec3(1.0, 0.0, 0.0);
@@ -142,7 +146,8 @@ bool RectangleShape::has_kink(std::size_t i, const glm::dvec3& w, double chord_r
 
 glm::dvec2 RectangleShape::picture_position(const glm::dvec3& w) const {
     const double scale = 1.0 / std::max(glm::dot(w, forward_), min_depth_);
-    const glm::dvec2 plane(glm::dot(w, right_) * scale / half_.x, -glm::dot(w, up_) * scale / half_.y);
+    const glm::dvec2 plane(glm::dot(w, right_) * scale / half_.x,
+                           -glm::dot(w, up_) * scale / half_.y);
     return glm::clamp(0.5 * plane + 0.5, 0.0, 1.0);
 }
 
@@ -154,7 +159,8 @@ double RectangleShape::solid_angle_of_picture(const glm::dvec3& w) const {
 template<>
 LassoRamps<ArcTree>::LassoRamps(const Lasso& lasso) : outline_(unit_vectors(lasso.points), true) {
     const glm::dvec3 mean = mean_direction(lasso.points);
-    const glm::dvec3 off = std::abs(mean.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
+    const glm::dvec3 off =
+        std::abs(mean.y) < 0.9 ? glm::dvec3(0.0, 1.0, 0.0) : glm::dvec3(1.0, 0.0, 0.0);
     const glm::dvec3 first = glm::normalize(glm::cross(off, mean));
     plane_ = {mean, first, glm::cross(mean, first)};
     std::vector<glm::dvec2> on_plane;
@@ -162,7 +168,8 @@ LassoRamps<ArcTree>::LassoRamps(const Lasso& lasso) : outline_(unit_vectors(lass
     double extent = 0.0;
     for (const glm::dvec3& point : lasso.points) {
         const double depth = glm::dot(point, mean);
-        on_plane.emplace_back(glm::dot(point, plane_.first) / depth, glm::dot(point, plane_.second) / depth);
+        on_plane.emplace_back(glm::dot(point, plane_.first) / depth,
+                              glm::dot(point, plane_.second) / depth);
         extent = std::max(extent, glm::length(glm::normalize(point) - mean));
     }
     outline_.set_plane(on_plane);
@@ -178,7 +185,8 @@ bool LassoRamps<Arcs>::inside(const glm::dvec3& w) const {
     const double depth = glm::dot(w, plane_.mean);
     if (depth < 1e-4) // the points lie within 89.9 degrees of the mean, depth 0.0017
         return false;
-    return outline_.encloses({glm::dot(w, plane_.first) / depth, glm::dot(w, plane_.second) / depth});
+    return outline_.encloses(
+        {glm::dot(w, plane_.first) / depth, glm::dot(w, plane_.second) / depth});
 }
 
 template<typename Arcs>
@@ -200,8 +208,8 @@ std::array<double, 1> LassoRamps<Arcs>::ramps(const glm::dvec3& w) const {
 
 template<typename Arcs>
 bool LassoRamps<Arcs>::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
-    // Corners are where two edges come near; below 1/64 of the size what they hide is below 1/4096. Cells of more than 1/16 may have a
-    // sample beyond a corner that lies outside the cell.
+    // Corners are where two edges come near; below 1/64 of the size what they hide is below 1/4096.
+    // Cells of more than 1/16 may have a sample beyond a corner that lies outside the cell.
     return chord_radius > size_.extent / 64.0 &&
            (chord_radius > size_.extent / 16.0 || outline_.several_within(w, chord_radius));
 }
@@ -221,7 +229,8 @@ template class LassoRamps<ArcTree>;
 template class LassoRamps<NearArcs>;
 
 template<>
-StrokeRamps<ArcTree>::StrokeRamps(const Stroke& stroke) : line_(unit_vectors(stroke.points), false) {
+StrokeRamps<ArcTree>::StrokeRamps(const Stroke& stroke)
+    : line_(unit_vectors(stroke.points), false) {
     size_.outer = chord(stroke.radius_degrees);
     size_.inner = chord(stroke.radius_degrees * (1.0 - stroke.softness));
     size_.squared_outer = size_.outer * size_.outer;

@@ -1,11 +1,14 @@
-// Regions of light layers made ready for many questions: axes, squared chords and trees, computed once.
+// Regions of light layers made ready for many questions: axes, squared chords and trees, computed
+// once.
 //
-// A shape answers two questions without arctangents. bound(): is a ball around a direction outside, in the flat part, or neither?
-// All distances are chords, so that the triangle inequality holds. ramps(): the coverage at a direction is the product
-// of smoothsteps of these numbers (0 and less: none, 1 and more: all), which are nearly linear over a small cell.
+// A shape answers two questions without arctangents. bound(): is a ball around a direction outside,
+// in the flat part, or neither? All distances are chords, so that the triangle inequality holds.
+// ramps(): the coverage at a direction is the product of smoothsteps of these numbers (0 and less:
+// none, 1 and more: all), which are nearly linear over a small cell.
 //
-// within() gives a shape that answers the same for directions within a chord of a unit direction, bit by bit, but looks only at what
-// of the region matters there: who halves blocks of texels narrows the shape on the way down.
+// within() gives a shape that answers the same for directions within a chord of a unit direction,
+// bit by bit, but looks only at what of the region matters there: who halves blocks of texels
+// narrows the shape on the way down.
 #pragma once
 
 #include <array>
@@ -26,7 +29,8 @@ enum class Overlap { None, Part, All };
 class DiscShape {
 public:
     static constexpr std::size_t NumRamps = 1;
-    static constexpr bool HasConcaveRamps = false; ///< 1 at a cell's corners means 1 all over it
+    /// 1 at a cell's corners means 1 all over it
+    static constexpr bool HasConcaveRamps = false;
     explicit DiscShape(const Disc& disc);
 
     /// Of all directions within a chord of a unit direction. None and All are certain, Part is not.
@@ -40,7 +44,8 @@ public:
 
 private:
     glm::dvec3 axis_;
-    double outer_, inner_; ///< chords
+    /// chords
+    double outer_, inner_;
     double squared_outer_, inverse_band_, smallest_feature_;
 };
 
@@ -69,7 +74,8 @@ private:
     glm::dvec3 forward_, right_, up_;
     glm::dvec2 half_;
     std::array<Side, 2> sides_;
-    double min_depth_; ///< less than the depth (cosine to the axis) anywhere in the rectangle
+    /// Less than the depth (cosine to the axis) anywhere in the rectangle
+    double min_depth_;
     double smallest_feature_;
 };
 
@@ -81,7 +87,8 @@ struct LassoSize {
     double band = 0.0, extent = 0.0, smallest_feature = 0.0;
 };
 struct StrokeSize {
-    double outer = 0.0, inner = 0.0; ///< chords
+    /// chords
+    double outer = 0.0, inner = 0.0;
     double squared_outer = 0.0, inverse_band = 0.0, smallest_feature = 0.0;
 };
 
@@ -91,7 +98,8 @@ class LassoRamps {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    explicit LassoRamps(const Lasso& lasso); ///< only with ArcTree
+    /// Only with ArcTree
+    explicit LassoRamps(const Lasso& lasso);
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
@@ -109,8 +117,8 @@ private:
     LassoPlane plane_;
     LassoSize size_;
     Arcs outline_;
-    std::optional<bool>
-        side_; ///< of all directions that may be asked for, where the outline is not among them
+    /// Of all directions that may be asked for, where the outline is not among them
+    std::optional<bool> side_;
 };
 template<>
 LassoRamps<ArcTree>::LassoRamps(const Lasso& lasso);
@@ -121,7 +129,8 @@ class StrokeRamps {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    explicit StrokeRamps(const Stroke& stroke); ///< only with ArcTree
+    /// Only with ArcTree
+    explicit StrokeRamps(const Stroke& stroke);
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;

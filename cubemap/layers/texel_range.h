@@ -11,11 +11,12 @@
 
 namespace relumine::cubemap {
 
-/// The texels of a block [x0, x0 + size) x [y0, y0 + size) that lie in the face; size is a power of two.
+/// The texels of a block [x0, x0 + size) x [y0, y0 + size) that lie in the face; size is a power of
+/// two.
 struct TexelRange {
     TexelRange(std::uint32_t x, std::uint32_t y, std::uint32_t block_size, std::uint32_t resolution)
-        : x0(x), y0(y), x1(std::min(x + block_size, resolution)), y1(std::min(y + block_size, resolution)),
-          size(block_size), end(resolution) {}
+        : x0(x), y0(y), x1(std::min(x + block_size, resolution)),
+          y1(std::min(y + block_size, resolution)), size(block_size), end(resolution) {}
 
     std::uint32_t x0, y0, x1, y1;
     std::uint32_t size, end;
@@ -43,7 +44,8 @@ struct FaceGrid {
         : face(which), plane(which), half_texel(1.0 / resolution) {}
     Face face;
     FacePlane plane;
-    double half_texel; ///< on the plane of [-1, 1]^2
+    /// On the plane of [-1, 1]^2
+    double half_texel;
 
     [[nodiscard]] Cell cell(std::uint32_t x, std::uint32_t y) const {
         return {(2 * x + 1) * half_texel - 1.0, (2 * y + 1) * half_texel - 1.0, half_texel};
@@ -73,7 +75,8 @@ template<typename Shape>
 
 /// The region as it is within a block.
 template<typename Shape>
-[[nodiscard]] decltype(auto) narrowed(const Shape& shape, const FaceGrid& grid, const TexelRange& range) {
+[[nodiscard]] decltype(auto) narrowed(const Shape& shape, const FaceGrid& grid,
+                                      const TexelRange& range) {
     const BlockBall ball(grid, range);
     return shape.within(ball.centre, ball.chord);
 }

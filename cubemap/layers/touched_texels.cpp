@@ -17,17 +17,19 @@ namespace {
 constexpr int MaxHalvings = 3;
 /// A halved rectangle must save this part of its area, or it is not worth its own pass.
 constexpr double LargestKeptPart = 0.7;
-/// Texels along the sides of the smallest range looked at: a box may be a texel wider than it must be, and is found twice
-/// as fast.
+/// Texels along the sides of the smallest range looked at: a box may be a texel wider than it must
+/// be, and is found twice as fast.
 constexpr std::uint32_t Finest = 2;
-constexpr std::uint64_t SmallestToHalve = 1024; ///< texels, one tile of the composite
+/// Texels, one tile of the composite
+constexpr std::uint64_t SmallestToHalve = 1024;
 
 std::uint64_t area(const TexelRectangle& r) {
     return std::uint64_t{r.x1 - r.x0} * (r.y1 - r.y0);
 }
 
 bool contains(const TexelRectangle& outer, const TexelRange& inner) {
-    return outer.x0 <= inner.x0 && outer.y0 <= inner.y0 && outer.x1 >= inner.x1 && outer.y1 >= inner.y1;
+    return outer.x0 <= inner.x0 && outer.y0 <= inner.y0 && outer.x1 >= inner.x1 &&
+           outer.y1 >= inner.y1;
 }
 
 void extend(TexelRectangle& box, const TexelRange& part) {
@@ -55,7 +57,8 @@ public:
     }
 
     /// Halves a box that is mostly untouched, again and again.
-    void split(const TexelRectangle& box_of_all, int halvings, std::vector<TexelRectangle>& result) const {
+    void split(const TexelRectangle& box_of_all, int halvings,
+               std::vector<TexelRectangle>& result) const {
         if (halvings > 0 && area(box_of_all) > SmallestToHalve) {
             TexelRectangle first = box_of_all, second = box_of_all;
             if (box_of_all.x1 - box_of_all.x0 >= box_of_all.y1 - box_of_all.y0)

@@ -48,7 +48,8 @@ std::uint32_t natural_resolution(const ImageShape& shape) {
 std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const ImageShape& target,
                                        const Reorientation& reorientation) {
     if (has_faces(image.layout) != has_faces(target.layout) ||
-        (!has_faces(image.layout) && image.layout != target.layout) || image.sampling != target.sampling ||
+        (!has_faces(image.layout) && image.layout != target.layout) ||
+        image.sampling != target.sampling ||
         natural_resolution(target) != natural_resolution(shape_of(image)))
         return std::nullopt;
     // A lat-long's poles with samples on the borders are one direction for a whole row.
@@ -72,7 +73,8 @@ std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const Imag
     return complete ? std::optional(std::move(result)) : std::nullopt;
 }
 
-/// The cube map that holds a cube image exactly: cells with borders half a sample off are two texels wide.
+/// The cube map that holds a cube image exactly: cells with borders half a sample off are two
+/// texels wide.
 std::uint32_t exact_resolution(const ImageShape& shape) {
     const std::uint32_t faces = natural_resolution(shape);
     return shape.sampling == Sampling::Borders && faces > 1 ? 2 * (faces - 1) : faces;
@@ -91,7 +93,8 @@ CubeMap reoriented(const CubeMap& map, const Reorientation& reorientation) {
     return turned(world, glm::transpose(reorientation.world_from_target));
 }
 
-/// The resolution of the cube map on the way: a cube's own, else fine enough to add no blur that matters.
+/// The resolution of the cube map on the way: a cube's own, else fine enough to add no blur that
+/// matters.
 std::uint32_t resolution_between(const ImageShape& source, const ImageShape& target) {
     if (has_faces(source.layout))
         return exact_resolution(source);
@@ -116,11 +119,13 @@ public:
     }
 
 private:
-    [[nodiscard]] static EnvironmentImage averaged(const EnvironmentImage& image, const ImageShape& from,
-                                                   const ImageShape& to, const Reorientation& reorientation) {
+    [[nodiscard]] static EnvironmentImage averaged(const EnvironmentImage& image,
+                                                   const ImageShape& from, const ImageShape& to,
+                                                   const Reorientation& reorientation) {
         if (from.layout == Layout::LatLong && has_faces(to.layout) && is_quarter(reorientation))
             return faces_from_lat_long(image, to, reorientation);
-        const CubeMap map = reoriented(resample(image, resolution_between(from, to)), reorientation);
+        const CubeMap map =
+            reoriented(resample(image, resolution_between(from, to)), reorientation);
         return to_image(map, to.layout, to.width, to.height, to.sampling);
     }
 
@@ -129,8 +134,9 @@ private:
                                                               const ImageShape& target,
                                                               const Reorientation& reorientation) {
         const FaceCells cells(target.layout, target.width, target.height);
-        const CubeMap map = turned(detail::cube_from_lat_long(image, cells.resolution(), target.sampling),
-                                   reorientation.target_from_source());
+        const CubeMap map =
+            turned(detail::cube_from_lat_long(image, cells.resolution(), target.sampling),
+                   reorientation.target_from_source());
         EnvironmentImage result = empty_image(target);
         for (const Face face : AllFaces) {
             for (std::uint32_t y = 0; y < map.resolution; ++y) {
@@ -145,10 +151,12 @@ private:
     Reorientation reorientation_;
 };
 
-/// Bilinear over the sphere, at four points of each pixel: a smooth start that keeps energy only roughly.
+/// Bilinear over the sphere, at four points of each pixel: a smooth start that keeps energy only
+/// roughly.
 EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& target,
                               const Reorientation& reorientation) {
-    // A lat-long's pixels are narrower than the texels of its natural resolution in the middle of a face.
+    // A lat-long's pixels are narrower than the texels of its natural resolution in the middle of a
+    // face.
     const std::uint32_t natural = natural_resolution(shape_of(image));
     const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
     const CubeMap source = resample(image, coarse);
@@ -165,13 +173,17 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
 
 using Pixels = std::vector<glm::vec3>;
 
-/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth` (Richardson 1972, Lucy 1974). Every round
-/// keeps the image's total power exactly, nothing becomes negative, and a constant stays as it is.
-/// Differs from them: rounds start further along the way of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which
-/// takes a fraction of the rounds. What is returned is the end of a round, so the power is exact all the same.
+/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth`
+/// (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, nothing becomes
+/// negative, and a constant stays as it is. Differs from them: rounds start further along the way
+/// of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which takes a
+/// fraction of the rounds. What is returned is the end of a round, so the power is exact all the
+/// same.
 template<typename Forth, typename Back>
-void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds, Pixels& grown) {
-    // The product never leaves zero, where the interpolation may have missed a part of a wide pixel.
+void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
+             Pixels& grown) {
+    // The product never leaves zero, where the interpolation may have missed a part of a wide
+    // pixel.
     const Pixels means = forth(image);
     for (std::size_t i = 0; i < grown.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel) {
@@ -180,7 +192,8 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         }
     }
     Pixels start = grown;
-    double last_difference = std::numeric_limits<double>::infinity(), earlier_difference = last_difference;
+    double last_difference = std::numeric_limits<double>::infinity(),
+           earlier_difference = last_difference;
     int run = 0; // rounds since the way was straight from the start
     for (int round = 0; round < num_rounds; ++round) {
         Pixels ratio = back(start);
@@ -197,18 +210,22 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         // Gone too far: the way starts anew.
         run = difference > last_difference ? 0 : run + 1;
         last_difference = difference;
-        // Wedges narrower than the target's pixels are never told apart: then the difference stops falling.
+        // Wedges narrower than the target's pixels are never told apart: then the difference stops
+        // falling.
         constexpr int Patience =
             20; // rounds, to fall by a fiftieth: restarts make it wave for some ten rounds
-        // A tenth of what irradiance may lose; more rounds make specks of the pixels around poles and rims.
+        // A tenth of what irradiance may lose; more rounds make specks of the pixels around poles
+        // and rims.
         constexpr double Enough = 1e-4, Falling = 0.98;
         bool is_last = difference <= Enough * sum;
         if (round % Patience == 0) {
             is_last = is_last || difference > Falling * earlier_difference;
             earlier_difference = difference;
         }
-        const float further = run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
-        constexpr float Least = 0.25f; // of a pixel: the next round multiplies, so it must not come near zero
+        const float further =
+            run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
+        constexpr float Least =
+            0.25f; // of a pixel: the next round multiplies, so it must not come near zero
         for (std::size_t i = 0; i < grown.size(); ++i) {
             const glm::vec3 end = start[i] * factor[i];
             start[i] = glm::max(end + further * (end - grown[i]), Least * end);
@@ -223,7 +240,8 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
                        const Reorientation& reorientation) {
     const ImageShape source = shape_of(image);
     EnvironmentImage result = interpolated(image, target, reorientation);
-    // In pictures this large no sun is lost in a pixel any more, and the links would take gigabytes.
+    // In pictures this large no sun is lost in a pixel any more, and the links would take
+    // gigabytes.
     constexpr std::size_t Large = std::size_t{1} << 22;
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
         const Path path(source, target, reorientation);
@@ -233,13 +251,15 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
             return picture;
         };
         correct(
-            image.pixels, [&](const Pixels& pixels) { return path.forth(over(source, pixels)).pixels; },
-            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; }, 2, result.pixels);
+            image.pixels,
+            [&](const Pixels& pixels) { return path.forth(over(source, pixels)).pixels; },
+            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; }, 2,
+            result.pixels);
         return result;
     }
-    const PixelLinks links(source, target, reorientation.target_from_source(),
-                           resolution_between(source, target),
-                           has_faces(source.layout) ? PixelLinks::Axes::Source : PixelLinks::Axes::Target);
+    const PixelLinks links(
+        source, target, reorientation.target_from_source(), resolution_between(source, target),
+        has_faces(source.layout) ? PixelLinks::Axes::Source : PixelLinks::Axes::Target);
     constexpr int MostRounds = 200; // a sun in a disc's rim takes most of them
     correct(
         image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
@@ -260,8 +280,8 @@ Reorientation Reorientation::inverse() const {
 EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
                          const Reorientation& reorientation) {
     if (!fits(target.layout, target.width, target.height))
-        throw std::invalid_argument(
-            fmt::format("convert: a {} cannot be {}x{}", name(target.layout), target.width, target.height));
+        throw std::invalid_argument(fmt::format("convert: a {} cannot be {}x{}",
+                                                name(target.layout), target.width, target.height));
     if (auto copy = copied(image, target, reorientation))
         return std::move(*copy);
     // At about the same size there is nothing to make smooth, and hardly room for corrections.
@@ -278,7 +298,8 @@ ImageSize conversion_size(const EnvironmentImage& image, Layout target) {
         return {image.width, image.height};
     if (has_faces(target) && has_faces(image.layout))
         return natural_size(target, natural);
-    // The rim pixels of a disc are long wedges that meet in a point: it takes finer pixels to tell them apart.
+    // The rim pixels of a disc are long wedges that meet in a point: it takes finer pixels to tell
+    // them apart.
     const bool is_disc = image.layout == Layout::AngularMap || image.layout == Layout::MirrorBall;
     // An octahedral map's are longish where the rim of an angular map points.
     const std::uint32_t roomy = !is_disc ? 256 : target == Layout::Octahedral ? 640 : 512;

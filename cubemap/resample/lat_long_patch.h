@@ -13,23 +13,27 @@
 
 namespace relumine::cubemap {
 
-/// Finds a pixel's patch, whose parallels are replaced by short arcs of great circles. Keeps its buffers; one per thread.
+/// Finds a pixel's patch, whose parallels are replaced by short arcs of great circles. Keeps its
+/// buffers; one per thread.
 class LatLongPatches {
 public:
     explicit LatLongPatches(const ImageShape& shape)
         : columns_(cell_borders(shape.width, shape.sampling)),
           rows_(cell_borders(shape.height, shape.sampling)) {}
 
-    /// Calls `visit(std::span<const glm::dvec3>)` with the unit corners of each piece, clockwise seen from the middle of the sphere.
+    /// Calls `visit(std::span<const glm::dvec3>)` with the unit corners of each piece, clockwise
+    /// seen from the middle of the sphere.
     template<typename Visit>
     void visit(std::uint32_t x, std::uint32_t y, const Visit& visit) {
         constexpr double Pi = std::numbers::pi;
-        // An arc of angle d in place of a parallel moves less than d^2 / 12 of a pixel's area: 1e-6 at this number per turn.
+        // An arc of angle d in place of a parallel moves less than d^2 / 12 of a pixel's area: 1e-6
+        // at this number per turn.
         constexpr double ArcsPerTurn = 1536.0;
         // Patches beyond this are taken in parts, which keeps them well within a half-sphere.
         constexpr double LargestPart = Pi / 8.0;
         const double top = Pi * rows_[y], bottom = Pi * rows_[y + 1];
-        const double left = 2.0 * Pi * (0.5 - columns_[x]), right = 2.0 * Pi * (0.5 - columns_[x + 1]);
+        const double left = 2.0 * Pi * (0.5 - columns_[x]),
+                     right = 2.0 * Pi * (0.5 - columns_[x + 1]);
         const int parts_down = static_cast<int>(std::ceil((bottom - top) / LargestPart));
         const int parts_across = static_cast<int>(std::ceil((left - right) / LargestPart));
         const int arcs =

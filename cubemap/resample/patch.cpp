@@ -61,7 +61,8 @@ bool PatchPieces::clip(const Rectangle& rectangle) {
 }
 
 bool PatchPieces::is_small(const Rectangle& rectangle) const {
-    constexpr double LargestSide = 0.25; // of the picture; larger rectangles might hold the whole disc
+    constexpr double LargestSide =
+        0.25; // of the picture; larger rectangles might hold the whole disc
     constexpr double LargestAngle = 0.3;
     if (corners_.empty() || rectangle.high.x - rectangle.low.x > LargestSide ||
         rectangle.high.y - rectangle.low.y > LargestSide)
@@ -85,17 +86,19 @@ void PatchPieces::make_outline() {
         std::reverse(outline_.begin(), outline_.end());
 }
 
-void PatchPieces::add_edge(const glm::dvec2& from, const glm::dvec3& from_direction, const glm::dvec2& to,
-                           const glm::dvec3& to_direction, int depth) {
+void PatchPieces::add_edge(const glm::dvec2& from, const glm::dvec3& from_direction,
+                           const glm::dvec2& to, const glm::dvec3& to_direction, int depth) {
     constexpr int Deepest = 12;
     const glm::dvec2 middle = 0.5 * (from + to);
     const glm::dvec3 direction = projection_.direction(middle);
     const glm::dvec3 normal = glm::cross(from_direction, to_direction);
     const double length = glm::length(normal);
     // Off the great circle, or off the chord where its ends hardly differ.
-    const double off = length > 1e-9 ? std::abs(glm::dot(direction, normal)) / length
-                                     : glm::distance(direction, 0.5 * (from_direction + to_direction));
-    // A bend on the way, as at the creases of an octahedron, may hide from the middle of a long edge.
+    const double off = length > 1e-9
+                           ? std::abs(glm::dot(direction, normal)) / length
+                           : glm::distance(direction, 0.5 * (from_direction + to_direction));
+    // A bend on the way, as at the creases of an octahedron, may hide from the middle of a long
+    // edge.
     constexpr double LongEdge = 0.1;
     if (depth >= Deepest || (off <= tolerance_ && length <= LongEdge))
         return;

@@ -17,9 +17,10 @@ namespace relumine::cubemap {
 
 /// Finds a pixel's patch. Keeps its buffers; one per thread.
 ///
-/// A patch comes in pieces well within a half-sphere. Its edges, curves on the sphere, become chords that are no further off than
-/// 1e-4 of a pixel; neighbours share them, so patches tile the sphere. Pixels on the rim of a disc keep the part inside, and the rim
-/// itself shrinks to the one direction that it shows.
+/// A patch comes in pieces well within a half-sphere. Its edges, curves on the sphere, become
+/// chords that are no further off than 1e-4 of a pixel; neighbours share them, so patches tile the
+/// sphere. Pixels on the rim of a disc keep the part inside, and the rim itself shrinks to the one
+/// direction that it shows.
 class PatchPieces {
 public:
     PatchPieces(const Projection& projection, std::uint32_t width, std::uint32_t height);
@@ -27,7 +28,8 @@ public:
     /// True if the whole pixel shows something.
     [[nodiscard]] bool is_whole(std::uint32_t x, std::uint32_t y) const;
 
-    /// Calls `visit(std::span<const glm::dvec3>)` with the unit corners of each piece, clockwise seen from the middle of the sphere.
+    /// Calls `visit(std::span<const glm::dvec3>)` with the unit corners of each piece, clockwise
+    /// seen from the middle of the sphere.
     template<typename Visit>
     void visit(std::uint32_t x, std::uint32_t y, const Visit& visit) {
         const glm::dvec2 size(1.0 / width_, 1.0 / height_);
@@ -47,7 +49,8 @@ private:
         glm::dvec3 direction = glm::dvec3(0.0);
     };
 
-    /// The corners of the rectangle's part that shows something, into corners_ without their directions. False where there is none.
+    /// The corners of the rectangle's part that shows something, into corners_ without their
+    /// directions. False where there is none.
     bool clip(const Rectangle& rectangle);
     /// True if the piece of corners_ is small enough for one polygon.
     [[nodiscard]] bool is_small(const Rectangle& rectangle) const;
@@ -77,12 +80,14 @@ private:
     const Projection& projection_;
     double width_, height_;
     bool is_disc_, is_mirrored_;
-    double tolerance_; ///< distance of chords from edges
+    /// Distance of chords from edges
+    double tolerance_;
     std::vector<Corner> corners_;
     std::vector<glm::dvec3> outline_;
 };
 
-/// Solid angle of a spherical polygon within a half-sphere, positive if clockwise seen from the middle of the sphere.
+/// Solid angle of a spherical polygon within a half-sphere, positive if clockwise seen from the
+/// middle of the sphere.
 [[nodiscard]] double solid_angle(std::span<const glm::dvec3> corners);
 
 } // namespace relumine::cubemap

@@ -19,9 +19,10 @@ public:
     TexelPixels(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution)
         : starts_(std::size_t{NumFaces} * resolution * resolution + 1, 0) {
         std::vector<detail::PixelShare> shares;
-        detail::for_each_row_of_shares(shape, turn, resolution, [&](std::span<const detail::PixelShare> row) {
-            shares.insert(shares.end(), row.begin(), row.end());
-        });
+        detail::for_each_row_of_shares(shape, turn, resolution,
+                                       [&](std::span<const detail::PixelShare> row) {
+                                           shares.insert(shares.end(), row.begin(), row.end());
+                                       });
         std::vector<double> sums(starts_.size() - 1, 0.0);
         for (const detail::PixelShare& share : shares) {
             ++starts_[share.texel + 1];
@@ -32,8 +33,8 @@ public:
         parts_.resize(shares.size());
         std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
         for (const detail::PixelShare& share : shares)
-            parts_[next[share.texel]++] = {share.pixel,
-                                           static_cast<float>(share.solid_angle / sums[share.texel])};
+            parts_[next[share.texel]++] = {
+                share.pixel, static_cast<float>(share.solid_angle / sums[share.texel])};
     }
 
     struct Part {
@@ -59,7 +60,8 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
     const TexelPixels over(source, as_source ? glm::dmat3(1.0) : target_from_source, resolution);
     const std::size_t num_pixels = static_cast<std::size_t>(target.width) * target.height;
 
-    // Rows of faces do not come in the order of pixels, so where a pixel's links lie is noted first.
+    // Rows of faces do not come in the order of pixels, so where a pixel's links lie is noted
+    // first.
     struct Range {
         std::size_t begin = 0, end = 0;
     };
@@ -77,17 +79,17 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
         solid_angles.push_back(solid_angle);
         range.end = sources.size();
     };
-    detail::for_each_row_of_shares(target, as_source ? glm::transpose(target_from_source) : glm::dmat3(1.0),
-                                   resolution, [&](std::span<const detail::PixelShare> row) {
-                                       for (const detail::PixelShare& share : row) {
-                                           Range& range = ranges[share.pixel];
-                                           if (range.begin == range.end)
-                                               range = {sources.size(), sources.size()};
-                                           for (const auto& [pixel, part] : over.over(share.texel))
-                                               add(range, pixel,
-                                                   share.solid_angle * static_cast<double>(part));
-                                       }
-                                   });
+    detail::for_each_row_of_shares(
+        target, as_source ? glm::transpose(target_from_source) : glm::dmat3(1.0), resolution,
+        [&](std::span<const detail::PixelShare> row) {
+            for (const detail::PixelShare& share : row) {
+                Range& range = ranges[share.pixel];
+                if (range.begin == range.end)
+                    range = {sources.size(), sources.size()};
+                for (const auto& [pixel, part] : over.over(share.texel))
+                    add(range, pixel, share.solid_angle * static_cast<double>(part));
+            }
+        });
 
     starts_.reserve(num_pixels + 1);
     starts_.push_back(0);

@@ -19,8 +19,9 @@
 
 namespace relumine::cubemap {
 
-/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel with the unit directions of up to four points of each pixel that shows something
-/// at them: a quarter of its sides from its corners.
+/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel with the unit directions of
+/// up to four points of each pixel that shows something at them: a quarter of its sides from its
+/// corners.
 template<typename Visit>
 void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
     const bool faces = has_faces(shape.layout);
@@ -40,7 +41,8 @@ void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
             for (const double dx : {0.25, 0.75}) {
                 const glm::dvec2 point(columns[x] + dx * (columns[x + 1] - columns[x]),
                                        rows[y] + dy * (rows[y + 1] - rows[y]));
-                if (picture != nullptr && picture->is_disc() && glm::distance(point, glm::dvec2(0.5)) >= 0.5)
+                if (picture != nullptr && picture->is_disc() &&
+                    glm::distance(point, glm::dvec2(0.5)) >= 0.5)
                     continue;
                 directions[count++] = direction_of(point);
             }
@@ -60,14 +62,15 @@ void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
                 continue;
             }
             for (std::uint32_t x = 0; x < width; ++x)
-                visit_pixel(static_cast<std::size_t>(y) * width + x, x, y, [&](const glm::dvec2& point) {
-                    if (picture != nullptr)
-                        return picture->direction(point);
-                    const double longitude = 2.0 * std::numbers::pi * (0.5 - point.x);
-                    const double polar = std::numbers::pi * point.y;
-                    return glm::dvec3(std::sin(polar) * std::sin(longitude), std::cos(polar),
-                                      std::sin(polar) * std::cos(longitude));
-                });
+                visit_pixel(
+                    static_cast<std::size_t>(y) * width + x, x, y, [&](const glm::dvec2& point) {
+                        if (picture != nullptr)
+                            return picture->direction(point);
+                        const double longitude = 2.0 * std::numbers::pi * (0.5 - point.x);
+                        const double polar = std::numbers::pi * point.y;
+                        return glm::dvec3(std::sin(polar) * std::sin(longitude), std::cos(polar),
+                                          std::sin(polar) * std::cos(longitude));
+                    });
         }
     });
 }

@@ -47,7 +47,8 @@ public:
     /// Rows of the picture, or of a face: then a row is that of all six faces.
     [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
 
-    /// Calls `visit(pixel_index, std::span<const glm::dvec3>)` with the corners of each piece, clockwise seen from the middle of the sphere.
+    /// Calls `visit(pixel_index, std::span<const glm::dvec3>)` with the corners of each piece,
+    /// clockwise seen from the middle of the sphere.
     template<typename Visit>
     void visit_row(std::uint32_t y, const Visit& visit) {
         if (cells_) {
@@ -82,11 +83,12 @@ private:
     std::vector<double> borders_;
 };
 
-/// Calls `take(std::span<const PixelShare>)` for one row of pixels after the other; rows are found in parallel, a band at a time. All shares of a pixel
-/// follow each other; a texel may come more than once. `turn` carries directions of the image to those of the cube map.
+/// Calls `take(std::span<const PixelShare>)` for one row of pixels after the other; rows are found
+/// in parallel, a band at a time. All shares of a pixel follow each other; a texel may come more
+/// than once. `turn` carries directions of the image to those of the cube map.
 template<typename Take>
-void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution,
-                            const Take& take) {
+void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn,
+                            std::uint32_t resolution, const Take& take) {
     constexpr std::uint32_t BandHeight = 32;
     const bool is_turned = turn != glm::dmat3(1.0), is_mirrored = glm::determinant(turn) < 0.0;
     const CubeMap map(resolution);
@@ -110,12 +112,13 @@ void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn, std
                             std::reverse(turned.begin(), turned.end());
                         corners = turned;
                     }
-                    overlaps.find(
-                        corners, [&](Face face, std::uint32_t column, std::uint32_t row, double solid_angle) {
-                            found.push_back({static_cast<std::uint32_t>(pixel), // MaxPixels is below 2^32
-                                             static_cast<std::uint32_t>(map.index(face, column, row)),
-                                             solid_angle});
-                        });
+                    overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
+                                               double solid_angle) {
+                        found.push_back(
+                            {static_cast<std::uint32_t>(pixel), // MaxPixels is below 2^32
+                             static_cast<std::uint32_t>(map.index(face, column, row)),
+                             solid_angle});
+                    });
                 });
             }
         });

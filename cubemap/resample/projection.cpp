@@ -20,8 +20,10 @@ glm::dvec2 to_point(const glm::dvec2& from_middle) {
     return {0.5 + from_middle.x, 0.5 - from_middle.y};
 }
 
-/// Debevec's light probes: the middle is -Z, the angle from there grows with the distance, the rim is +Z. Right is +X, up is +Y.
-///     angle = 2 pi rho,  direction = (sin(angle) x / rho, sin(angle) y / rho, -cos(angle)),  rho = |(x, y)| <= 1/2
+/// Debevec's light probes: the middle is -Z, the angle from there grows with the distance, the rim
+/// is +Z. Right is +X, up is +Y.
+///     angle = 2 pi rho,  rho = |(x, y)| <= 1/2
+///     direction = (sin(angle) x / rho, sin(angle) y / rho, -cos(angle))
 class AngularMap : public Projection {
 public:
     [[nodiscard]] glm::dvec3 direction(const glm::dvec2& point) const override {
@@ -48,8 +50,9 @@ public:
     [[nodiscard]] bool is_mirrored() const override { return false; }
 };
 
-/// A mirror ball seen from far away along -Z: the middle reflects +Z, the camera, and the rim -Z, what is behind the ball. With the
-/// ball's normal n = (2x, 2y, sqrt(1 - 4 rho^2)) the direction is the reflection of the line of sight,
+/// A mirror ball seen from far away along -Z: the middle reflects +Z, the camera, and the rim -Z,
+/// what is behind the ball. With the ball's normal n = (2x, 2y, sqrt(1 - 4 rho^2)) the direction is
+/// the reflection of the line of sight,
 ///     direction = (2 n.z n.x, 2 n.z n.y, 2 n.z^2 - 1)
 /// which shows equal solid angles as equal areas: dw = 16 dA.
 class MirrorBall : public Projection {
@@ -73,8 +76,9 @@ public:
     [[nodiscard]] bool is_mirrored() const override { return true; }
 };
 
-/// The equal-area octahedral map of pbrt-v4 (Clarberg: Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD, 2008), with pbrt's Z up:
-/// the middle is +Y, the corners are -Y, right is +X and down is -Z. The square inside |u| + |v| = 1 is the upper half-sphere.
+/// The equal-area octahedral map of pbrt-v4 (Clarberg: Fast Equal-Area Mapping of the (Hemi)Sphere
+/// using SIMD, 2008), with pbrt's Z up: the middle is +Y, the corners are -Y, right is +X and down
+/// is -Z. The square inside |u| + |v| = 1 is the upper half-sphere.
 ///     r = 1 - |1 - |u| - |v||,  angle = pi/4 ((|v| - |u|) / r + 1),
 ///     height = +-(1 - r^2),  horizontal radius = r sqrt(2 - r^2);  dw = 4 pi dA
 class Octahedral : public Projection {

@@ -33,8 +33,8 @@ std::vector<std::vector<Overlap>> overlaps(const std::vector<double>& source,
         while (source[cell + 1] <= destination[i])
             ++cell;
         for (std::uint32_t j = cell; j + 1 < source.size() && source[j] < destination[i + 1]; ++j)
-            found[i].push_back(
-                {j, std::max(source[j], destination[i]), std::min(source[j + 1], destination[i + 1])});
+            found[i].push_back({j, std::max(source[j], destination[i]),
+                                std::min(source[j + 1], destination[i + 1])});
     }
     return found;
 }
@@ -50,13 +50,17 @@ double small_solid_angle(const Overlap& x, const Overlap& y) {
     const double inverse = 1.0 / (1.0 + u * u + v * v);
     const double slope = -3.0 * inverse, bend = 15.0 * inverse * inverse;
     return width * height * inverse * std::sqrt(inverse) *
-           (1.0 + ((slope + bend * u * u) * width * width + (slope + bend * v * v) * height * height) / 24.0);
+           (1.0 +
+            ((slope + bend * u * u) * width * width + (slope + bend * v * v) * height * height) /
+                24.0);
 }
 
-/// Six faces to six faces where all cells are rectangles of the same face. `source_of(face, x, y)` reads, `write(face, x, y, radiance)` writes.
+/// Six faces to six faces where all cells are rectangles of the same face. `source_of(face, x, y)`
+/// reads, `write(face, x, y, radiance)` writes.
 template<typename SourceOf, typename Write>
-void resample_faces(const std::vector<double>& source_borders, const std::vector<double>& destination_borders,
-                    const SourceOf& source_of, const Write& write) {
+void resample_faces(const std::vector<double>& source_borders,
+                    const std::vector<double>& destination_borders, const SourceOf& source_of,
+                    const Write& write) {
     const auto found = overlaps(source_borders, destination_borders);
     const auto resolution = static_cast<std::uint32_t>(found.size());
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, resolution), [&](const auto& rows) {
@@ -86,9 +90,9 @@ void resample_faces(const std::vector<double>& source_borders, const std::vector
 void check(const EnvironmentImage& image) {
     if (image.pixels.size() != static_cast<std::size_t>(image.width) * image.height ||
         !fits(image.layout, image.width, image.height))
-        throw std::invalid_argument(fmt::format("resample: a {} image cannot be {}x{} with {} pixels",
-                                                name(image.layout), image.width, image.height,
-                                                image.pixels.size()));
+        throw std::invalid_argument(
+            fmt::format("resample: a {} image cannot be {}x{} with {} pixels", name(image.layout),
+                        image.width, image.height, image.pixels.size()));
 }
 
 /// A map's lat-long picture: every pixel gathers the texels under its patch.
@@ -102,11 +106,11 @@ void fill_lat_long(const CubeMap& map, EnvironmentImage& image) {
                 glm::dvec3 sum(0.0);
                 double weights = 0.0;
                 patches.visit(x, y, [&](std::span<const glm::dvec3> corners) {
-                    overlaps.find(corners,
-                                  [&](Face face, std::uint32_t column, std::uint32_t row, double weight) {
-                                      sum += glm::dvec3(map.at(face, column, row)) * weight;
-                                      weights += weight;
-                                  });
+                    overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
+                                               double weight) {
+                        sum += glm::dvec3(map.at(face, column, row)) * weight;
+                        weights += weight;
+                    });
                 });
                 image.pixels[static_cast<std::size_t>(y) * image.width + x] = sum / weights;
             }
@@ -125,8 +129,11 @@ CubeMap resample(const EnvironmentImage& image, std::uint32_t resolution) {
     CubeMap map(resolution);
     const FaceCells cells(image.layout, image.width, image.height);
     resample_faces(
-        cell_borders(cells.resolution(), image.sampling), cell_borders(resolution, Sampling::TexelCentres),
-        [&](Face face, std::uint32_t x, std::uint32_t y) { return image.pixels[cells.pixel(face, x, y)]; },
+        cell_borders(cells.resolution(), image.sampling),
+        cell_borders(resolution, Sampling::TexelCentres),
+        [&](Face face, std::uint32_t x, std::uint32_t y) {
+            return image.pixels[cells.pixel(face, x, y)];
+        },
         [&](Face face, std::uint32_t x, std::uint32_t y, const glm::vec3& radiance) {
             map.at(face, x, y) = radiance;
         });
@@ -145,8 +152,8 @@ CubeMap resample(const CubeMap& map, std::uint32_t resolution) {
     return result;
 }
 
-EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width, std::uint32_t height,
-                          Sampling sampling) {
+EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width,
+                          std::uint32_t height, Sampling sampling) {
     EnvironmentImage image;
     image.width = width;
     image.height = height;
@@ -165,7 +172,8 @@ EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width
     }
     const FaceCells cells(layout, width, height);
     resample_faces(
-        cell_borders(map.resolution, Sampling::TexelCentres), cell_borders(cells.resolution(), sampling),
+        cell_borders(map.resolution, Sampling::TexelCentres),
+        cell_borders(cells.resolution(), sampling),
         [&](Face face, std::uint32_t x, std::uint32_t y) { return map.at(face, x, y); },
         [&](Face face, std::uint32_t x, std::uint32_t y, const glm::vec3& radiance) {
             image.pixels[cells.pixel(face, x, y)] = radiance;

@@ -1,12 +1,14 @@
 // The overlaps of lat-long pixels and cube texels, in the plane of turns and heights.
 //
-// A direction of longitude l and polar angle p has the coordinates f = 1/2 - l / 2 pi (the image's own x) and y = -cos p. By
-// Archimedes' theorem the solid angle of a region is 2 pi times its area there, and lat-long pixels are plain
-// rectangles. A texel's four edges become curves, which are replaced by chords; neighbouring texels share them, so the
-// texels tile the plane and a pixel's overlaps add up to the pixel exactly.
+// A direction of longitude l and polar angle p has the coordinates f = 1/2 - l / 2 pi (the image's
+// own x) and y = -cos p. By Archimedes' theorem the solid angle of a region is 2 pi times its area
+// there, and lat-long pixels are plain rectangles. A texel's four edges become curves, which are
+// replaced by chords; neighbouring texels share them, so the texels tile the plane and a pixel's
+// overlaps add up to the pixel exactly.
 //
 //     face   f at (u, v)                     y
-//     +Z     1/2 + atan(u) / 2 pi            v / sqrt(1 + u^2 + v^2)       +X: f - 1/4,  -Z: f - 1/2,  -X: f + 1/4
+//     +Z     1/2 + atan(u) / 2 pi            v / sqrt(1 + u^2 + v^2)
+//     +X, -Z, -X: as +Z, with 1/4 and 1/2 subtracted from f and 1/4 added to it
 //     +Y     1/2 - atan2(u, -v) / 2 pi       1 - cos p
 //     -Y     1/2 - atan2(u,  v) / 2 pi       -1 - cos p
 //
@@ -52,9 +54,10 @@ double turn_of(Face face) {
 
 /// The texels of one row of a face as polygons in the plane of turns and heights.
 ///
-/// Edges are computed once and shared by the texels on both sides. An edge is one or a few chords, and a chord that would
-/// cut off too much gets a corner in its middle that makes the area under it exact (spherical excess of the triangle
-/// of edge and pole). So polygons have their texel's solid angle to a few 1e-6, whatever the resolution.
+/// Edges are computed once and shared by the texels on both sides. An edge is one or a few chords,
+/// and a chord that would cut off too much gets a corner in its middle that makes the area under it
+/// exact (spherical excess of the triangle of edge and pole). So polygons have their texel's solid
+/// angle to a few 1e-6, whatever the resolution.
 class TexelRow {
 public:
     TexelRow(Face face, std::uint32_t resolution, Sampling sampling)
@@ -93,21 +96,26 @@ public:
     }
 
 private:
-    /// Chords longer than this get more corners: their ends would say too little of where the edge runs between them.
+    /// Chords longer than this get more corners: their ends would say too little of where the edge
+    /// runs between them.
     static constexpr double ChordsPerRadian = 32.0;
     /// Area relative to a texel's that chords may cut off.
     static constexpr double NegligibleArea = 1e-6;
 
-    /// A point of the face: where it lies, in the plane, and what the area under an edge is computed from.
+    /// A point of the face: where it lies, in the plane, and what the area under an edge is
+    /// computed from.
     struct Point {
         glm::dvec2 uv{0.0};
         glm::dvec2 plane{0.0};
-        glm::dvec2 stereographic{0.0}; ///< polar faces: (z, x) seen from the opposite pole
-        double integral = 0.0;         ///< side faces: of the height from u = 0, in turns
+        /// Polar faces: (z, x) seen from the opposite pole
+        glm::dvec2 stereographic{0.0};
+        /// Side faces: of the height from u = 0, in turns
+        double integral = 0.0;
     };
     /// Edges one after the other: edge i has the inner corners [begins[i], begins[i + 1]).
     struct Edges {
-        std::vector<Point> points; ///< ends of level edges
+        /// Ends of level edges
+        std::vector<Point> points;
         std::vector<glm::dvec2> corners;
         std::vector<std::size_t> begins;
     };
@@ -133,7 +141,9 @@ private:
                 0.0};
     }
 
-    [[nodiscard]] static bool is_pole(const glm::dvec2& plane) { return plane.y == 0.0; } // on polar faces
+    [[nodiscard]] static bool is_pole(const glm::dvec2& plane) {
+        return plane.y == 0.0;
+    } // on polar faces
 
     /// The next longitude in turns on a path: no further than half a turn from the one before.
     [[nodiscard]] static double unrolled(double turn, double before) {
@@ -150,12 +160,14 @@ private:
             (1.0 + glm::dot(a.stereographic, b.stereographic));
         const double squared = tangent * tangent;
         const double angle =
-            squared < 1e-4 ? tangent * (1.0 - squared * (1.0 / 3.0 - squared * (1.0 / 5.0 - squared / 7.0)))
-                           : std::atan(tangent);
+            squared < 1e-4
+                ? tangent * (1.0 - squared * (1.0 / 3.0 - squared * (1.0 / 5.0 - squared / 7.0)))
+                : std::atan(tangent);
         return (face_ == Face::PositiveY ? -2.0 : 2.0) * angle / TwoPi;
     }
 
-    /// Adds the corner in the middle of the chord from a to b, if it cuts off more than `negligible`.
+    /// Adds the corner in the middle of the chord from a to b, if it cuts off more than
+    /// `negligible`.
     void add_middle(const Point& a, const Point& b, double negligible,
                     std::vector<glm::dvec2>& corners) const {
         const double width = unrolled(b.plane.x, a.plane.x) - a.plane.x;
@@ -223,7 +235,8 @@ private:
         double turn = raw_.front().x;
         for (std::size_t i = 0; i < raw_.size(); ++i) {
             if (is_pole(raw_[i])) {
-                // Edges into and out of the pole are meridians; the outline runs along the pole from one to the other.
+                // Edges into and out of the pole are meridians; the outline runs along the pole
+                // from one to the other.
                 out.emplace_back(turn, 0.0);
                 turn = unrolled(raw_[(i + 1) % raw_.size()].x, turn);
                 out.emplace_back(turn, 0.0);
@@ -232,7 +245,8 @@ private:
                 out.emplace_back(turn, raw_[i].y);
             }
         }
-        // An outline around the pole ends a whole turn from its start; the line of the pole closes it.
+        // An outline around the pole ends a whole turn from its start; the line of the pole closes
+        // it.
         const glm::dvec2 first = out.front();
         turn = unrolled(first.x, turn);
         if (std::abs(turn - first.x) > 0.5) {
@@ -246,8 +260,10 @@ private:
     double turn_;
     bool polar_;
     std::uint32_t resolution_;
-    std::vector<double> borders_; ///< of texels in [0, 1]
-    double negligible_;           ///< area that an edge's chords may cut off
+    /// Of texels in [0, 1]
+    std::vector<double> borders_;
+    /// Area that an edge's chords may cut off
+    double negligible_;
     std::uint32_t next_row_ = 0;
     Edges top_, bottom_, uprights_;
     Polygon raw_;
@@ -284,34 +300,40 @@ std::vector<double> cell_solid_angles(std::uint32_t resolution, Sampling samplin
 
 } // namespace
 
-CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution, Sampling sampling) {
+CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution,
+                           Sampling sampling) {
     CubeMap map(resolution);
     const std::vector<double> solid_angles = cell_solid_angles(resolution, sampling);
     const std::vector<double> column_borders = cell_borders(image.width, image.sampling);
     for (const Face face : AllFaces) {
         const std::vector<double> heights = row_heights(image, face);
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, resolution), [&](const auto& rows_of_texels) {
-            GridLines columns(column_borders, true);
-            GridLines rows(heights, false);
-            GridCutter cutter;
-            TexelRow texels(face, resolution, sampling);
-            Polygon polygon;
-            for (std::uint32_t y = rows_of_texels.begin(); y != rows_of_texels.end(); ++y) {
-                texels.move_to(y);
-                for (std::uint32_t x = 0; x < resolution; ++x) {
-                    texels.polygon(x, polygon);
-                    glm::dvec3 sum(0.0);
-                    cutter.cut(polygon, columns, rows,
-                               [&](std::size_t column, std::size_t row, const Polygon& piece) {
-                                   const double overlap = area(piece);
-                                   if (overlap != 0.0) // an infinite pixel that only touches must not matter
-                                       sum += glm::dvec3(image.pixels[row * image.width + column]) * overlap;
-                               });
-                    map.at(face, x, y) =
-                        sum * (TwoPi / solid_angles[static_cast<std::size_t>(y) * resolution + x]);
+        tbb::parallel_for(
+            tbb::blocked_range<std::uint32_t>(0, resolution), [&](const auto& rows_of_texels) {
+                GridLines columns(column_borders, true);
+                GridLines rows(heights, false);
+                GridCutter cutter;
+                TexelRow texels(face, resolution, sampling);
+                Polygon polygon;
+                for (std::uint32_t y = rows_of_texels.begin(); y != rows_of_texels.end(); ++y) {
+                    texels.move_to(y);
+                    for (std::uint32_t x = 0; x < resolution; ++x) {
+                        texels.polygon(x, polygon);
+                        glm::dvec3 sum(0.0);
+                        cutter.cut(
+                            polygon, columns, rows,
+                            [&](std::size_t column, std::size_t row, const Polygon& piece) {
+                                const double overlap = area(piece);
+                                if (overlap !=
+                                    0.0) // an infinite pixel that only touches must not matter
+                                    sum += glm::dvec3(image.pixels[row * image.width + column]) *
+                                           overlap;
+                            });
+                        map.at(face, x, y) =
+                            sum *
+                            (TwoPi / solid_angles[static_cast<std::size_t>(y) * resolution + x]);
+                    }
                 }
-            }
-        });
+            });
     }
     return map;
 }

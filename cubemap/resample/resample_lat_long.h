@@ -6,7 +6,8 @@
 
 namespace relumine::cubemap::detail {
 
-/// Borders: the outermost texels are half as wide as the others, as in a cube with samples on the borders.
+/// Borders: the outermost texels are half as wide as the others, as in a cube with samples on the
+/// borders.
 [[nodiscard]] CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution,
                                          Sampling sampling = Sampling::TexelCentres);
 

@@ -42,11 +42,11 @@ ImageShape shape_of(const EnvironmentImage& image) {
 CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution) {
     CubeMap map(resolution);
     Means means(map.texels.size());
-    for_each_row_of_shares(shape_of(image), glm::dmat3(1.0), resolution,
-                           [&](std::span<const PixelShare> shares) {
-                               for (const PixelShare& share : shares)
-                                   means.add(share.texel, image.pixels[share.pixel], share.solid_angle);
-                           });
+    for_each_row_of_shares(
+        shape_of(image), glm::dmat3(1.0), resolution, [&](std::span<const PixelShare> shares) {
+            for (const PixelShare& share : shares)
+                means.add(share.texel, image.pixels[share.pixel], share.solid_angle);
+        });
     means.write(map.texels);
     return map;
 }
@@ -61,11 +61,11 @@ void fill_projection(const CubeMap& map, EnvironmentImage& image) {
                 glm::dvec3 sum(0.0);
                 double weights = 0.0;
                 pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
-                    overlaps.find(corners,
-                                  [&](Face face, std::uint32_t column, std::uint32_t row, double weight) {
-                                      sum += glm::dvec3(map.at(face, column, row)) * weight;
-                                      weights += weight;
-                                  });
+                    overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
+                                               double weight) {
+                        sum += glm::dvec3(map.at(face, column, row)) * weight;
+                        weights += weight;
+                    });
                 });
                 image.pixels[static_cast<std::size_t>(y) * image.width + x] =
                     weights > 0.0 ? glm::vec3(sum / weights) : glm::vec3(0.0f);

@@ -1,4 +1,5 @@
-// Pictures of a Projection to cube maps and back, from exact overlaps. Called through resample() and to_image().
+// Pictures of a Projection to cube maps and back, from exact overlaps. Called through resample()
+// and to_image().
 #pragma once
 
 #include <cstdint>

@@ -12,7 +12,8 @@ namespace relumine::prt {
     return 2u * ((1u << 2u * level) - 1u);
 }
 
-/// Place of a cell on the Z curve of its level, all faces one after another; child i of place p is place 4 p + i of the next level.
+/// Place of a cell on the Z curve of its level, all faces one after another; child i of place p is
+/// place 4 p + i of the next level.
 [[nodiscard]] constexpr std::uint32_t place_in_level(const Cell& cell) {
     std::uint32_t place = static_cast<std::uint32_t>(cell.face);
     for (std::uint32_t bit = cell.level; bit-- > 0;)
@@ -20,7 +21,8 @@ namespace relumine::prt {
     return place;
 }
 
-/// Number of a cell: coarse levels first, a level's cells by place_in_level(). Below 2^32 for all levels up to MaxLevel.
+/// Number of a cell: coarse levels first, a level's cells by place_in_level(). Below 2^32 for all
+/// levels up to MaxLevel.
 [[nodiscard]] constexpr std::uint32_t cell_index(const Cell& cell) {
     return num_cells_above(cell.level) + place_in_level(cell);
 }

@@ -14,8 +14,8 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sums in float run over at most this many words (1,024 receivers) before they go to double: relative error below 1e-4 of the
-// tolerance test's threshold, which is itself a choice.
+// Sums in float run over at most this many words (1,024 receivers) before they go to double:
+// relative error below 1e-4 of the tolerance test's threshold, which is itself a choice.
 constexpr std::size_t WordsPerRun = 16;
 
 /// Bits [first, first + Lanes) of a word as a lane mask.
@@ -54,11 +54,14 @@ void squared_distances(const NormalArrays& normals, const CellSamples& samples, 
                 Vector mean = hn::Zero(d);       // T_C [JN, Eq. 10]
                 for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                     const glm::vec3& w = samples.directions[l];
-                    const auto cosine = hn::MulAdd(
-                        nx, hn::Set(d, w.x), hn::MulAdd(ny, hn::Set(d, w.y), hn::Mul(nz, hn::Set(d, w.z))));
-                    transfer[l] = hn::IfThenElseZero(mask_of(d, samples.lit[l][word], lane), cosine);
+                    const auto cosine =
+                        hn::MulAdd(nx, hn::Set(d, w.x),
+                                   hn::MulAdd(ny, hn::Set(d, w.y), hn::Mul(nz, hn::Set(d, w.z))));
+                    transfer[l] =
+                        hn::IfThenElseZero(mask_of(d, samples.lit[l][word], lane), cosine);
                     mean = hn::MulAdd(transfer[l],
-                                      hn::Set(d, static_cast<float>(SampleWeights[l]) / FullCount), mean);
+                                      hn::Set(d, static_cast<float>(SampleWeights[l]) / FullCount),
+                                      mean);
                 }
                 for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                     const auto difference = hn::Sub(transfer[l], mean);
@@ -127,7 +130,8 @@ std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals
     return sums;
 }
 
-LeafColumn leaf_column(const CellSamples& samples, const std::array<std::uint8_t, SamplesPerCell>& weights,
+LeafColumn leaf_column(const CellSamples& samples,
+                       const std::array<std::uint8_t, SamplesPerCell>& weights,
                        std::size_t num_receivers) {
     const std::size_t num_blocks = (num_receivers + BlockSize - 1) / BlockSize;
     LeafColumn column;
@@ -140,7 +144,8 @@ LeafColumn leaf_column(const CellSamples& samples, const std::array<std::uint8_t
         for (std::size_t l = 0; l < SamplesPerCell; ++l) {
             if (weights[l] == 0)
                 continue;
-            lit[l] = static_cast<std::uint16_t>(samples.lit[l][block / 4] >> (block % 4 * BlockSize));
+            lit[l] =
+                static_cast<std::uint16_t>(samples.lit[l][block / 4] >> (block % 4 * BlockSize));
             any |= lit[l];
             all &= lit[l];
         }

@@ -1,4 +1,5 @@
-// The two inner loops of the clustering, over all receivers and one cell's nine samples. Vectorised with run-time dispatch.
+// The two inner loops of the clustering, over all receivers and one cell's nine samples. Vectorised
+// with run-time dispatch.
 #pragma once
 
 #include <array>
@@ -23,14 +24,15 @@ struct NormalArrays {
     [[nodiscard]] std::size_t num_words() const { return x.size() / WordSize; }
 };
 
-/// One cell's samples: directions, and for each the plane of bits "the light from there reaches the receiver", [num_words].
+/// One cell's samples: directions, and for each the plane of bits "the light from there reaches the
+/// receiver", [num_words].
 struct CellSamples {
     std::array<glm::vec3, SamplesPerCell> directions{};
     std::array<const std::uint64_t*, SamplesPerCell> lit{};
 };
 
-/// ||T_C - T_l||^2 of all nine samples l, with T = V max(n.w, 0) (that is, times pi) and T_C the weighted mean
-/// [JN, Eqs. 9-11]. Sums are in double over fixed runs of receivers.
+/// ||T_C - T_l||^2 of all nine samples l, with T = V max(n.w, 0) (that is, times pi) and T_C the
+/// weighted mean [JN, Eqs. 9-11]. Sums are in double over fixed runs of receivers.
 [[nodiscard]] std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
                                                                    const CellSamples& samples);
 

@@ -28,7 +28,8 @@ constexpr const char* Part = "clusters";
 /// Points that a batch may always add, room or not: those of a few splits.
 constexpr std::size_t MinBatchPoints = 128;
 
-/// Work between two looks at the checkpoint: 64 tasks of the tracer for every thread, less than a second.
+/// Work between two looks at the checkpoint: 64 tasks of the tracer for every thread, less than a
+/// second.
 constexpr std::uint64_t SamplesPerThreadAndStep = std::uint64_t{1} << 26;
 
 /// The largest ||T_C - T_l||^2, T times pi, that a cluster may have [JN, Eq. 11].
@@ -47,8 +48,8 @@ constexpr std::uint64_t OverheadOfCluster = 256;
 constexpr std::size_t BytesPerSlice = std::size_t{64} << 20;
 
 std::uint64_t bytes_of(const LeafColumn& column, double scale) {
-    const std::size_t bytes =
-        column.counts.size() + sizeof(std::uint64_t) * (column.visible.size() + column.mixed.size());
+    const std::size_t bytes = column.counts.size() +
+                              sizeof(std::uint64_t) * (column.visible.size() + column.mixed.size());
     return OverheadOfCluster + static_cast<std::uint64_t>(scale * static_cast<double>(bytes));
 }
 
@@ -89,8 +90,10 @@ Quadtree quadtree_of(const std::vector<Cell>& leaves) {
 
 } // namespace
 
-Clustering::Clustering(const Receivers& receivers, const Blockers& blockers, const PrecomputeOptions& options)
-    : options_(options), order_(spatial_order(receivers)), progress_(options.stop, options.on_progress),
+Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
+                       const PrecomputeOptions& options)
+    : options_(options), order_(spatial_order(receivers)),
+      progress_(options.stop, options.on_progress),
       max_level_(static_cast<std::uint32_t>(std::bit_width(options.face_resolution - 1))),
       allowed_(allowed_squared_distance(options, receivers.size())) {
     ordered_normals_.reserve(order_.size());
@@ -101,8 +104,8 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers, con
         origins_.push_back(ray_origin(receivers.positions[receiver], normal, options.bias));
     }
     normals_ = NormalArrays(ordered_normals_);
-    max_planes_ =
-        static_cast<std::size_t>(options.plane_bytes / (normals_.num_words() * sizeof(std::uint64_t)));
+    max_planes_ = static_cast<std::size_t>(options.plane_bytes /
+                                           (normals_.num_words() * sizeof(std::uint64_t)));
     planes_.emplace(origins_, normals_, blockers);
 }
 
@@ -158,7 +161,8 @@ std::vector<LatticePoint> Clustering::needed_points(const Cell& cell) const {
     return {points.begin(), points.end()};
 }
 
-/// Siblings follow each other in `cells`, so the sixteen new points of a split follow each other here: one packet.
+/// Siblings follow each other in `cells`, so the sixteen new points of a split follow each other
+/// here: one packet.
 std::vector<LatticePoint> Clustering::needed_points(const std::vector<Cell>& cells) const {
     std::vector<LatticePoint> points;
     for (const Cell& cell : cells) {
@@ -168,33 +172,37 @@ std::vector<LatticePoint> Clustering::needed_points(const std::vector<Cell>& cel
     return points;
 }
 
-/// As many cells as there is room for planes: while half of it is free, of the coarsest level, up to the brim; else of the finest, up to
-/// half of what is left, so that there is room for the levels below.
+/// As many cells as there is room for planes: while half of it is free, of the coarsest level, up
+/// to the brim; else of the finest, up to half of what is left, so that there is room for the
+/// levels below.
 void Clustering::take_batch() {
     const std::size_t num_planes = planes_->num_planes();
     const bool has_room = num_planes <= max_planes_ / 2;
     const std::size_t free = max_planes_ - std::min(num_planes, max_planes_);
     const std::size_t room = std::max(MinBatchPoints, has_room ? free : free / 2);
     std::unordered_set<LatticePoint> new_points;
-    batch_ = pending_.take(has_room ? PendingCells::Order::CoarseFirst : PendingCells::Order::FineFirst,
-                           [&](const Cell& cell) {
-                               for (const LatticePoint point : needed_points(cell))
-                                   if (!planes_->knows(point))
-                                       new_points.insert(point);
-                               return new_points.size() <= room;
-                           });
+    batch_ =
+        pending_.take(has_room ? PendingCells::Order::CoarseFirst : PendingCells::Order::FineFirst,
+                      [&](const Cell& cell) {
+                          for (const LatticePoint point : needed_points(cell))
+                              if (!planes_->knows(point))
+                                  new_points.insert(point);
+                          return new_points.size() <= room;
+                      });
 }
 
 void Clustering::trace_batch() {
     double area = 0.0;
     for (const Cell& cell : batch_)
         area += part_of_sphere(cell);
-    // Most of the time goes into the deepest levels, so a batch's share of the scale is a part of the sphere that it may settle.
+    // Most of the time goes into the deepest levels, so a batch's share of the scale is a part of
+    // the sphere that it may settle.
     progress_.start_stage(settled_, settled_ + 0.5 * area);
     TraceSteps steps;
     if (options_.checkpoint != nullptr) {
         steps.samples_per_step =
-            SamplesPerThreadAndStep * static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+            SamplesPerThreadAndStep *
+            static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
         steps.between = [this] {
             if (options_.checkpoint->is_due())
                 save_checkpoint();
@@ -202,7 +210,8 @@ void Clustering::trace_batch() {
     }
     if (options_.samples_per_step)
         steps.samples_per_step = *options_.samples_per_step;
-    // A patch is at most four cells wide, which is as far as the new points of four splits of siblings reach.
+    // A patch is at most four cells wide, which is as far as the new points of four splits of
+    // siblings reach.
     const double patch_width = 4 * 2.0 * batch_.front().size();
     planes_->trace(
         needed_points(batch_), patch_width, [this](double part) { progress_.report(part); }, steps);
@@ -214,7 +223,8 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
     // A domain of one light has that light's transfer [JN, Section 4.1].
     if (is_single_texel(cell)) {
         samples.lit.fill(planes_->plane(points[CentreSample]));
-        constexpr std::array<std::uint8_t, SamplesPerCell> CentreOnly = {0, 0, 0, 0, FullCount, 0, 0, 0, 0};
+        constexpr std::array<std::uint8_t, SamplesPerCell> CentreOnly = {0, 0, 0, 0, FullCount,
+                                                                         0, 0, 0, 0};
         return {cell, leaf_column(samples, CentreOnly, origins_.size())};
     }
     for (std::size_t l = 0; l < SamplesPerCell; ++l) {
@@ -229,8 +239,9 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
     return {cell, leaf_column(samples, SampleWeights, origins_.size())};
 }
 
-/// Keeps the clusters, goes on with the children of the rest, and forgets the planes that nothing needs any more. In slices, so that memory can
-/// be watched (a column takes a byte per receiver at most) and checkpoints left: what is decided leaves the batch.
+/// Keeps the clusters, goes on with the children of the rest, and forgets the planes that nothing
+/// needs any more. In slices, so that memory can be watched (a column takes a byte per receiver at
+/// most) and checkpoints left: what is decided leaves the batch.
 void Clustering::decide_batch() {
     const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
     const std::size_t num_words = (order_.size() / BlockSize + 63) / 64;
@@ -274,12 +285,14 @@ void Clustering::decide_batch() {
 
 void Clustering::save_checkpoint() {
     const auto start = std::chrono::steady_clock::now();
-    const std::span<const Cluster> unsaved = std::span(std::as_const(clusters_)).subspan(num_saved_);
+    const std::span<const Cluster> unsaved =
+        std::span(std::as_const(clusters_)).subspan(num_saved_);
     const std::vector<std::byte> record =
         unsaved.empty() ? std::vector<std::byte>() : clusters_record(unsaved);
     if (options_.checkpoint->save(Part, record, work_state(batch_, pending_, *planes_)))
         num_saved_ = clusters_.size();
-    seconds_saving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    seconds_saving_ +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 void Clustering::work() {

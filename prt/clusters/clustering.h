@@ -1,5 +1,6 @@
-// The clustering behind precompute(): cells of the sphere are tested, kept as clusters or split, until none is left.
-// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN], Section 4.
+// The clustering behind precompute(): cells of the sphere are tested, kept as clusters or split,
+// until none is left. Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment
+// Lights" [JN], Section 4.
 #pragma once
 
 #include <cstddef>
@@ -18,13 +19,16 @@
 
 namespace relumine::prt {
 
-/// Cells are tested in batches: their samples are traced together, then each is decided on its own. A batch is a whole level, breadth
-/// first, where its planes have room in PrecomputeOptions::plane_bytes; else as much of a level as has, and fine cells come first
-/// while little room is left. What becomes of a cell depends on its nine samples alone, so batches do not change the result.
+/// Cells are tested in batches: their samples are traced together, then each is decided on its own.
+/// A batch is a whole level, breadth first, where its planes have room in
+/// PrecomputeOptions::plane_bytes; else as much of a level as has, and fine cells come first while
+/// little room is left. What becomes of a cell depends on its nine samples alone, so batches do not
+/// change the result.
 class Clustering {
 public:
     /// The arguments must outlive this; checked by precompute().
-    Clustering(const Receivers& receivers, const Blockers& blockers, const PrecomputeOptions& options);
+    Clustering(const Receivers& receivers, const Blockers& blockers,
+               const PrecomputeOptions& options);
 
     /// Once. Leaves the counts of its work in `statistics`.
     [[nodiscard]] Transfer run(PrecomputeStatistics& statistics);
@@ -57,19 +61,25 @@ private:
     std::vector<glm::vec3> origins_;
     NormalArrays normals_;
     Progress progress_;
-    std::uint32_t max_level_; ///< where a cell is one texel of a 6 x R x R environment
-    double allowed_;          ///< the largest ||T_C - T_l||^2, T times pi, of a cluster
+    /// Where a cell is one texel of a 6 x R x R environment
+    std::uint32_t max_level_;
+    /// The largest ||T_C - T_l||^2, T times pi, of a cluster
+    double allowed_;
     std::size_t max_planes_;
 
     std::optional<VisibilityPlanes> planes_;
-    std::vector<Cell> batch_; ///< in work
+    /// In work
+    std::vector<Cell> batch_;
     PendingCells pending_;
     std::vector<Cluster> clusters_;
-    double settled_ = 0.0;      ///< part of the cube's surface that is clustered
-    std::size_t num_saved_ = 0; ///< clusters in the checkpoint
+    /// Part of the cube's surface that is clustered
+    double settled_ = 0.0;
+    /// Clusters in the checkpoint
+    std::size_t num_saved_ = 0;
     std::uint64_t column_bytes_ = 0;
     double seconds_saving_ = 0.0;
-    std::uint32_t deepest_ = 0; ///< level of a cluster
+    /// Level of a cluster
+    std::uint32_t deepest_ = 0;
 };
 
 } // namespace relumine::prt

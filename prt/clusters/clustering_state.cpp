@@ -12,13 +12,15 @@ namespace relumine::prt {
 
 namespace {
 
-/// Columns and planes of some 100 kB to some MB go into one part: worth a thread, and small beside the whole.
+/// Columns and planes of some 100 kB to some MB go into one part: worth a thread, and small beside
+/// the whole.
 constexpr std::size_t ColumnsPerPart = 16;
 constexpr std::size_t PlanesPerPart = 16;
 
 /// Face, level, x and y in 3, 4, 14 and 14 bits.
 std::uint64_t number_of(const Cell& cell) {
-    return static_cast<std::uint64_t>(cell.face) << 32u | static_cast<std::uint64_t>(cell.level) << 28u |
+    return static_cast<std::uint64_t>(cell.face) << 32u |
+           static_cast<std::uint64_t>(cell.level) << 28u |
            static_cast<std::uint64_t>(cell.x) << 14u | cell.y;
 }
 
@@ -49,18 +51,19 @@ std::vector<Cell> next_cells(files::ByteReader& reader) {
 } // namespace
 
 std::vector<std::byte> clusters_record(std::span<const Cluster> clusters) {
-    return files::pack((clusters.size() + ColumnsPerPart - 1) / ColumnsPerPart, [&](std::size_t part) {
-        const std::size_t begin = part * ColumnsPerPart;
-        files::ByteWriter writer;
-        for (const Cluster& cluster :
-             clusters.subspan(begin, std::min(ColumnsPerPart, clusters.size() - begin))) {
-            writer.add(number_of(cluster.cell));
-            writer.add_all(std::span(std::as_const(cluster.column.visible)));
-            writer.add_all(std::span(std::as_const(cluster.column.mixed)));
-            writer.add_all(std::span(std::as_const(cluster.column.counts)));
-        }
-        return writer.take();
-    });
+    return files::pack(
+        (clusters.size() + ColumnsPerPart - 1) / ColumnsPerPart, [&](std::size_t part) {
+            const std::size_t begin = part * ColumnsPerPart;
+            files::ByteWriter writer;
+            for (const Cluster& cluster :
+                 clusters.subspan(begin, std::min(ColumnsPerPart, clusters.size() - begin))) {
+                writer.add(number_of(cluster.cell));
+                writer.add_all(std::span(std::as_const(cluster.column.visible)));
+                writer.add_all(std::span(std::as_const(cluster.column.mixed)));
+                writer.add_all(std::span(std::as_const(cluster.column.counts)));
+            }
+            return writer.take();
+        });
 }
 
 void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,

@@ -1,4 +1,5 @@
-// What the clustering knows, as bytes for a checkpoint. Everything else follows from the receivers, blockers and options.
+// What the clustering knows, as bytes for a checkpoint. Everything else follows from the receivers,
+// blockers and options.
 #pragma once
 
 #include <cstddef>
@@ -20,14 +21,17 @@ struct Cluster {
 
 /// Clusters as one record.
 [[nodiscard]] std::vector<std::byte> clusters_record(std::span<const Cluster> clusters);
-/// Appends a record's clusters, of `num_receivers` receivers. Throws std::runtime_error for other bytes.
+/// Appends a record's clusters, of `num_receivers` receivers. Throws std::runtime_error for other
+/// bytes.
 void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
                    std::vector<Cluster>& clusters);
 
 /// The work to be done: cells being tested, cells waiting, and the planes known.
-[[nodiscard]] std::vector<std::byte> work_state(const std::vector<Cell>& batch, const PendingCells& pending,
+[[nodiscard]] std::vector<std::byte> work_state(const std::vector<Cell>& batch,
+                                                const PendingCells& pending,
                                                 const VisibilityPlanes& planes);
-/// Puts it into an empty batch, empty queues and new planes. Throws std::runtime_error for other bytes.
+/// Puts it into an empty batch, empty queues and new planes. Throws std::runtime_error for other
+/// bytes.
 void read_work(std::span<const std::byte> state, std::vector<Cell>& batch, PendingCells& pending,
                VisibilityPlanes& planes);
 

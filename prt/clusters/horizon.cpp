@@ -14,8 +14,8 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-void directions_above_horizon(const NormalArrays& normals, std::size_t first, const DirectionPatch& patch,
-                              std::span<std::uint64_t> rays) {
+void directions_above_horizon(const NormalArrays& normals, std::size_t first,
+                              const DirectionPatch& patch, std::span<std::uint64_t> rays) {
     const hn::CappedTag<float, PacketSize> d;
     const std::size_t num_lanes = hn::Lanes(d);
     const std::uint64_t used =
@@ -47,8 +47,8 @@ namespace {
 HWY_EXPORT(directions_above_horizon);
 }
 
-void directions_above_horizon(const NormalArrays& normals, std::size_t first, const DirectionPatch& patch,
-                              std::span<std::uint64_t> rays) {
+void directions_above_horizon(const NormalArrays& normals, std::size_t first,
+                              const DirectionPatch& patch, std::span<std::uint64_t> rays) {
     HWY_DYNAMIC_DISPATCH(directions_above_horizon)(normals, first, patch, rays);
 }
 

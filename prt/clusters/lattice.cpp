@@ -32,14 +32,15 @@ std::array<LatticePoint, SamplesPerCell> lattice_points(const Cell& cell) {
         const std::uint32_t row = i / 3;
         const glm::dvec3 point =
             cubemap::cube_point(cell.face, (2 * cell.x + column) * half, (2 * cell.y + row) * half);
-        points[i] =
-            packed(point.x) | packed(point.y) << BitsPerCoordinate | packed(point.z) << 2 * BitsPerCoordinate;
+        points[i] = packed(point.x) | packed(point.y) << BitsPerCoordinate |
+                    packed(point.z) << 2 * BitsPerCoordinate;
     }
     return points;
 }
 
 glm::dvec3 place_on_cube(LatticePoint point) {
-    return {unpacked(point), unpacked(point >> BitsPerCoordinate), unpacked(point >> 2 * BitsPerCoordinate)};
+    return {unpacked(point), unpacked(point >> BitsPerCoordinate),
+            unpacked(point >> 2 * BitsPerCoordinate)};
 }
 
 glm::vec3 direction(LatticePoint point) {

@@ -10,16 +10,19 @@
 
 namespace relumine::prt {
 
-/// Samples of a cell: corners, edge midpoints and centre, row by row [JN, Section 4.1]. They are points of the continuous face, so that cells
-/// that touch share them, across face edges too, and a split needs 16 new ones.
+/// Samples of a cell: corners, edge midpoints and centre, row by row [JN, Section 4.1]. They are
+/// points of the continuous face, so that cells that touch share them, across face edges too, and a
+/// split needs 16 new ones.
 inline constexpr std::size_t SamplesPerCell = 9;
 inline constexpr std::size_t CentreSample = 4;
 
 /// Weight of each sample in the mean, over 16: the tensor product of the trapezoid rule's 1-2-1.
-/// Differs from [JN, Eq. 10], where all nine weigh the same: a sample on a corner stands for a quarter of the
-/// centre's area, and cells that share it then share it consistently.
-inline constexpr std::array<std::uint8_t, SamplesPerCell> SampleWeights = {1, 2, 1, 2, 4, 2, 1, 2, 1};
-inline constexpr int FullCount = 16; ///< sum of the weights: every sample sees the light
+/// Differs from [JN, Eq. 10], where all nine weigh the same: a sample on a corner stands for a
+/// quarter of the centre's area, and cells that share it then share it consistently.
+inline constexpr std::array<std::uint8_t, SamplesPerCell> SampleWeights = {1, 2, 1, 2, 4,
+                                                                           2, 1, 2, 1};
+/// Sum of the weights: every sample sees the light
+inline constexpr int FullCount = 16;
 
 /// Name of a sample point: equal for equal directions, whichever cell or face asks.
 using LatticePoint = std::uint64_t;

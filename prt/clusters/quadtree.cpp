@@ -46,7 +46,8 @@ std::vector<bool> Quadtree::split_flags() const {
     return flags;
 }
 
-void Quadtree::find_leaves(const FaceRectangle& rectangle, std::vector<std::uint32_t>& leaf_indices) const {
+void Quadtree::find_leaves(const FaceRectangle& rectangle,
+                           std::vector<std::uint32_t>& leaf_indices) const {
     const bool has_area = rectangle.s0 < rectangle.s1 && rectangle.t0 < rectangle.t1;
     if (has_area)
         find(static_cast<std::uint32_t>(rectangle.face), Cell{.face = rectangle.face}, rectangle,
@@ -58,8 +59,8 @@ void Quadtree::find(std::uint32_t node, const Cell& cell, const FaceRectangle& r
     const double size = cell.size();
     const double s = cell.x * size;
     const double t = cell.y * size;
-    const bool apart =
-        s >= rectangle.s1 || s + size <= rectangle.s0 || t >= rectangle.t1 || t + size <= rectangle.t0;
+    const bool apart = s >= rectangle.s1 || s + size <= rectangle.s0 || t >= rectangle.t1 ||
+                       t + size <= rectangle.t0;
     if (apart)
         return;
     const Node& here = nodes_[node];

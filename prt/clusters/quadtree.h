@@ -11,8 +11,9 @@
 
 namespace relumine::prt {
 
-/// A dyadic square of a face: [x, x + 1] x [y, y + 1] in units of 2^-level, x to the right and y down as in cubemap::Face.
-/// Cells are squares of the continuous face, not ranges of texels, so a tree fits environments of any resolution.
+/// A dyadic square of a face: [x, x + 1] x [y, y + 1] in units of 2^-level, x to the right and y
+/// down as in cubemap::Face. Cells are squares of the continuous face, not ranges of texels, so a
+/// tree fits environments of any resolution.
 struct Cell {
     cubemap::Face face = cubemap::Face::PositiveX;
     std::uint8_t level = 0;
@@ -40,38 +41,44 @@ struct FaceRectangle {
 /// Deepest level a cell can have: 2^14 texels along a face's edge.
 inline constexpr std::uint32_t MaxLevel = 14;
 
-/// Six quadtrees, one per face; the leaves are numbered depth first, face by face, so every subtree owns a range of leaves.
-/// Immutable.
+/// Six quadtrees, one per face; the leaves are numbered depth first, face by face, so every subtree
+/// owns a range of leaves. Immutable.
 class Quadtree {
 public:
     /// The tree with no split: six leaves.
     Quadtree();
-    /// From its depth-first split flags, true = split, as split_flags() returns them. Throws std::invalid_argument when they end early,
-    /// go on after the last leaf or go deeper than MaxLevel.
+    /// From its depth-first split flags, true = split, as split_flags() returns them. Throws
+    /// std::invalid_argument when they end early, go on after the last leaf or go deeper than
+    /// MaxLevel.
     explicit Quadtree(const std::vector<bool>& split_flags);
 
     [[nodiscard]] std::size_t num_leaves() const { return leaves_.size(); }
     [[nodiscard]] std::span<const Cell> leaves() const { return leaves_; }
     [[nodiscard]] std::vector<bool> split_flags() const;
 
-    /// Appends to `leaf_indices`, in ascending order, the leaves whose cells share area with the rectangle. Walks
-    /// the tree from the face's root [JN, Section 5.2].
-    void find_leaves(const FaceRectangle& rectangle, std::vector<std::uint32_t>& leaf_indices) const;
+    /// Appends to `leaf_indices`, in ascending order, the leaves whose cells share area with the
+    /// rectangle. Walks the tree from the face's root [JN, Section 5.2].
+    void find_leaves(const FaceRectangle& rectangle,
+                     std::vector<std::uint32_t>& leaf_indices) const;
 
-    /// The leaf whose cell a point lies in; on borders between cells, the one to the right and below.
+    /// The leaf whose cell a point lies in; on borders between cells, the one to the right and
+    /// below.
     [[nodiscard]] std::uint32_t leaf_at(const cubemap::FacePoint& point) const;
 
 private:
     struct Node {
-        std::uint32_t first_child = 0; ///< index of four consecutive nodes, 0 for a leaf
-        std::uint32_t leaf = 0;        ///< leaf index, where it is one
+        /// Index of four consecutive nodes, 0 for a leaf
+        std::uint32_t first_child = 0;
+        /// Leaf index, where it is one
+        std::uint32_t leaf = 0;
     };
     void build(std::uint32_t node, const Cell& cell, const std::vector<bool>& split_flags,
                std::size_t& next_flag);
     void find(std::uint32_t node, const Cell& cell, const FaceRectangle& rectangle,
               std::vector<std::uint32_t>& leaf_indices) const;
 
-    std::vector<Node> nodes_; ///< the six roots first
+    /// The six roots first
+    std::vector<Node> nodes_;
     std::vector<Cell> leaves_;
 };
 

@@ -19,13 +19,13 @@ namespace relumine::prt {
 
 namespace {
 
-/// Receivers of one task: eight words of 64, so that tasks write whole cache lines of each plane. Their rays through one patch
-/// start close together and meet the same blockers.
+/// Receivers of one task: eight words of 64, so that tasks write whole cache lines of each plane.
+/// Their rays through one patch start close together and meet the same blockers.
 constexpr std::size_t WordsPerTask = 8;
 constexpr std::size_t WordsPerBlock = ReceiverBlock::MaxSize / WordSize;
 
-/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Splitting the directions, too, keeps all
-/// threads busy when the receivers are few.
+/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Splitting
+/// the directions, too, keeps all threads busy when the receivers are few.
 constexpr std::size_t PatchesPerTask = 32;
 
 /// Side of the smallest axis-aligned cube around points.
@@ -50,15 +50,16 @@ private:
 struct VisibilityPlanes::Patch {
     DirectionPatch directions;
     std::array<LatticePoint, DirectionPatch::Size> points{};
-    std::array<std::uint64_t*, DirectionPatch::Size> planes{}; ///< from the start of the patch's step on
+    /// From the start of the patch's step on
+    std::array<std::uint64_t*, DirectionPatch::Size> planes{};
 };
 
 VisibilityPlanes::VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
                                    const Blockers& blockers)
     : origins_(origins), normals_(normals), blockers_(blockers) {}
 
-std::vector<VisibilityPlanes::Patch> VisibilityPlanes::new_patches(std::span<const LatticePoint> points,
-                                                                   double patch_width) const {
+std::vector<VisibilityPlanes::Patch>
+VisibilityPlanes::new_patches(std::span<const LatticePoint> points, double patch_width) const {
     std::vector<Patch> patches;
     std::unordered_set<LatticePoint> seen;
     Extent extent;
@@ -67,7 +68,8 @@ std::vector<VisibilityPlanes::Patch> VisibilityPlanes::new_patches(std::span<con
             continue;
         Extent with_point = extent;
         with_point.include(place_on_cube(point));
-        if (patches.empty() || patches.back().directions.full() || with_point.side() > patch_width) {
+        if (patches.empty() || patches.back().directions.full() ||
+            with_point.side() > patch_width) {
             patches.emplace_back();
             with_point = {};
             with_point.include(place_on_cube(point));
@@ -81,11 +83,13 @@ std::vector<VisibilityPlanes::Patch> VisibilityPlanes::new_patches(std::span<con
 }
 
 void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_width,
-                             const std::function<void(double)>& on_progress, const TraceSteps& steps) {
+                             const std::function<void(double)>& on_progress,
+                             const TraceSteps& steps) {
     std::vector<Patch> patches = new_patches(points, patch_width);
-    const std::uint64_t samples_per_patch = std::max<std::size_t>(origins_.size(), 1) * DirectionPatch::Size;
-    const auto patches_per_step = static_cast<std::size_t>(
-        std::clamp<std::uint64_t>(steps.samples_per_step / samples_per_patch, 1, patches.size() + 1));
+    const std::uint64_t samples_per_patch =
+        std::max<std::size_t>(origins_.size(), 1) * DirectionPatch::Size;
+    const auto patches_per_step = static_cast<std::size_t>(std::clamp<std::uint64_t>(
+        steps.samples_per_step / samples_per_patch, 1, patches.size() + 1));
     const std::size_t num_rows = (normals_.num_words() + WordsPerTask - 1) / WordsPerTask;
     const auto num_tasks = [&](std::size_t num_patches) {
         return num_rows * ((num_patches + PatchesPerTask - 1) / PatchesPerTask);
@@ -98,8 +102,9 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_
         if (begin != 0 && steps.between)
             steps.between();
         const std::size_t size = std::min(patches_per_step, patches.size() - begin);
-        trace_step(std::span(patches).subspan(begin, size),
-                   [&] { on_progress(static_cast<double>(++num_done) / static_cast<double>(num_all)); });
+        trace_step(std::span(patches).subspan(begin, size), [&] {
+            on_progress(static_cast<double>(++num_done) / static_cast<double>(num_all));
+        });
     }
 }
 
@@ -132,9 +137,10 @@ void VisibilityPlanes::trace_step(std::span<Patch> patches, const std::function<
         });
         tbb::parallel_for(tbb::blocked_range2d<std::size_t>(0, num_rows, 1, 0, num_columns, 1),
                           [&](const tbb::blocked_range2d<std::size_t>& tasks) {
-                              for (std::size_t row = tasks.rows().begin(); row < tasks.rows().end(); ++row)
-                                  for (std::size_t column = tasks.cols().begin(); column < tasks.cols().end();
-                                       ++column)
+                              for (std::size_t row = tasks.rows().begin(); row < tasks.rows().end();
+                                   ++row)
+                                  for (std::size_t column = tasks.cols().begin();
+                                       column < tasks.cols().end(); ++column)
                                       trace_task(row, column);
                           });
     } catch (...) {
@@ -157,7 +163,8 @@ std::vector<LatticePoint> VisibilityPlanes::points() const {
 std::uint64_t VisibilityPlanes::trace_block(std::size_t first_word, const Patch& patch) const {
     const std::size_t first = first_word * WordSize;
     const std::size_t size = std::min(origins_.size() - first, ReceiverBlock::MaxSize);
-    std::array<std::uint64_t, ReceiverBlock::MaxSize> rays{}; // a word per receiver, bits are directions
+    std::array<std::uint64_t, ReceiverBlock::MaxSize>
+        rays{}; // a word per receiver, bits are directions
     const std::span<std::uint64_t> of_block(rays.data(), size);
     directions_above_horizon(normals_, first, patch.directions, of_block);
     std::uint64_t num_rays = 0;
@@ -166,12 +173,15 @@ std::uint64_t VisibilityPlanes::trace_block(std::size_t first_word, const Patch&
         if (of_block[i] == 0)
             continue;
         num_rays += static_cast<std::uint64_t>(std::popcount(of_block[i]));
-        mean_normal += glm::vec3(normals_.x[first + i], normals_.y[first + i], normals_.z[first + i]);
+        mean_normal +=
+            glm::vec3(normals_.x[first + i], normals_.y[first + i], normals_.z[first + i]);
     }
     if (num_rays != 0)
-        blockers_.clear_blocked({origins_.subspan(first, size), mean_normal}, patch.directions, of_block);
+        blockers_.clear_blocked({origins_.subspan(first, size), mean_normal}, patch.directions,
+                                of_block);
 
-    for (std::size_t word = 0; word < WordsPerBlock && first_word + word < normals_.num_words(); ++word) {
+    for (std::size_t word = 0; word < WordsPerBlock && first_word + word < normals_.num_words();
+         ++word) {
         const std::span<std::uint64_t, WordSize> square(rays.data() + word * WordSize, WordSize);
         transpose(square); // a word per direction, bits are receivers
         for (std::size_t j = 0; j < patch.directions.num_directions; ++j)

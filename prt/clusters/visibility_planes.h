@@ -1,4 +1,5 @@
-// Visibility of all receivers in the sample directions: one plane of bits per direction, each direction traced once.
+// Visibility of all receivers in the sample directions: one plane of bits per direction, each
+// direction traced once.
 #pragma once
 
 #include <cstdint>
@@ -19,23 +20,27 @@ namespace relumine::prt {
 
 /// Long work in steps, between which everything that is known is whole.
 struct TraceSteps {
-    std::uint64_t samples_per_step = std::numeric_limits<
-        std::uint64_t>::max();          ///< (receiver, direction) pairs, at least one patch of them
-    std::function<void()> between = {}; ///< called by the calling thread; may throw to cancel
+    /// (receiver, direction) pairs, at least one patch of them
+    std::uint64_t samples_per_step = std::numeric_limits<std::uint64_t>::max();
+    /// Called by the calling thread; may throw to cancel
+    std::function<void()> between = {};
 };
 
-/// The planes that the level in work needs. A bit says "the light from this direction reaches this receiver": the direction is above
-/// the receiver's horizon and not blocked.
+/// The planes that the level in work needs. A bit says "the light from this direction reaches this
+/// receiver": the direction is above the receiver's horizon and not blocked.
 class VisibilityPlanes {
 public:
-    /// origins: ray starts of the receivers in the order of `normals`, [num_receivers]. The arguments must outlive this.
+    /// origins: ray starts of the receivers in the order of `normals`, [num_receivers]. The
+    /// arguments must outlive this.
     VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
                      const Blockers& blockers);
 
-    /// Traces those of the points that are not known yet. Points that lie close together should stand close together: neighbours in
-    /// the list whose places on the cube [-1, 1]^3 fit into a box of side `patch_width` share a patch of directions.
-    /// `on_progress` is called from the working threads, many times a second, with the part of the rays that is done (not
-    /// in order); it may throw to cancel. The points of finished steps stay known then, those of the step in work do not.
+    /// Traces those of the points that are not known yet. Points that lie close together should
+    /// stand close together: neighbours in the list whose places on the cube [-1, 1]^3 fit into a
+    /// box of side `patch_width` share a patch of directions. `on_progress` is called from the
+    /// working threads, many times a second, with the part of the rays that is done (not in order);
+    /// it may throw to cancel. The points of finished steps stay known then, those of the step in
+    /// work do not.
     void trace(std::span<const LatticePoint> points, double patch_width,
                const std::function<void(double)>& on_progress, const TraceSteps& steps = {});
 
@@ -43,12 +48,15 @@ public:
     void keep_only(std::span<const LatticePoint> points);
 
     [[nodiscard]] bool knows(LatticePoint point) const { return planes_.contains(point); }
-    [[nodiscard]] std::size_t num_words() const { return normals_.num_words(); } ///< of a plane
+    /// Of a plane
+    [[nodiscard]] std::size_t num_words() const { return normals_.num_words(); }
     [[nodiscard]] std::size_t num_planes() const { return planes_.size(); }
     /// All known points, ascending.
     [[nodiscard]] std::vector<LatticePoint> points() const;
     /// Takes over a plane that an earlier run traced, [num_words].
-    void restore(LatticePoint point, std::vector<std::uint64_t> plane) { planes_[point] = std::move(plane); }
+    void restore(LatticePoint point, std::vector<std::uint64_t> plane) {
+        planes_[point] = std::move(plane);
+    }
     /// Takes over an earlier run's counts.
     void restore_counts(std::uint64_t num_directions, std::uint64_t num_rays) {
         num_directions_ = num_directions;
@@ -56,13 +64,16 @@ public:
     }
 
     /// The plane of a known point, [num_words].
-    [[nodiscard]] const std::uint64_t* plane(LatticePoint point) const { return planes_.at(point).data(); }
+    [[nodiscard]] const std::uint64_t* plane(LatticePoint point) const {
+        return planes_.at(point).data();
+    }
 
     [[nodiscard]] std::uint64_t num_directions() const { return num_directions_; }
     [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }
 
 private:
-    struct Patch; ///< up to 64 new directions and their planes
+    /// Up to 64 new directions and their planes
+    struct Patch;
 
     std::vector<Patch> new_patches(std::span<const LatticePoint> points, double patch_width) const;
     void trace_step(std::span<Patch> patches, const std::function<void()>& on_task);

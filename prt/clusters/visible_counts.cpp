@@ -62,8 +62,8 @@ VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t
         for (std::size_t leaf = 0; leaf < columns.size(); ++leaf) {
             for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
                 const std::size_t word = result.word(block, leaf / 64);
-                result.visible[word] |= static_cast<std::uint64_t>(bit_of(columns[leaf].visible, block))
-                                        << (leaf % 64);
+                result.visible[word] |=
+                    static_cast<std::uint64_t>(bit_of(columns[leaf].visible, block)) << (leaf % 64);
                 result.mixed[word] |= static_cast<std::uint64_t>(bit_of(columns[leaf].mixed, block))
                                       << (leaf % 64);
             }
@@ -75,7 +75,8 @@ VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t
     result.counts.resize(num_entries);
     result.index();
 
-    // Scatter each column's counts to their blocks; a (leaf, block) pair has one place, so leaves can go in parallel.
+    // Scatter each column's counts to their blocks; a (leaf, block) pair has one place, so leaves
+    // can go in parallel.
     tbb::parallel_for(std::size_t{0}, columns.size(), [&](std::size_t leaf) {
         LeafColumn& column = columns[leaf];
         const std::uint8_t* source = column.counts.data();
@@ -83,8 +84,8 @@ VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t
             if (!bit_of(column.mixed, block))
                 continue;
             const std::size_t word = result.word(block, leaf / 64);
-            auto* target =
-                const_cast<std::uint8_t*>(result.mixed_counts(word, static_cast<std::uint32_t>(leaf % 64)));
+            auto* target = const_cast<std::uint8_t*>(
+                result.mixed_counts(word, static_cast<std::uint32_t>(leaf % 64)));
             std::copy_n(source, BlockSize, target);
             source += BlockSize;
         }

@@ -14,35 +14,44 @@ inline constexpr std::size_t BlockSize = 16;
 
 /// Visible counts of one cluster for all receivers.
 struct LeafColumn {
-    std::vector<std::uint64_t>
-        visible;                      ///< [ceil(num_blocks / 64)] bit b: every receiver of block b counts 16
-    std::vector<std::uint64_t> mixed; ///< the same shape; bit b: block b has entries in `counts`
-    std::vector<std::uint8_t> counts; ///< [num_mixed_blocks * 16], in order of blocks
+    /// [ceil(num_blocks / 64)] bit b: every receiver of block b counts 16
+    std::vector<std::uint64_t> visible;
+    /// The same shape; bit b: block b has entries in `counts`
+    std::vector<std::uint64_t> mixed;
+    /// [num_mixed_blocks * 16], in order of blocks
+    std::vector<std::uint8_t> counts;
 };
 
-/// The count c in 0..16 of every (receiver, leaf) pair, [num_receivers x num_leaves]: the weighted number of the leaf's nine samples that
-/// reach the receiver, so that T_C(x) = c/16 max(n.w, 0)/pi for albedo 1 [JN, Eq. 10]. Receivers are in spatial
-/// order. Most blocks of 16 receivers see all of a leaf or nothing: two bits say so; only mixed ones store 16 counts.
+/// The count c in 0..16 of every (receiver, leaf) pair, [num_receivers x num_leaves]: the weighted
+/// number of the leaf's nine samples that reach the receiver, so that T_C(x) = c/16 max(n.w, 0)/pi
+/// for albedo 1 [JN, Eq. 10]. Receivers are in spatial order. Most blocks of 16 receivers see all
+/// of a leaf or nothing: two bits say so; only mixed ones store 16 counts.
 ///
-/// Layout (promised): tiles of 64 blocks; in a tile, words of 64 leaves ascending; in a word, the tile's blocks; in a block, the word's
-/// mixed leaves ascending. So both uses stream: a relighting through a whole tile while its sums stay in the cache, an edit
-/// through the few words it touches, once per tile.
+/// Layout (promised): tiles of 64 blocks; in a tile, words of 64 leaves ascending; in a word, the
+/// tile's blocks; in a block, the word's mixed leaves ascending. So both uses stream: a relighting
+/// through a whole tile while its sums stay in the cache, an edit through the few words it touches,
+/// once per tile.
 struct VisibleCounts {
     static constexpr std::size_t TileBlocks = 64;
 
     std::size_t num_receivers = 0;
     std::size_t num_leaves = 0;
-    std::vector<std::uint64_t> visible =
-        {}; ///< [num_blocks * words_per_block], see word(); bit of a leaf: all 16 receivers count 16
-    std::vector<std::uint64_t> mixed =
-        {}; ///< the same shape; bit of a leaf: it has 16 entries in `counts`; never set with `visible`
-    std::vector<std::uint64_t> mixed_before =
-        {}; ///< the same shape; mixed (block, leaf) pairs before this word's first leaf
-    std::vector<std::uint8_t> counts = {}; ///< [num_mixed * 16]
+    /// [num_blocks * words_per_block], see word(); bit of a leaf: all 16 receivers count 16
+    std::vector<std::uint64_t> visible = {};
+    /// The same shape; bit of a leaf: it has 16 entries in `counts`; never set with `visible`
+    std::vector<std::uint64_t> mixed = {};
+    /// The same shape; mixed (block, leaf) pairs before this word's first leaf
+    std::vector<std::uint64_t> mixed_before = {};
+    /// [num_mixed * 16]
+    std::vector<std::uint8_t> counts = {};
 
-    [[nodiscard]] std::size_t num_blocks() const { return (num_receivers + BlockSize - 1) / BlockSize; }
+    [[nodiscard]] std::size_t num_blocks() const {
+        return (num_receivers + BlockSize - 1) / BlockSize;
+    }
     [[nodiscard]] std::size_t words_per_block() const { return (num_leaves + 63) / 64; }
-    [[nodiscard]] std::size_t num_tiles() const { return (num_blocks() + TileBlocks - 1) / TileBlocks; }
+    [[nodiscard]] std::size_t num_tiles() const {
+        return (num_blocks() + TileBlocks - 1) / TileBlocks;
+    }
     /// First block of a tile; of num_tiles(): the number of blocks.
     [[nodiscard]] std::size_t tile_begin(std::size_t tile) const {
         return std::min(tile * TileBlocks, num_blocks());
@@ -65,12 +74,14 @@ struct VisibleCounts {
     /// c of one pair. Not for hot loops.
     [[nodiscard]] int count(std::size_t receiver_place, std::size_t leaf) const;
 
-    /// Fills mixed_before from mixed; `counts` must have 16 entries for every bit of mixed. Throws std::invalid_argument when sizes or bits
-    /// contradict each other, or a count is above 16.
+    /// Fills mixed_before from mixed; `counts` must have 16 entries for every bit of mixed. Throws
+    /// std::invalid_argument when sizes or bits contradict each other, or a count is above 16.
     void index();
 };
 
-/// Turns columns (one per leaf, in leaf order) into that layout; frees each column's memory as it goes.
-[[nodiscard]] VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t num_receivers);
+/// Turns columns (one per leaf, in leaf order) into that layout; frees each column's memory as it
+/// goes.
+[[nodiscard]] VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns,
+                                                std::size_t num_receivers);
 
 } // namespace relumine::prt

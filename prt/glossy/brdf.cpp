@@ -10,9 +10,10 @@ namespace relumine::prt {
 
 namespace {
 
-/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v) times n.w: glTF 2.0, Appendix
-/// B.3.2. sin2: squared sine of the angle between normal and half vector; cos^2 alone loses it to cancellation where alpha is
-/// small. The quotient is ordered so that no cosine, however small, makes it infinite.
+/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v)
+/// times n.w: glTF 2.0, Appendix B.3.2. sin2: squared sine of the angle between normal and half
+/// vector; cos^2 alone loses it to cancellation where alpha is small. The quotient is ordered so
+/// that no cosine, however small, makes it infinite.
 float ggx(float alpha, float sin2, float n_w, float n_v) {
     const float a2 = alpha * alpha;
     const float d = sin2 + (1.0f - sin2) * a2; // cos^2 (a2 - 1) + 1
@@ -22,7 +23,8 @@ float ggx(float alpha, float sin2, float n_w, float n_v) {
     return distribution * 0.5f / (mask_v + n_v / n_w * mask_w);
 }
 
-/// cos^exponent of the angle with that sine: where it is small, log1p keeps what 1 - sin2 would round away.
+/// cos^exponent of the angle with that sine: where it is small, log1p keeps what 1 - sin2 would
+/// round away.
 float cosine_power(float sin2, float exponent) {
     if (exponent == 0.0f)
         return 1.0f;
@@ -39,14 +41,16 @@ float blinn_phong_exponent(float exponent) {
     return std::clamp(exponent, 0.0f, 1e6f);
 }
 
-/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less of all other.
+/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less
+/// of all other.
 float blinn_phong_norm(float exponent) {
     const float e = blinn_phong_exponent(exponent);
-    return (e + 2.0f) * (e + 4.0f) / (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * e) + e));
+    return (e + 2.0f) * (e + 4.0f) /
+           (8.0f * std::numbers::pi_v<float> * (std::exp2(-0.5f * e) + e));
 }
 
-Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, const glm::vec3& to_eye,
-                            const glm::vec3& w) {
+Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
+                            const glm::vec3& to_eye, const glm::vec3& w) {
     Lobes<float> lobes;
     const float n_w = glm::dot(normal, w);
     if (n_w <= 0.0f)
@@ -61,8 +65,8 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal, con
     const glm::vec3 across = glm::cross(normal, half);
     const float sin2 = std::min(glm::dot(across, across) / length2, 1.0f);
     if (surface.highlight == Highlight::BlinnPhong) {
-        lobes.specular =
-            blinn_phong_norm(surface.shape) * cosine_power(sin2, blinn_phong_exponent(surface.shape)) * n_w;
+        lobes.specular = blinn_phong_norm(surface.shape) *
+                         cosine_power(sin2, blinn_phong_exponent(surface.shape)) * n_w;
         return lobes;
     }
     const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);

@@ -1,4 +1,5 @@
-// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN], Sections 3.1 and 4.
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN],
+// Sections 3.1 and 4.
 #include "prt/glossy/glossy_precompute.h"
 
 #include <algorithm>
@@ -34,7 +35,8 @@ constexpr const char* Part = "highlights";
 /// Work between two looks at the checkpoint: about a second; a block takes some milliseconds.
 constexpr std::size_t BlocksPerThreadAndStep = 256;
 
-/// Blocks of an estimate: their entries differ by a factor of two or so, the mean is good to some percent.
+/// Blocks of an estimate: their entries differ by a factor of two or so, the mean is good to some
+/// percent.
 constexpr std::size_t TrialBlocks = 256;
 
 /// One block's entries of one lobe.
@@ -44,7 +46,8 @@ struct BlockEntries {
     std::vector<std::uint8_t> values;
 };
 
-/// Bytes hold the square root: a highlight's foot, shared by many directions, keeps its digits beside the peak.
+/// Bytes hold the square root: a highlight's foot, shared by many directions, keeps its digits
+/// beside the peak.
 BlockEntries quantised(const LobeCut& cut) {
     BlockEntries entries;
     entries.cells.reserve(cut.cells.size());
@@ -109,8 +112,9 @@ float narrowness_of(const Surface& surface) {
     return 0.0f;
 }
 
-/// The tolerance is for highlights of at least this width (roughness 0.3) and falls with what is narrower: a broad one takes in many
-/// lights, whose errors cancel; a narrow one sees one at a time. Cells of narrow ones are few all the same.
+/// The tolerance is for highlights of at least this width (roughness 0.3) and falls with what is
+/// narrower: a broad one takes in many lights, whose errors cancel; a narrow one sees one at a
+/// time. Cells of narrow ones are few all the same.
 constexpr float FullToleranceWidth = 0.18f;
 
 float tightened(float tolerance, const BlockToRefine& block) {
@@ -122,7 +126,8 @@ float tightened(float tolerance, const BlockToRefine& block) {
 }
 
 std::uint32_t deepest_level(std::uint32_t face_resolution) {
-    return std::min(static_cast<std::uint32_t>(std::bit_width(face_resolution - 1)), MaxGlossyLevel);
+    return std::min(static_cast<std::uint32_t>(std::bit_width(face_resolution - 1)),
+                    MaxGlossyLevel);
 }
 
 class GlossyPrecompute {
@@ -148,9 +153,12 @@ private:
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
-    std::vector<EntriesOfBlock> blocks_; ///< finished, from the first on
-    std::uint64_t num_entries_ = 0;      ///< of them
-    std::size_t num_saved_ = 0;          ///< of them in the checkpoint
+    /// Finished, from the first on
+    std::vector<EntriesOfBlock> blocks_;
+    /// Of them
+    std::uint64_t num_entries_ = 0;
+    /// Of them in the checkpoint
+    std::size_t num_saved_ = 0;
     std::uint64_t rays_saved_ = 0;
     std::atomic<std::uint64_t> num_rays_ = 0;
 };
@@ -167,7 +175,8 @@ BlockToRefine GlossyPrecompute::block_at(std::size_t block, std::vector<glm::vec
         const std::size_t lane = place - begin;
         result.surfaces.set(lane, surface, normal, to_eye);
         result.mirror[lane] = 2.0f * result.surfaces.normal_dot_eye[lane] * normal - to_eye;
-        result.narrowness[lane] = result.surfaces.normal_dot_eye[lane] > 0.0f ? narrowness_of(surface) : 0.0f;
+        result.narrowness[lane] =
+            result.surfaces.normal_dot_eye[lane] > 0.0f ? narrowness_of(surface) : 0.0f;
         origins.push_back(ray_origin(receivers_.positions[receiver], normal, options_.bias));
     }
     result.origins = origins;
@@ -186,7 +195,8 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
             continue;
         // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
         if (lobe == GlossyLobe::DiffuseGrazing)
-            limits.reference_power = std::popcount(to_refine.surfaces.ggx) * 2.0 / (3.0 * std::numbers::pi);
+            limits.reference_power =
+                std::popcount(to_refine.surfaces.ggx) * 2.0 / (3.0 * std::numbers::pi);
         const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
         if (lobe == GlossyLobe::Specular)
             limits.reference_power = cut.power;
@@ -260,7 +270,8 @@ void GlossyPrecompute::work() {
                 const std::scoped_lock lock(mutex);
                 ++num_done;
                 if (options_.on_progress)
-                    options_.on_progress(static_cast<double>(num_done) / static_cast<double>(num_blocks));
+                    options_.on_progress(static_cast<double>(num_done) /
+                                         static_cast<double>(num_blocks));
             });
         } catch (...) {
             num_rays_ = rays_before;
@@ -325,12 +336,13 @@ std::uint64_t GlossyPrecompute::estimate() {
 
 void check(const Receivers& receivers, const Transfer& transfer, const GlossyOptions& options) {
     const std::size_t count = transfer.num_receivers();
-    if (receivers.size() != count || receivers.to_eye.size() != count || receivers.surfaces.size() != count)
-        throw std::invalid_argument(
-            fmt::format("expected the transfer's {} receivers with eye directions and surfaces", count));
+    if (receivers.size() != count || receivers.to_eye.size() != count ||
+        receivers.surfaces.size() != count)
+        throw std::invalid_argument(fmt::format(
+            "expected the transfer's {} receivers with eye directions and surfaces", count));
     if (!(options.tolerance > 0.0f && options.tolerance <= 1.0f))
-        throw std::invalid_argument(
-            fmt::format("expected a glossy tolerance above 0, at most 1, got {}", options.tolerance));
+        throw std::invalid_argument(fmt::format(
+            "expected a glossy tolerance above 0, at most 1, got {}", options.tolerance));
     if (options.face_resolution < 1 || options.face_resolution > (1u << MaxLevel))
         throw std::invalid_argument(fmt::format("expected a face resolution from 1 to {}, got {}",
                                                 1u << MaxLevel, options.face_resolution));
@@ -351,7 +363,8 @@ float narrowest_roughness(std::uint32_t face_resolution) {
 }
 
 TooManyEntries::TooManyEntries(std::uint64_t entries)
-    : std::runtime_error(fmt::format("too many cells of highlights: {}", entries)), num_entries(entries) {}
+    : std::runtime_error(fmt::format("too many cells of highlights: {}", entries)),
+      num_entries(entries) {}
 
 std::uint64_t estimate_glossy_entries(const Receivers& receivers, const Blockers& blockers,
                                       const Transfer& transfer, const GlossyOptions& options) {

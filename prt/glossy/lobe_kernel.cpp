@@ -55,7 +55,8 @@ public:
         n_w_ = hn::Max(dot(n, light), hn::Zero(d));
         const Vector3 h(hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z));
         h_h_ = hn::Max(dot(h, h), hn::Set(d, 1e-12f));
-        nxh_ = hn::Div(squared_cross(n, h), h_h_); // sin^2 of the angle between n and the half vector
+        nxh_ =
+            hn::Div(squared_cross(n, h), h_h_); // sin^2 of the angle between n and the half vector
         // v.h = |v + w| / 2 for unit vectors.
         const auto one_less =
             hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), hn::Sqrt(h_h_), hn::Set(d, 1.0f)), hn::Zero(d));
@@ -99,7 +100,8 @@ private:
         // cos^2 (a2 - 1) + 1 = sin^2 + cos^2 a2
         const auto cos2 = hn::Max(hn::Sub(one, nxh_), hn::Zero(d));
         const auto t = hn::MulAdd(cos2, a2, nxh_);
-        const auto distribution = hn::Div(a2, hn::Mul(hn::Set(d, std::numbers::pi_v<float>), hn::Mul(t, t)));
+        const auto distribution =
+            hn::Div(a2, hn::Mul(hn::Set(d, std::numbers::pi_v<float>), hn::Mul(t, t)));
         const auto rest = hn::Sub(one, a2);
         const auto mask_v = hn::Mul(n_w_, hn::Sqrt(hn::MulAdd(hn::Mul(n_v, n_v), rest, a2)));
         const auto mask_w = hn::Mul(n_v, hn::Sqrt(hn::MulAdd(hn::Mul(n_w_, n_w_), rest, a2)));
@@ -121,8 +123,8 @@ private:
     Vector n_w_, h_h_, nxh_, c_;
 };
 
-void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe, std::span<const glm::vec3> directions,
-                   std::span<BlockSurfaces::Floats> values) {
+void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
+                   std::span<const glm::vec3> directions, std::span<BlockSurfaces::Floats> values) {
     for (std::size_t i = 0; i < directions.size(); ++i)
         for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
             const DirectionTerms terms(surfaces, directions[i], lane);
@@ -174,8 +176,8 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
     }
 }
 
-void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe, std::span<const glm::vec3> directions,
-                   std::span<BlockSurfaces::Floats> values) {
+void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
+                   std::span<const glm::vec3> directions, std::span<BlockSurfaces::Floats> values) {
     HWY_DYNAMIC_DISPATCH(evaluate_lobe)(surfaces, lobe, directions, values);
 }
 

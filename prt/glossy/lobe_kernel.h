@@ -1,4 +1,5 @@
-// View-dependent lobes of 16 receivers at a time. Vectorised with run-time dispatch; evaluate_lobes() is the plain form.
+// View-dependent lobes of 16 receivers at a time. Vectorised with run-time dispatch;
+// evaluate_lobes() is the plain form.
 #pragma once
 
 #include <array>
@@ -18,10 +19,14 @@ struct alignas(64) BlockSurfaces {
     std::array<Floats, 3> normal{};
     std::array<Floats, 3> to_eye{};
     Floats normal_dot_eye{};
-    Floats alpha_squared{}; ///< GGX
-    Floats exponent{};      ///< Blinn-Phong
-    Floats factor{};        ///< Blinn-Phong: the lobe's norm
-    std::uint32_t ggx = 0;  ///< bit i: receiver i has this highlight and its eye is above the horizon
+    /// GGX
+    Floats alpha_squared{};
+    /// Blinn-Phong
+    Floats exponent{};
+    /// Blinn-Phong: the lobe's norm
+    Floats factor{};
+    /// Bit i: receiver i has this highlight and its eye is above the horizon
+    std::uint32_t ggx = 0;
     std::uint32_t blinn_phong = 0;
 
     void set(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,
@@ -31,9 +36,10 @@ struct alignas(64) BlockSurfaces {
     }
 };
 
-/// The lobe of each receiver for each direction: `values` [directions.size()] of 16. Relative error below 1e-5 plus 1e-7 of the peak.
-void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe, std::span<const glm::vec3> directions,
-                   std::span<BlockSurfaces::Floats> values);
+/// The lobe of each receiver for each direction: `values` [directions.size()] of 16. Relative error
+/// below 1e-5 plus 1e-7 of the peak.
+void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
+                   std::span<const glm::vec3> directions, std::span<BlockSurfaces::Floats> values);
 
 /// All lobes for one direction, by GlossyLobe.
 void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,

@@ -15,7 +15,8 @@ namespace {
 
 using Floats = BlockSurfaces::Floats;
 
-/// Cells begin at this level: nine samples see nothing between them, and visibility is known finer than that.
+/// Cells begin at this level: nine samples see nothing between them, and visibility is known finer
+/// than that.
 constexpr std::uint32_t FirstLevel = 2;
 
 /// No block needs so many cells; a guard against lobes that are all noise.
@@ -56,12 +57,18 @@ using SampleLanes = std::array<Lanes, SamplesPerCell>;
 
 struct Node {
     Cell cell;
-    std::uint32_t leaf = NoLeaf; ///< the transfer's cluster that holds all of the cell, if one does
-    Lanes full = 0;              ///< receivers that see all of that cluster
-    Lanes partial = 0;           ///< those that see some of it
-    SampleLanes lit{};           ///< of the partial ones, where there is a leaf
-    double error = 0.0;          ///< dw mean (T - T_C)^2, summed over receivers
-    double power = 0.0;          ///< dw mean of the lobe's square, nothing blocked
+    /// The transfer's cluster that holds all of the cell, if one does
+    std::uint32_t leaf = NoLeaf;
+    /// Receivers that see all of that cluster
+    Lanes full = 0;
+    /// Those that see some of it
+    Lanes partial = 0;
+    /// Of the partial ones, where there is a leaf
+    SampleLanes lit{};
+    /// Dw mean (T - T_C)^2, summed over receivers
+    double error = 0.0;
+    /// Dw mean of the lobe's square, nothing blocked
+    double power = 0.0;
     Floats mean{};
 };
 
@@ -87,8 +94,8 @@ private:
     void weigh(Node& node, const std::array<const Floats*, SamplesPerCell>& values) const;
     std::array<Floats, SamplesPerCell> seen_parts(const Node& node) const;
     bool is_too_coarse(const Cell& cell) const;
-    void trace(std::span<const glm::vec3> directions, std::span<const Floats* const> values, Lanes receivers,
-               std::span<Lanes> lit);
+    void trace(std::span<const glm::vec3> directions, std::span<const Floats* const> values,
+               Lanes receivers, std::span<Lanes> lit);
     double budget() const;
 
     const BlockToRefine& block_;
@@ -96,9 +103,12 @@ private:
     const Transfer& transfer_;
     const Blockers& blockers_;
     const RefinementLimits& limits_;
-    std::vector<Node> heap_; ///< largest error first
-    std::vector<Node> done_; ///< single texels
-    double error_ = 0.0;     ///< of all cells
+    /// Largest error first
+    std::vector<Node> heap_;
+    /// Single texels
+    std::vector<Node> done_;
+    /// Of all cells
+    double error_ = 0.0;
     double power_ = 0.0;
     std::uint64_t num_rays_ = 0;
 };
@@ -119,8 +129,9 @@ LobeCut LobeRefiner::run() {
         split(node);
     }
     heap_.insert(heap_.end(), done_.begin(), done_.end());
-    std::sort(heap_.begin(), heap_.end(),
-              [](const Node& a, const Node& b) { return z_curve_key(a.cell) < z_curve_key(b.cell); });
+    std::sort(heap_.begin(), heap_.end(), [](const Node& a, const Node& b) {
+        return z_curve_key(a.cell) < z_curve_key(b.cell);
+    });
     LobeCut cut{.cells = {}, .power = power_, .num_rays = num_rays_};
     for (const Node& node : heap_)
         if (*std::max_element(node.mean.begin(), node.mean.end()) > 0.0f)
@@ -142,8 +153,8 @@ void LobeRefiner::add_first_cells() {
                 Node node{.cell = {face, static_cast<std::uint8_t>(level), x, y}};
                 std::array<glm::vec3, SamplesPerCell> directions;
                 for (std::size_t l = 0; l < SamplesPerCell; ++l)
-                    directions[l] =
-                        cubemap::direction(face, (x + 0.5 * column(l)) / width, (y + 0.5 * row(l)) / width);
+                    directions[l] = cubemap::direction(face, (x + 0.5 * column(l)) / width,
+                                                       (y + 0.5 * row(l)) / width);
                 std::array<Floats, SamplesPerCell> values;
                 evaluate_lobe(block_.surfaces, lobe_, directions, values);
                 std::array<const Floats*, SamplesPerCell> pointers;
@@ -227,12 +238,13 @@ void LobeRefiner::add(Node node, const std::array<const Floats*, SamplesPerCell>
     std::push_heap(heap_.begin(), heap_.end(), smaller_error);
 }
 
-/// Whether a highlight may hide between the samples: the cell is wider than both the highlight and its distance from it.
+/// Whether a highlight may hide between the samples: the cell is wider than both the highlight and
+/// its distance from it.
 bool LobeRefiner::is_too_coarse(const Cell& cell) const {
     if (lobe_ == GlossyLobe::DiffuseGrazing)
         return false;
-    const auto radius =
-        static_cast<float>(1.42 * cell.size()); // half a diagonal in the face's centre, more than anywhere
+    const auto radius = static_cast<float>(
+        1.42 * cell.size()); // half a diagonal in the face's centre, more than anywhere
     const glm::vec3 centre =
         cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(), (cell.y + 0.5) * cell.size());
     for (std::size_t i = 0; i < block_.origins.size(); ++i)
@@ -260,8 +272,8 @@ void LobeRefiner::find_leaf(Node& node) const {
     }
 }
 
-/// The part of the light at each sample that reaches each receiver: 0 or 1 inside a cluster; in a cell of several clusters
-/// the part of the sample's cluster that the receiver sees.
+/// The part of the light at each sample that reaches each receiver: 0 or 1 inside a cluster; in a
+/// cell of several clusters the part of the sample's cluster that the receiver sees.
 std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) const {
     std::array<Floats, SamplesPerCell> parts{};
     for (std::size_t l = 0; l < SamplesPerCell; ++l) {
@@ -276,10 +288,12 @@ std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) con
         const double size = node.cell.size();
         const double s = (node.cell.x + 0.5 + (0.5 - Inside) * (column(l) - 1.0)) * size;
         const double t = (node.cell.y + 0.5 + (0.5 - Inside) * (row(l) - 1.0)) * size;
-        const std::uint32_t leaf = transfer_.quadtree.leaf_at({.face = node.cell.face, .s = s, .t = t});
+        const std::uint32_t leaf =
+            transfer_.quadtree.leaf_at({.face = node.cell.face, .s = s, .t = t});
         for (std::size_t i = 0; i < block_.origins.size(); ++i)
-            parts[l][i] = static_cast<float>(transfer_.counts.count(block_.block * BlockSize + i, leaf)) *
-                          (1.0f / FullCount);
+            parts[l][i] =
+                static_cast<float>(transfer_.counts.count(block_.block * BlockSize + i, leaf)) *
+                (1.0f / FullCount);
     }
     return parts;
 }
@@ -287,8 +301,8 @@ std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) con
 /// The cell's mean, error and power from the lobe at its samples.
 void LobeRefiner::weigh(Node& node, const std::array<const Floats*, SamplesPerCell>& values) const {
     const double size = node.cell.size();
-    const double solid_angle = cubemap::solid_angle(node.cell.x * size, node.cell.y * size,
-                                                    (node.cell.x + 1) * size, (node.cell.y + 1) * size);
+    const double solid_angle = cubemap::solid_angle(
+        node.cell.x * size, node.cell.y * size, (node.cell.x + 1) * size, (node.cell.y + 1) * size);
     std::array<Floats, SamplesPerCell> transfer = seen_parts(node);
     float power = 0.0f;
     for (std::size_t l = 0; l < SamplesPerCell; ++l) {
@@ -321,9 +335,11 @@ void LobeRefiner::weigh(Node& node, const std::array<const Floats*, SamplesPerCe
     node.error = solid_angle * static_cast<double>(error);
 }
 
-/// Sets the bit of each of `receivers` that the light from each direction reaches; where the lobe is zero no ray is cast.
-void LobeRefiner::trace(std::span<const glm::vec3> directions, std::span<const Floats* const> values,
-                        Lanes receivers, std::span<Lanes> lit) {
+/// Sets the bit of each of `receivers` that the light from each direction reaches; where the lobe
+/// is zero no ray is cast.
+void LobeRefiner::trace(std::span<const glm::vec3> directions,
+                        std::span<const Floats* const> values, Lanes receivers,
+                        std::span<Lanes> lit) {
     DirectionPacket packet;
     packet.num_directions = static_cast<std::uint32_t>(directions.size());
     for (std::size_t i = 0; i < PacketSize; ++i)
@@ -336,7 +352,8 @@ void LobeRefiner::trace(std::span<const glm::vec3> directions, std::span<const F
         if (active == 0)
             continue;
         num_rays_ += static_cast<std::uint64_t>(std::popcount(active));
-        const std::uint32_t visible = active & ~blockers_.occluded(block_.origins[receiver], packet, active);
+        const std::uint32_t visible =
+            active & ~blockers_.occluded(block_.origins[receiver], packet, active);
         for (std::uint32_t seen = visible; seen != 0; seen &= seen - 1) {
             Lanes& lanes = lit[static_cast<std::size_t>(std::countr_zero(seen))];
             lanes = static_cast<Lanes>(lanes | 1u << receiver);

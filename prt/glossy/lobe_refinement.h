@@ -18,11 +18,14 @@ namespace relumine::prt {
 /// A block of receivers, all that its lobes share.
 struct BlockToRefine {
     BlockSurfaces surfaces = {};
-    std::span<const glm::vec3> origins = {};   ///< [1..16] where the receivers' rays start
-    std::array<glm::vec3, BlockSize> mirror{}; ///< the eye's direction mirrored at each receiver's normal
-    std::array<float, BlockSize>
-        narrowness{}; ///< angle over which each receiver's highlight changes, radians; 0 where it has none
-    std::size_t block = 0; ///< of the transfer
+    /// [1..16] where the receivers' rays start
+    std::span<const glm::vec3> origins = {};
+    /// The eye's direction mirrored at each receiver's normal
+    std::array<glm::vec3, BlockSize> mirror{};
+    /// Angle over which each receiver's highlight changes, radians; 0 where it has none
+    std::array<float, BlockSize> narrowness{};
+    /// Of the transfer
+    std::size_t block = 0;
 };
 
 /// A cell of a block's cut and the lobe's mean over it, visibility included, for each receiver.
@@ -32,19 +35,25 @@ struct CutCell {
 };
 
 struct LobeCut {
-    std::vector<CutCell> cells; ///< along the Z curve; without those that transfer nothing
-    double power = 0.0;         ///< sum over receivers of the integral of the lobe's square, nothing blocked
+    /// Along the Z curve; without those that transfer nothing
+    std::vector<CutCell> cells;
+    /// Sum over receivers of the integral of the lobe's square, nothing blocked
+    double power = 0.0;
     std::uint64_t num_rays = 0;
 };
 
 struct RefinementLimits {
-    float tolerance = 0.02f;      ///< GlossyOptions::tolerance
-    std::uint32_t max_level = 10; ///< of a single texel
-    double reference_power = 0.0; ///< what the tolerance is a part of; 0: the lobe's own power
+    /// GlossyOptions::tolerance
+    float tolerance = 0.02f;
+    /// Of a single texel
+    std::uint32_t max_level = 10;
+    /// What the tolerance is a part of; 0: the lobe's own power
+    double reference_power = 0.0;
 };
 
 /// Cuts the lobe of a block as precompute_glossy() says.
-[[nodiscard]] LobeCut refine_lobe(const BlockToRefine& block, GlossyLobe lobe, const Transfer& transfer,
-                                  const Blockers& blockers, const RefinementLimits& limits);
+[[nodiscard]] LobeCut refine_lobe(const BlockToRefine& block, GlossyLobe lobe,
+                                  const Transfer& transfer, const Blockers& blockers,
+                                  const RefinementLimits& limits);
 
 } // namespace relumine::prt

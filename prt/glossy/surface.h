@@ -9,18 +9,25 @@ namespace relumine::prt {
 
 /// The shape of a surface's highlight.
 enum class Highlight : std::uint8_t {
-    None,       ///< Lambert
-    Ggx,        ///< metallic-roughness as glTF 2.0 defines it (its Appendix B)
-    BlinnPhong, ///< normalised Blinn-Phong, of OBJ materials
+    /// Lambert
+    None,
+    /// metallic-roughness as glTF 2.0 defines it (its Appendix B)
+    Ggx,
+    /// Normalised Blinn-Phong, of OBJ materials
+    BlinnPhong,
 };
 
-/// Reflection of one receiver. Colours may change after a precompute, the shape of the highlight may not.
+/// Reflection of one receiver. Colours may change after a precompute, the shape of the highlight
+/// may not.
 struct Surface {
-    glm::vec3 albedo{1.0f};                ///< diffuse reflectance, 0..1
-    glm::vec3 specular{0.0f};              ///< GGX: reflectance at normal incidence, F0; Blinn-Phong: Ks
-    Highlight highlight = Highlight::None; ///< what `shape` means
-    float shape =
-        1.0f; ///< GGX: glTF's roughness, 0..1 (alpha is its square); Blinn-Phong: the exponent, >= 0
+    /// Diffuse reflectance, 0..1
+    glm::vec3 albedo{1.0f};
+    /// GGX: reflectance at normal incidence, F0; Blinn-Phong: Ks
+    glm::vec3 specular{0.0f};
+    /// What `shape` means
+    Highlight highlight = Highlight::None;
+    /// GGX: glTF's roughness, 0..1 (alpha is its square); Blinn-Phong: the exponent, >= 0
+    float shape = 1.0f;
 
     bool operator==(const Surface&) const = default;
 };

@@ -15,18 +15,21 @@ Value interpolate(const std::array<Value, 3>& corners, const glm::vec2& barycent
            corners[2] * barycentric.y;
 }
 
-glm::vec2 uv_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+glm::vec2 uv_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                const glm::vec2& barycentric) {
     const mesh::Triangle& t = mesh.triangles[triangle];
     if (!mesh.corner_uvs.empty())
         return interpolate(mesh.corner_uvs[triangle], barycentric);
     if (!mesh.uvs.empty())
-        return interpolate<glm::vec2>({mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]}, barycentric);
+        return interpolate<glm::vec2>({mesh.uvs[t[0]], mesh.uvs[t[1]], mesh.uvs[t[2]]},
+                                      barycentric);
     return glm::vec2(0.0f);
 }
 
 } // namespace
 
-Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const glm::vec2& barycentric) {
+Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
+                   const glm::vec2& barycentric) {
     if (mesh.triangle_materials.empty())
         return {};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
@@ -38,8 +41,8 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const
         base *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
     if (material.times_vertex_color && !mesh.colors.empty()) {
         const mesh::Triangle& t = mesh.triangles[triangle];
-        base *=
-            interpolate<glm::vec3>({mesh.colors[t[0]], mesh.colors[t[1]], mesh.colors[t[2]]}, barycentric);
+        base *= interpolate<glm::vec3>({mesh.colors[t[0]], mesh.colors[t[1]], mesh.colors[t[2]]},
+                                       barycentric);
         base = glm::clamp(base, 0.0f, 1.0f);
     }
     if (material.model == mesh::MaterialModel::Phong) {

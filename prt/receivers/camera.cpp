@@ -15,10 +15,11 @@ CameraAxes axes_of(const Camera& camera, float aspect) {
     if (!(glm::length(to_target) > 0.0f) || !std::isfinite(glm::length(to_target)))
         throw std::invalid_argument("expected a camera target apart from its eye");
     if (!(camera.fov_degrees > 0.0f && camera.fov_degrees < 180.0f))
-        throw std::invalid_argument(
-            fmt::format("expected a field of view between 0 and 180 degrees, got {}", camera.fov_degrees));
+        throw std::invalid_argument(fmt::format(
+            "expected a field of view between 0 and 180 degrees, got {}", camera.fov_degrees));
     const glm::vec3 forward = glm::normalize(to_target);
-    const glm::vec3 world_up = std::abs(forward.y) < 0.9999f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
+    const glm::vec3 world_up =
+        std::abs(forward.y) < 0.9999f ? glm::vec3(0, 1, 0) : glm::vec3(0, 0, -1);
     const glm::vec3 right = glm::normalize(glm::cross(forward, world_up));
     const float half_height = std::tan(0.5f * camera.fov_degrees * RadiansPerDegree);
     return {.right = right * half_height * aspect,
@@ -33,11 +34,13 @@ PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_
         return size >= 1 && size <= MaxPictureSize;
     };
     if (!is_size(width) || !is_size(height))
-        throw std::invalid_argument(fmt::format("expected a picture of 1 to {} pixels a side, got {} x {}",
-                                                MaxPictureSize, width, height));
+        throw std::invalid_argument(
+            fmt::format("expected a picture of 1 to {} pixels a side, got {} x {}", MaxPictureSize,
+                        width, height));
     if (samples_per_axis < 1 || samples_per_axis > MaxSamplesPerAxis)
-        throw std::invalid_argument(fmt::format("expected 1 to {} samples a side of a pixel, got {}",
-                                                MaxSamplesPerAxis, samples_per_axis));
+        throw std::invalid_argument(
+            fmt::format("expected 1 to {} samples a side of a pixel, got {}", MaxSamplesPerAxis,
+                        samples_per_axis));
     axes_ = axes_of(camera, static_cast<float>(width) / static_cast<float>(height));
 }
 
@@ -46,8 +49,10 @@ glm::vec3 PictureRays::direction(std::uint32_t x, std::uint32_t y, std::uint32_t
     const std::uint32_t column = i % n;
     const std::uint32_t row = i / n;
     // Picture coordinates in pixels from the top left corner.
-    const float px = static_cast<float>(x) + (static_cast<float>(column) + 0.5f) / static_cast<float>(n);
-    const float py = static_cast<float>(y) + (static_cast<float>(row) + 0.5f) / static_cast<float>(n);
+    const float px =
+        static_cast<float>(x) + (static_cast<float>(column) + 0.5f) / static_cast<float>(n);
+    const float py =
+        static_cast<float>(y) + (static_cast<float>(row) + 0.5f) / static_cast<float>(n);
     const float across = 2.0f * px / static_cast<float>(width_) - 1.0f;
     const float upwards = 1.0f - 2.0f * py / static_cast<float>(height_);
     return glm::normalize(axes_.forward + across * axes_.right + upwards * axes_.up);

@@ -13,7 +13,8 @@ namespace relumine::prt {
 
 struct MeshPoint {
     std::uint32_t triangle = 0;
-    glm::vec2 barycentric{0.0f}; ///< weights of the triangle's second and third vertex, >= 0, sum <= 1
+    /// Weights of the triangle's second and third vertex, >= 0, sum <= 1
+    glm::vec2 barycentric{0.0f};
     bool operator==(const MeshPoint&) const = default;
 };
 

@@ -1,5 +1,5 @@
-// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", Section 3.1: for image relighting the points
-// are those seen in the pixels.
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights",
+// Section 3.1: for image relighting the points are those seen in the pixels.
 #include "prt/receivers/pixel_receivers.h"
 
 #include <algorithm>
@@ -26,7 +26,8 @@ glm::vec2 inside(const glm::vec2& barycentric) {
 }
 
 /// The normal on the side that the eye is on.
-glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point, const glm::vec3& to_eye) {
+glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                         const glm::vec3& to_eye) {
     const glm::vec3 normal = shading_normal(mesh, point);
     glm::vec3 face = face_normal(mesh, point.triangle);
     if (glm::dot(face, normal) < 0.0f)
@@ -36,7 +37,8 @@ glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
 
 } // namespace
 
-PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays, const PixelView& view) {
+PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays,
+                               const PixelView& view) {
     const PictureRays picture(view.camera, view.width, view.height, view.samples_per_axis);
     PixelReceivers result{.receivers = {},
                           .layout = {.camera = view.camera,
@@ -44,12 +46,13 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
                                      .height = view.height,
                                      .samples_per_axis = view.samples_per_axis}};
     if (result.layout.num_samples() > MaxLayoutPlaces)
-        throw std::invalid_argument(fmt::format("expected at most {} samples in all, got {}", MaxLayoutPlaces,
-                                                result.layout.num_samples()));
+        throw std::invalid_argument(fmt::format("expected at most {} samples in all, got {}",
+                                                MaxLayoutPlaces, result.layout.num_samples()));
 
     std::vector<std::vector<Seen>> rows(view.height);
     tbb::parallel_for(std::uint32_t{0}, view.height, [&](std::uint32_t y) {
-        auto sample = static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
+        auto sample =
+            static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
         for (std::uint32_t x = 0; x < view.width; ++x)
             for (std::uint32_t i = 0; i < picture.samples_per_pixel(); ++i, ++sample)
                 if (const auto hit = rays.closest_hit(view.camera.eye, picture.direction(x, y, i)))
@@ -60,7 +63,8 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
     for (std::size_t y = 0; y < rows.size(); ++y)
         first[y + 1] = first[y] + rows[y].size();
     if (first.back() == 0)
-        throw std::invalid_argument("expected a view that sees the mesh, got one that sees nothing of it");
+        throw std::invalid_argument(
+            "expected a view that sees the mesh, got one that sees nothing of it");
     Receivers& receivers = result.receivers;
     receivers.positions.resize(first.back());
     receivers.normals.resize(first.back());
@@ -73,8 +77,9 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
             const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);
             // A hit at the eye itself has no direction to it; its normal will do.
             const glm::vec3 way = view.camera.eye - position;
-            const glm::vec3 to_eye =
-                glm::length(way) > 0.0f ? glm::normalize(way) : face_normal(mesh, seen.point.triangle);
+            const glm::vec3 to_eye = glm::length(way) > 0.0f
+                                         ? glm::normalize(way)
+                                         : face_normal(mesh, seen.point.triangle);
             receivers.positions[receiver] = position;
             receivers.normals[receiver] = normal_towards(mesh, seen.point, to_eye);
             receivers.to_eye[receiver] = to_eye;

@@ -14,8 +14,9 @@ std::string description(const ReceiverLayout& layout) {
     if (const auto* pixels = std::get_if<PixelLayout>(&layout))
         return pixels->samples_per_axis == 1
                    ? fmt::format("pixels {} x {}", pixels->width, pixels->height)
-                   : fmt::format("pixels {} x {}, {} x {} samples each", pixels->width, pixels->height,
-                                 pixels->samples_per_axis, pixels->samples_per_axis);
+                   : fmt::format("pixels {} x {}, {} x {} samples each", pixels->width,
+                                 pixels->height, pixels->samples_per_axis,
+                                 pixels->samples_per_axis);
     if (const auto* texels = std::get_if<TexelLayout>(&layout))
         return fmt::format("texels {} x {}", texels->width, texels->height);
     return "vertices";

@@ -1,4 +1,5 @@
-// What the receivers of a scene are: vertices of its mesh, pixels of a picture or texels of a lightmap.
+// What the receivers of a scene are: vertices of its mesh, pixels of a picture or texels of a
+// lightmap.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +17,16 @@ struct VertexLayout {
     bool operator==(const VertexLayout&) const = default;
 };
 
-/// Receivers are where the rays of a picture first meet the mesh; the other samples see the background.
+/// Receivers are where the rays of a picture first meet the mesh; the other samples see the
+/// background.
 struct PixelLayout {
     Camera camera = {};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    std::uint32_t samples_per_axis = 1; ///< n x n samples a pixel
-    /// [num_receivers] ascending: the sample of each receiver, counted pixel by pixel, row by row from the top, n^2 in a pixel.
+    /// n x n samples a pixel
+    std::uint32_t samples_per_axis = 1;
+    /// [num_receivers] ascending: the sample of each receiver, counted pixel by pixel, row by row
+    /// from the top, n^2 in a pixel.
     std::vector<std::uint32_t> samples = {};
 
     [[nodiscard]] std::size_t samples_per_pixel() const {
@@ -34,7 +38,8 @@ struct PixelLayout {
     bool operator==(const PixelLayout&) const = default;
 };
 
-/// Receivers are the texels of a lightmap that the mesh's uvs touch. u runs to the right, v upwards: the top row is at v = 1.
+/// Receivers are the texels of a lightmap that the mesh's uvs touch. u runs to the right, v
+/// upwards: the top row is at v = 1.
 struct TexelLayout {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -47,7 +52,8 @@ struct TexelLayout {
 
 using ReceiverLayout = std::variant<VertexLayout, PixelLayout, TexelLayout>;
 
-/// More samples or texels than any picture needs (one of 8192 x 8192 with four samples a pixel); it bounds what is allocated.
+/// More samples or texels than any picture needs (one of 8192 x 8192 with four samples a pixel); it
+/// bounds what is allocated.
 inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 
 /// What one receiver is called: "vertex", "pixel sample" or "texel".

@@ -16,8 +16,8 @@ namespace relumine::prt {
 
 namespace {
 
-/// What a turn of the normal by one radian counts, as a part of the scene's extent. Best for bunny and dragon; half of it or twice as much
-/// costs 2 to 3 % more mixed blocks.
+/// What a turn of the normal by one radian counts, as a part of the scene's extent. Best for bunny
+/// and dragon; half of it or twice as much costs 2 to 3 % more mixed blocks.
 constexpr double NormalWeight = 1.0 / 32.0;
 
 /// Receivers of a large group: what `beam_scene` traces at a time.
@@ -48,10 +48,11 @@ float spread(std::span<const Place> places) {
     return sum * static_cast<float>(places.size());
 }
 
-/// Puts the `middle` lowest along an axis first. Ties by index, so that the halves do not depend on the order before.
+/// Puts the `middle` lowest along an axis first. Ties by index, so that the halves do not depend on
+/// the order before.
 void halve(std::span<Place> places, std::size_t middle, std::size_t axis) {
-    std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle), places.end(),
-                     [axis](const Place& a, const Place& b) {
+    std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle),
+                     places.end(), [axis](const Place& a, const Place& b) {
                          return a.at[axis] < b.at[axis] ||
                                 (a.at[axis] == b.at[axis] && a.receiver < b.receiver);
                      });

@@ -27,7 +27,8 @@ void look_from(Receivers& receivers, const glm::vec3& eye) {
     for (const glm::vec3& position : receivers.positions) {
         const glm::vec3 to_eye = eye - position;
         const float distance = glm::length(to_eye);
-        receivers.to_eye.push_back(distance > 0.0f ? to_eye / distance : glm::vec3(0.0f, 1.0f, 0.0f));
+        receivers.to_eye.push_back(distance > 0.0f ? to_eye / distance
+                                                   : glm::vec3(0.0f, 1.0f, 0.0f));
     }
 }
 

@@ -15,12 +15,16 @@ namespace relumine::prt {
 
 /// Points with normals. A receiver with a zero normal (an unreferenced vertex) receives nothing.
 struct Receivers {
-    std::vector<glm::vec3> positions; ///< [num_receivers]
-    std::vector<glm::vec3> normals;   ///< [num_receivers], unit length or zero
-    std::vector<glm::vec3> to_eye =
-        {}; ///< [num_receivers], unit length; or empty: seen from anywhere, diffuse
-    std::vector<Surface> surfaces = {}; ///< [num_receivers]; or empty: Lambert, albedo 1
-    std::vector<MeshPoint> points = {}; ///< [num_receivers] where on the mesh; or empty: its vertices
+    /// [num_receivers]
+    std::vector<glm::vec3> positions;
+    /// [num_receivers], unit length or zero
+    std::vector<glm::vec3> normals;
+    /// [num_receivers], unit length; or empty: seen from anywhere, diffuse
+    std::vector<glm::vec3> to_eye = {};
+    /// [num_receivers]; or empty: Lambert, albedo 1
+    std::vector<Surface> surfaces = {};
+    /// [num_receivers] where on the mesh; or empty: its vertices
+    std::vector<MeshPoint> points = {};
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
@@ -31,8 +35,9 @@ struct Receivers {
 /// Gives every receiver its direction to an eye; one that is in the eye looks up.
 void look_from(Receivers& receivers, const glm::vec3& eye);
 
-/// The mesh's colours at the receivers [num_receivers]: interpolated at their points, or those of the vertices. Throws
-/// std::invalid_argument for a mesh without colours.
-[[nodiscard]] std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers);
+/// The mesh's colours at the receivers [num_receivers]: interpolated at their points, or those of
+/// the vertices. Throws std::invalid_argument for a mesh without colours.
+[[nodiscard]] std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh,
+                                               const Receivers& receivers);
 
 } // namespace relumine::prt

@@ -19,7 +19,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/// A triangle in the atlas: texel coordinates, x to the right, y down, texel (x, y) is [x, x + 1] x [y, y + 1].
+/// A triangle in the atlas: texel coordinates, x to the right, y down, texel (x, y) is [x, x + 1] x
+/// [y, y + 1].
 class Chart {
 public:
     Chart(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const AtlasSize& size) {
@@ -39,20 +40,23 @@ public:
     }
 
     [[nodiscard]] bool is_flat() const { return is_flat_; }
-    [[nodiscard]] glm::dvec2 low() const { return glm::min(glm::min(corners_[0], corners_[1]), corners_[2]); }
+    [[nodiscard]] glm::dvec2 low() const {
+        return glm::min(glm::min(corners_[0], corners_[1]), corners_[2]);
+    }
     [[nodiscard]] glm::dvec2 high() const {
         return glm::max(glm::max(corners_[0], corners_[1]), corners_[2]);
     }
 
     /// Weights of the three corners at a point.
     [[nodiscard]] glm::dvec3 weights(const glm::dvec2& p) const {
-        return glm::dvec3(cross(corners_[1] - p, corners_[2] - p), cross(corners_[2] - p, corners_[0] - p),
+        return glm::dvec3(cross(corners_[1] - p, corners_[2] - p),
+                          cross(corners_[2] - p, corners_[0] - p),
                           cross(corners_[0] - p, corners_[1] - p)) /
                area_;
     }
 
-    /// Whether the triangle and the inside of a texel, whose box its own box shares an area with, have a point in common: no edge has
-    /// all of the texel on its outer side.
+    /// Whether the triangle and the inside of a texel, whose box its own box shares an area with,
+    /// have a point in common: no edge has all of the texel on its outer side.
     [[nodiscard]] bool touches(double x, double y) const {
         const double side = area_ > 0.0 ? 1.0 : -1.0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -60,8 +64,10 @@ public:
             const glm::dvec2 edge = corners_[(i + 1) % 3] - from;
             // The texel's corner that is farthest on the inner side.
             const glm::dvec2 inward = side * glm::dvec2(-edge.y, edge.x);
-            const glm::dvec2 corner(x + (inward.x > 0.0 ? 1.0 : 0.0), y + (inward.y > 0.0 ? 1.0 : 0.0));
-            // Rounding of uvs in float must not make a neighbour of a chart that ends on a texel's border.
+            const glm::dvec2 corner(x + (inward.x > 0.0 ? 1.0 : 0.0),
+                                    y + (inward.y > 0.0 ? 1.0 : 0.0));
+            // Rounding of uvs in float must not make a neighbour of a chart that ends on a texel's
+            // border.
             if (!(glm::dot(inward, corner - from) > 1e-5 * glm::length(edge)))
                 return false;
         }
@@ -75,7 +81,8 @@ public:
             const glm::dvec2 from = corners_[i];
             const glm::dvec2 edge = corners_[(i + 1) % 3] - from;
             const double squared = glm::dot(edge, edge);
-            const double t = squared > 0.0 ? std::clamp(glm::dot(p - from, edge) / squared, 0.0, 1.0) : 0.0;
+            const double t =
+                squared > 0.0 ? std::clamp(glm::dot(p - from, edge) / squared, 0.0, 1.0) : 0.0;
             const glm::dvec2 way = p - (from + t * edge);
             if (const double distance = glm::dot(way, way); distance < best.second) {
                 best.first = glm::dvec3(0.0);
@@ -89,21 +96,27 @@ public:
 
 private:
     std::array<glm::dvec2, 3> corners_{};
-    double area_ = 0.0; ///< twice, signed
+    /// Twice, signed
+    double area_ = 0.0;
     bool is_flat_ = false;
 };
 
 enum class Owner : std::uint8_t {
     None,
-    Border,      ///< touched, the centre is outside
-    Edge,        ///< the centre is on an edge: also of the triangle behind it
-    Inside,      ///< the centre is inside one triangle
-    Overlapping, ///< inside several
+    /// Touched, the centre is outside
+    Border,
+    /// The centre is on an edge: also of the triangle behind it
+    Edge,
+    /// The centre is inside one triangle
+    Inside,
+    /// Inside several
+    Overlapping,
 };
 
 struct Texel {
     MeshPoint point;
-    float distance = std::numeric_limits<float>::infinity(); ///< squared, of a Border
+    /// Squared, of a Border
+    float distance = std::numeric_limits<float>::infinity();
     Owner owner = Owner::None;
 };
 
@@ -132,16 +145,20 @@ private:
         const glm::dvec2 high = chart.high();
         // Beyond the rounding of uvs in float.
         const glm::dvec2 slack = 1e-5 * end;
-        if (low.x < -slack.x || low.y < -slack.y || high.x > end.x + slack.x || high.y > end.y + slack.y)
+        if (low.x < -slack.x || low.y < -slack.y || high.x > end.x + slack.x ||
+            high.y > end.y + slack.y)
             ++num_outside_;
         const glm::dvec2 first = glm::floor(glm::clamp(low, glm::dvec2(0.0), end));
         const glm::dvec2 last = glm::ceil(glm::clamp(high, glm::dvec2(0.0), end));
-        for (auto y = static_cast<std::uint32_t>(first.y); y < static_cast<std::uint32_t>(last.y); ++y)
-            for (auto x = static_cast<std::uint32_t>(first.x); x < static_cast<std::uint32_t>(last.x); ++x)
+        for (auto y = static_cast<std::uint32_t>(first.y); y < static_cast<std::uint32_t>(last.y);
+             ++y)
+            for (auto x = static_cast<std::uint32_t>(first.x);
+                 x < static_cast<std::uint32_t>(last.x); ++x)
                 claim(texels_[std::size_t{y} * size_.width + x], triangle, chart, x, y);
     }
 
-    static void claim(Texel& texel, std::uint32_t triangle, const Chart& chart, double x, double y) {
+    static void claim(Texel& texel, std::uint32_t triangle, const Chart& chart, double x,
+                      double y) {
         const glm::dvec2 centre(x + 0.5, y + 0.5);
         const glm::dvec3 weights = chart.weights(centre);
         const double least = std::min({weights.x, weights.y, weights.z});
@@ -150,8 +167,9 @@ private:
             constexpr double Strictly = 1e-6;
             const bool strictly = least > Strictly;
             if (texel.owner < Owner::Edge) {
-                texel.point = {.triangle = triangle,
-                               .barycentric = {static_cast<float>(weights.y), static_cast<float>(weights.z)}};
+                texel.point = {
+                    .triangle = triangle,
+                    .barycentric = {static_cast<float>(weights.y), static_cast<float>(weights.z)}};
                 texel.owner = strictly ? Owner::Inside : Owner::Edge;
             } else if (strictly) {
                 texel.owner = texel.owner == Owner::Edge ? Owner::Inside : Owner::Overlapping;
@@ -164,7 +182,8 @@ private:
         if (static_cast<float>(distance) >= texel.distance)
             return;
         texel = {.point = {.triangle = triangle,
-                           .barycentric = {static_cast<float>(nearest.y), static_cast<float>(nearest.z)}},
+                           .barycentric = {static_cast<float>(nearest.y),
+                                           static_cast<float>(nearest.z)}},
                  .distance = static_cast<float>(distance),
                  .owner = Owner::Border};
     }
@@ -182,7 +201,8 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
     const auto is_size = [](std::uint32_t side) {
         return side >= 1 && side <= MaxPictureSize;
     };
-    if (!is_size(size.width) || !is_size(size.height) || std::size_t{size.width} * size.height > MaxTexels)
+    if (!is_size(size.width) || !is_size(size.height) ||
+        std::size_t{size.width} * size.height > MaxTexels)
         throw std::invalid_argument(
             fmt::format("expected a lightmap of 1 to {} texels a side and {} in all, got {} x {}",
                         MaxPictureSize, MaxTexels, size.width, size.height));
@@ -191,9 +211,10 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
 
     Atlas atlas(mesh, size);
     atlas.draw();
-    TexelReceivers result{.receivers = {},
-                          .layout = {.width = size.width, .height = size.height},
-                          .report = {.num_flat = atlas.num_flat(), .num_outside = atlas.num_outside()}};
+    TexelReceivers result{
+        .receivers = {},
+        .layout = {.width = size.width, .height = size.height},
+        .report = {.num_flat = atlas.num_flat(), .num_outside = atlas.num_outside()}};
     const std::vector<Texel>& texels = atlas.texels();
     for (std::size_t i = 0; i < texels.size(); ++i) {
         const Texel& texel = texels[i];
@@ -206,10 +227,11 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
             result.report.first_overlap = static_cast<std::uint32_t>(i);
     }
     if (result.layout.texels.empty())
-        throw std::invalid_argument(fmt::format(
-            "expected uvs that touch a texel of {} x {}, got {} triangles without an area in uv and {} "
-            "that reach beyond 0 to 1, of {}",
-            size.width, size.height, atlas.num_flat(), atlas.num_outside(), mesh.num_triangles()));
+        throw std::invalid_argument(fmt::format("expected uvs that touch a texel of {} x {}, got "
+                                                "{} triangles without an area in uv and {} "
+                                                "that reach beyond 0 to 1, of {}",
+                                                size.width, size.height, atlas.num_flat(),
+                                                atlas.num_outside(), mesh.num_triangles()));
     Receivers& receivers = result.receivers;
     receivers.positions.resize(receivers.points.size());
     receivers.normals.resize(receivers.points.size());

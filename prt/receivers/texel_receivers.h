@@ -21,11 +21,16 @@ inline constexpr std::size_t MaxTexels = std::size_t{1} << 26;
 
 /// How the uvs fit the atlas.
 struct AtlasReport {
-    std::size_t num_overlapping = 0; ///< texels whose centre is inside several triangles
-    std::uint32_t first_overlap = 0; ///< the first of them, row by row from the top
-    std::size_t num_borders = 0;     ///< texels that a chart touches but whose centre it leaves out
-    std::size_t num_flat = 0;        ///< triangles without an area in uv; they get no texels
-    std::size_t num_outside = 0;     ///< triangles that reach beyond 0..1; cut off there
+    /// Texels whose centre is inside several triangles
+    std::size_t num_overlapping = 0;
+    /// The first of them, row by row from the top
+    std::uint32_t first_overlap = 0;
+    /// Texels that a chart touches but whose centre it leaves out
+    std::size_t num_borders = 0;
+    /// Triangles without an area in uv; they get no texels
+    std::size_t num_flat = 0;
+    /// Triangles that reach beyond 0..1; cut off there
+    std::size_t num_outside = 0;
 };
 
 struct TexelReceivers {
@@ -34,10 +39,12 @@ struct TexelReceivers {
     AtlasReport report;
 };
 
-/// One receiver for each texel that shares an area with a triangle in uv: where the texel's centre is inside a triangle, that point of the mesh
-/// (of several triangles the first); else the nearest point of those triangles (of the first, where they are equally near). The normal is the
-/// interpolated vertex normal. O(texels in the boxes around the triangles). Throws std::invalid_argument for a mesh without uvs, a size of 0,
-/// above MaxPictureSize a side or MaxTexels in all, and for uvs that touch no texel.
+/// One receiver for each texel that shares an area with a triangle in uv: where the texel's centre
+/// is inside a triangle, that point of the mesh (of several triangles the first); else the nearest
+/// point of those triangles (of the first, where they are equally near). The normal is the
+/// interpolated vertex normal. O(texels in the boxes around the triangles). Throws
+/// std::invalid_argument for a mesh without uvs, a size of 0, above MaxPictureSize a side or
+/// MaxTexels in all, and for uvs that touch no texel.
 [[nodiscard]] TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& size);
 
 } // namespace relumine::prt

@@ -24,10 +24,12 @@ constexpr const char* RunName = "run.json";
 
 /// In front of a state.
 struct StateHead {
+    /// Bytes of the log that belong to the state
     std::uint64_t mark = 0x6574617453505052; // "RPPState"
-    std::uint64_t log_size = 0;              ///< bytes of the log that belong to the state
+    std::uint64_t log_size = 0;
     std::uint64_t size = 0;
-    std::uint64_t checksum = 0; ///< xxHash64 of the state, seeded with log_size
+    /// xxHash64 of the state, seeded with log_size
+    std::uint64_t checksum = 0;
 };
 
 /// Work of less than this is not worth a file.
@@ -42,13 +44,13 @@ fs::path CheckpointFile::folder_for(const fs::path& output) {
 }
 
 CheckpointFile::CheckpointFile(const fs::path& output, Fingerprint fingerprint, Options options)
-    : folder_(folder_for(output)), fingerprint_(std::move(fingerprint)), options_(std::move(options)),
-      last_(Clock::now()) {
+    : folder_(folder_for(output)), fingerprint_(std::move(fingerprint)),
+      options_(std::move(options)), last_(Clock::now()) {
     if (!options_.resume || !fs::exists(folder_))
         return;
     if (!lock())
-        throw std::runtime_error(
-            fmt::format("{}: expected a checkpoint of a run that ended, got one in use", folder_.string()));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a checkpoint of a run that ended, got one in use", folder_.string()));
     // Killed before its first save was whole.
     if (!fs::exists(file(RunName)))
         return;
@@ -61,9 +63,9 @@ CheckpointFile::~CheckpointFile() = default;
 /// The error to throw; what is there is no checkpoint of this work then.
 std::runtime_error CheckpointFile::damaged(const std::string& name) {
     is_ours_ = false;
-    return std::runtime_error(
-        fmt::format("{}: expected a checkpoint, got damaged data; without --resume the work begins anew",
-                    file(name).string()));
+    return std::runtime_error(fmt::format(
+        "{}: expected a checkpoint, got damaged data; without --resume the work begins anew",
+        file(name).string()));
 }
 
 void CheckpointFile::check_fingerprint() {
@@ -78,9 +80,10 @@ void CheckpointFile::check_fingerprint() {
             continue;
         const std::string got =
             found != json.end() && found->is_string() ? found->get<std::string>() : "none";
-        throw std::runtime_error(fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
-                                             "({} {}); without --resume the work begins anew",
-                                             folder_.string(), name, value, name, got));
+        throw std::runtime_error(
+            fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
+                        "({} {}); without --resume the work begins anew",
+                        folder_.string(), name, value, name, got));
     }
     if (json.size() != fingerprint_.size())
         throw std::runtime_error(
@@ -95,7 +98,8 @@ bool CheckpointFile::lock() {
     return lock_ != nullptr;
 }
 
-/// Removes what a checkpoint consists of and nothing else; what makes it one, the fingerprint, first.
+/// Removes what a checkpoint consists of and nothing else; what makes it one, the fingerprint,
+/// first.
 void CheckpointFile::clear() {
     fs::remove(file(RunName));
     std::vector<fs::path> names;
@@ -167,7 +171,8 @@ bool CheckpointFile::is_due() {
 }
 
 bool CheckpointFile::is_worthwhile() {
-    const std::chrono::duration<double> enough(std::min(WorthwhileSeconds, options_.interval.count()));
+    const std::chrono::duration<double> enough(
+        std::min(WorthwhileSeconds, options_.interval.count()));
     return !gave_up_ && Clock::now() - last_ >= enough;
 }
 

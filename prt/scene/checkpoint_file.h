@@ -23,20 +23,23 @@ class FolderLock;
 
 namespace relumine::prt {
 
-/// The folder OUT.prt.checkpoint: `run.json`, the fingerprint; for each part `PART.log`, its records, and `PART.state`, which says how much
-/// of the log belongs to it. A log only grows and a state is replaced whole, so a crash at any moment leaves the last checkpoint or
-/// the one before. It appears with the first save. One process at a time uses it.
+/// The folder OUT.prt.checkpoint: `run.json`, the fingerprint; for each part `PART.log`, its
+/// records, and `PART.state`, which says how much of the log belongs to it. A log only grows and a
+/// state is replaced whole, so a crash at any moment leaves the last checkpoint or the one before.
+/// It appears with the first save. One process at a time uses it.
 class CheckpointFile final : public Checkpoint {
 public:
     struct Options {
-        bool resume = false; ///< take up what the folder holds; else it is cleared at the first save
-        std::chrono::duration<double> interval{20.0}; ///< between two saves
-        std::function<void(const std::string&)> on_problem =
-            {}; ///< a save failed, or another process is at work
+        /// Take up what the folder holds; else it is cleared at the first save
+        bool resume = false;
+        /// Between two saves
+        std::chrono::duration<double> interval{20.0};
+        /// A save failed, or another process is at work
+        std::function<void(const std::string&)> on_problem = {};
     };
 
-    /// Nothing is written yet. With `resume`: throws std::runtime_error "FOLDER: expected X, got Y" when the checkpoint there belongs to
-    /// other work, is damaged or in use. There may be none.
+    /// Nothing is written yet. With `resume`: throws std::runtime_error "FOLDER: expected X, got Y"
+    /// when the checkpoint there belongs to other work, is damaged or in use. There may be none.
     CheckpointFile(const std::filesystem::path& output, Fingerprint fingerprint, Options options);
     ~CheckpointFile() override;
 
@@ -63,15 +66,19 @@ private:
     void clear();
     void claim();
     files::AppendLog& log(const std::string& part);
-    [[nodiscard]] std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+    [[nodiscard]] std::filesystem::path file(const std::string& name) const {
+        return folder_ / name;
+    }
 
     std::filesystem::path folder_;
     Fingerprint fingerprint_;
     Options options_;
     std::unique_ptr<files::FolderLock> lock_;
     std::map<std::string, std::unique_ptr<files::AppendLog>> logs_;
-    bool is_ours_ = false; ///< the folder holds this work
-    bool gave_up_ = false; ///< another process has the folder
+    /// The folder holds this work
+    bool is_ours_ = false;
+    /// Another process has the folder
+    bool gave_up_ = false;
     Clock::time_point last_;
 };
 

@@ -11,7 +11,8 @@ namespace relumine::prt {
 
 namespace {
 
-/// Of the algorithm and of what a checkpoint holds; to be raised when a change of either makes old checkpoints worthless.
+/// Of the algorithm and of what a checkpoint holds; to be raised when a change of either makes old
+/// checkpoints worthless.
 constexpr int Version = 1;
 
 class Hash {
@@ -49,14 +50,16 @@ Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& rec
         {"number of receivers", fmt::format("{}", receivers.size())},
         options.epsilon
             ? std::pair<std::string, std::string>("epsilon", fmt::format("{}", *options.epsilon))
-            : std::pair<std::string, std::string>("tolerance", fmt::format("{}", options.tolerance)),
+            : std::pair<std::string, std::string>("tolerance",
+                                                  fmt::format("{}", options.tolerance)),
         {"min depth", fmt::format("{}", options.min_level)},
         {"face resolution", fmt::format("{}", options.face_resolution)},
         {"bias", fmt::format("{}", options.bias)}};
     if (glossy_tolerance) {
         result.emplace_back("glossy tolerance", fmt::format("{}", *glossy_tolerance));
-        result.emplace_back("surfaces or eye",
-                            Hash().add(numbers_of(receivers.surfaces)).add(receivers.to_eye).text());
+        result.emplace_back(
+            "surfaces or eye",
+            Hash().add(numbers_of(receivers.surfaces)).add(receivers.to_eye).text());
     }
     return result;
 }

@@ -11,12 +11,13 @@
 
 namespace relumine::prt {
 
-/// Names and values in a fixed order; equal for equal results. Neither the engine nor the threads nor the memory are in it.
+/// Names and values in a fixed order; equal for equal results. Neither the engine nor the threads
+/// nor the memory are in it.
 using Fingerprint = std::vector<std::pair<std::string, std::string>>;
 
 /// `glossy_tolerance` only where highlights follow.
-[[nodiscard]] Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& receivers,
-                                      const PrecomputeOptions& options,
+[[nodiscard]] Fingerprint fingerprint(const mesh::TriangleMesh& blockers,
+                                      const Receivers& receivers, const PrecomputeOptions& options,
                                       std::optional<float> glossy_tolerance);
 
 } // namespace relumine::prt

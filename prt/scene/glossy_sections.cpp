@@ -11,13 +11,15 @@ namespace relumine::prt {
 namespace {
 
 // By GlossyLobe.
-constexpr std::array<const char*, NumGlossyLobes> Names = {"g_specular", "g_spec_grazing", "g_diff_grazing"};
+constexpr std::array<const char*, NumGlossyLobes> Names = {"g_specular", "g_spec_grazing",
+                                                           "g_diff_grazing"};
 
 std::string name_of(std::size_t lobe, char part) {
     return fmt::format("{}_{}", Names[lobe], part);
 }
 
-/// All first bytes, then all second ones: numbers that resemble each other compress four times better so.
+/// All first bytes, then all second ones: numbers that resemble each other compress four times
+/// better so.
 template<typename Number>
 std::vector<std::byte> byte_planes(const std::vector<Number>& numbers) {
     const std::vector<std::byte> bytes = bytes_of(numbers);
@@ -87,8 +89,8 @@ LobeCuts read_lobe(const SectionReader& reader, std::size_t lobe, std::size_t nu
         reader.fail(scales, "one number >= 0 for each cell");
     cuts.values = reader.elements<std::uint8_t>(name_of(lobe, 'v'), cuts.num_entries() * BlockSize);
     for (std::size_t block = 0; block < num_blocks; ++block)
-        if (!is_a_cut(
-                std::span(cuts.cells).subspan(cuts.begin[block], cuts.begin[block + 1] - cuts.begin[block])))
+        if (!is_a_cut(std::span(cuts.cells)
+                          .subspan(cuts.begin[block], cuts.begin[block + 1] - cuts.begin[block])))
             reader.fail(cells, "cells in order that do not overlap");
     return cuts;
 }

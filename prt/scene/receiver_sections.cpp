@@ -59,8 +59,9 @@ const std::vector<std::uint32_t>& places(const TexelLayout& layout) {
 template<typename Layout>
 void check(const Layout& layout, const Receivers& receivers) {
     const std::vector<std::uint32_t>& own = places(layout);
-    const bool ascending = std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end() &&
-                           (own.empty() || own.back() < num_places(layout));
+    const bool ascending =
+        std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end() &&
+        (own.empty() || own.back() < num_places(layout));
     if (num_places(layout) > MaxLayoutPlaces || own.size() != receivers.size() || !ascending)
         throw std::invalid_argument(
             fmt::format("expected one place in the layout for each of {} receivers, got {} in {}",
@@ -110,8 +111,8 @@ bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-std::vector<glm::vec3> finite_vectors(const SectionReader& reader, const std::string& name, std::size_t count,
-                                      bool optional = false) {
+std::vector<glm::vec3> finite_vectors(const SectionReader& reader, const std::string& name,
+                                      std::size_t count, bool optional = false) {
     std::vector<glm::vec3> vectors = reader.elements<glm::vec3>(name, count, optional);
     if (!std::all_of(vectors.begin(), vectors.end(), is_finite))
         reader.fail(name, "finite numbers");
@@ -128,7 +129,8 @@ std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t coun
     if (std::any_of(highlight.begin(), highlight.end(),
                     [](auto h) { return h > static_cast<std::uint8_t>(Highlight::BlinnPhong); }))
         reader.fail("r_highlight", "highlights of known shapes");
-    if (!std::all_of(shape.begin(), shape.end(), [](float s) { return std::isfinite(s) && s >= 0.0f; }))
+    if (!std::all_of(shape.begin(), shape.end(),
+                     [](float s) { return std::isfinite(s) && s >= 0.0f; }))
         reader.fail("r_shape", "numbers >= 0");
     std::vector<Surface> surfaces(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -143,7 +145,8 @@ std::vector<MeshPoint> read_points(const SectionReader& reader, std::size_t coun
                                    const mesh::TriangleMesh& mesh) {
     const auto triangles = reader.elements<std::uint32_t>("r_triangles", count);
     const auto barycentric = reader.elements<glm::vec2>("r_barycentric", count);
-    if (std::any_of(triangles.begin(), triangles.end(), [&](auto t) { return t >= mesh.num_triangles(); }))
+    if (std::any_of(triangles.begin(), triangles.end(),
+                    [&](auto t) { return t >= mesh.num_triangles(); }))
         reader.fail("r_triangles", "indices of triangles");
     // Rounding of weights that end at an edge.
     constexpr float Slack = 1e-4f;
@@ -167,7 +170,8 @@ std::uint32_t size_of(const nlohmann::json& json) {
 
 ReceiverLayout layout_of(const nlohmann::json& json) {
     if (json.at("kind") == "texels") {
-        TexelLayout layout{.width = size_of(json.at("width")), .height = size_of(json.at("height"))};
+        TexelLayout layout{.width = size_of(json.at("width")),
+                           .height = size_of(json.at("height"))};
         if (layout.num_texels() > MaxLayoutPlaces)
             throw std::out_of_range("expected fewer texels");
         return layout;
@@ -181,7 +185,8 @@ ReceiverLayout layout_of(const nlohmann::json& json) {
                        .height = size_of(json.at("height")),
                        .samples_per_axis = natural(json.at("samples_per_axis"))};
     // Refuses a camera without a direction and sizes out of bounds.
-    static_cast<void>(PictureRays(layout.camera, layout.width, layout.height, layout.samples_per_axis));
+    static_cast<void>(
+        PictureRays(layout.camera, layout.width, layout.height, layout.samples_per_axis));
     if (layout.num_samples() > MaxLayoutPlaces)
         throw std::out_of_range("expected fewer samples");
     return layout;
@@ -199,7 +204,8 @@ std::vector<std::uint32_t> read_places(const SectionReader& reader, const Layout
 
 } // namespace
 
-void add_receiver_sections(Sections& sections, const Receivers& receivers, const ReceiverLayout& layout) {
+void add_receiver_sections(Sections& sections, const Receivers& receivers,
+                           const ReceiverLayout& layout) {
     const auto fits = [&](std::size_t size) {
         return size == 0 || size == receivers.size();
     };
@@ -241,8 +247,8 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
         receivers = vertex_receivers(mesh);
     } else {
         const auto* pixels = std::get_if<PixelLayout>(&layout);
-        const std::size_t count =
-            pixels != nullptr ? pixels->samples.size() : std::get<TexelLayout>(layout).texels.size();
+        const std::size_t count = pixels != nullptr ? pixels->samples.size()
+                                                    : std::get<TexelLayout>(layout).texels.size();
         receivers.positions = finite_vectors(reader, "r_positions", count);
         receivers.normals = finite_vectors(reader, "r_normals", count);
         receivers.points = read_points(reader, count, mesh);

@@ -9,12 +9,15 @@
 
 namespace relumine::prt {
 
-/// Adds what the mesh alone does not tell: nothing for plain vertices; surfaces and directions to the eye where there are any; for pixels
-/// and texels also the layout, positions, normals and points.
-/// Throws std::invalid_argument for arrays of different lengths or a layout that does not fit them.
-void add_receiver_sections(Sections& sections, const Receivers& receivers, const ReceiverLayout& layout);
+/// Adds what the mesh alone does not tell: nothing for plain vertices; surfaces and directions to
+/// the eye where there are any; for pixels and texels also the layout, positions, normals and
+/// points. Throws std::invalid_argument for arrays of different lengths or a layout that does not
+/// fit them.
+void add_receiver_sections(Sections& sections, const Receivers& receivers,
+                           const ReceiverLayout& layout);
 
-/// The layout alone, its places checked to be as many as the receivers. Without its sections: vertices. Fails as SectionReader does.
+/// The layout alone, its places checked to be as many as the receivers. Without its sections:
+/// vertices. Fails as SectionReader does.
 [[nodiscard]] ReceiverLayout read_layout(const SectionReader& reader);
 
 /// The receivers of a layout, all checked: for vertices the mesh's.

@@ -33,7 +33,8 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& expected, const std::string& got) const {
-        throw std::runtime_error(fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
+        throw std::runtime_error(
+            fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
     }
     const std::filesystem::path& path_;
 };
@@ -43,7 +44,8 @@ bool is_unit_or_zero(const glm::vec3& v) {
     return v == glm::vec3(0.0f) || std::abs(glm::length(v) - 1.0f) <= Slack;
 }
 
-void check_settings(const Check& check, const SceneSettings& settings, const mesh::TriangleMesh& mesh) {
+void check_settings(const Check& check, const SceneSettings& settings,
+                    const mesh::TriangleMesh& mesh) {
     const auto number = [](float value) {
         return fmt::format("{}", value);
     };
@@ -54,15 +56,18 @@ void check_settings(const Check& check, const SceneSettings& settings, const mes
     check.that(settings.face_resolution >= 1 && settings.face_resolution <= 1u << MaxLevel,
                fmt::format("a face resolution from 1 to {}", 1u << MaxLevel),
                fmt::format("{}", settings.face_resolution));
-    check.that(settings.min_level <= MaxLevel, fmt::format("a minimum depth from 0 to {}", MaxLevel),
+    check.that(settings.min_level <= MaxLevel,
+               fmt::format("a minimum depth from 0 to {}", MaxLevel),
                fmt::format("{}", settings.min_level));
     const std::size_t floor = std::size_t{settings.floor_vertices} * settings.floor_vertices;
-    check.that(floor <= mesh.num_vertices(), fmt::format("a floor among {} vertices", mesh.num_vertices()),
+    check.that(floor <= mesh.num_vertices(),
+               fmt::format("a floor among {} vertices", mesh.num_vertices()),
                fmt::format("one of {}", floor));
 }
 
 void check_tree(const Check& check, const Scene& scene) {
-    const auto deepest = static_cast<std::uint32_t>(std::bit_width(scene.settings.face_resolution - 1));
+    const auto deepest =
+        static_cast<std::uint32_t>(std::bit_width(scene.settings.face_resolution - 1));
     const std::uint32_t first = std::min(scene.settings.min_level, deepest);
     for (const Cell& cell : scene.transfer.quadtree.leaves())
         check.that(cell.level >= first && cell.level <= deepest,

@@ -99,7 +99,8 @@ private:
             settings.bias = real(json.at("bias"));
             settings.floor_vertices = natural(json.at("floor_vertices"));
             settings.source = json.at("source");
-            settings.source_hash = std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
+            settings.source_hash =
+                std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
             if (json.contains("epsilon"))
                 settings.epsilon = real(json.at("epsilon"));
             if (json.contains("glossy_tolerance"))
@@ -109,8 +110,9 @@ private:
                 const auto at = [&](std::size_t i) {
                     return real(view.at(i));
                 };
-                settings.view = Camera{
-                    .eye = {at(0), at(1), at(2)}, .target = {at(3), at(4), at(5)}, .fov_degrees = at(6)};
+                settings.view = Camera{.eye = {at(0), at(1), at(2)},
+                                       .target = {at(3), at(4), at(5)},
+                                       .fov_degrees = at(6)};
             }
         } catch (const std::exception&) {
             reader_.fail("settings", "JSON with the settings");
@@ -174,17 +176,20 @@ private:
 
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
     const bool on_vertices = std::holds_alternative<VertexLayout>(scene.layout);
-    if (on_vertices && scene.receivers.size() != 0 && scene.receivers.size() != scene.mesh.num_vertices())
-        throw std::invalid_argument(fmt::format("{}: expected one receiver per vertex, got {} for {}",
-                                                path.string(), scene.receivers.size(),
-                                                scene.mesh.num_vertices()));
-    const std::size_t num_receivers = on_vertices ? scene.mesh.num_vertices() : scene.receivers.size();
+    if (on_vertices && scene.receivers.size() != 0 &&
+        scene.receivers.size() != scene.mesh.num_vertices())
+        throw std::invalid_argument(
+            fmt::format("{}: expected one receiver per vertex, got {} for {}", path.string(),
+                        scene.receivers.size(), scene.mesh.num_vertices()));
+    const std::size_t num_receivers =
+        on_vertices ? scene.mesh.num_vertices() : scene.receivers.size();
     if (scene.transfer.num_receivers() != num_receivers ||
         scene.mesh.normals.size() != scene.mesh.num_vertices())
-        throw std::invalid_argument(fmt::format(
-            "{}: expected the transfer of {} receivers and a normal for each of {} vertices, got {} and {}",
-            path.string(), num_receivers, scene.mesh.num_vertices(), scene.transfer.num_receivers(),
-            scene.mesh.normals.size()));
+        throw std::invalid_argument(
+            fmt::format("{}: expected the transfer of {} receivers and a normal for each of {} "
+                        "vertices, got {} and {}",
+                        path.string(), num_receivers, scene.mesh.num_vertices(),
+                        scene.transfer.num_receivers(), scene.mesh.normals.size()));
     const VisibleCounts& counts = scene.transfer.counts;
     Sections sections;
     sections["settings"] = settings_json(scene.settings);

@@ -16,33 +16,45 @@ namespace relumine::prt {
 
 /// How a transfer was made; kept in the file, so that a result can be traced back to its source.
 struct SceneSettings {
-    float tolerance = 0.0f;            ///< RMS form, 1/sr; see PrecomputeOptions
-    std::optional<float> epsilon = {}; ///< set where the paper's form was used instead
+    /// RMS form, 1/sr; see PrecomputeOptions
+    float tolerance = 0.0f;
+    /// Set where the paper's form was used instead
+    std::optional<float> epsilon = {};
     std::uint32_t min_level = 0;
     std::uint32_t face_resolution = 0;
-    float bias = 0.0f;                ///< in the mesh's unit
-    std::uint32_t floor_vertices = 0; ///< n of an n x n floor that was added, 0 for none
-    std::string source = {};          ///< file name of the mesh, without folders
-    std::uint64_t source_hash = 0;    ///< xxHash64 of the mesh file's bytes, 0 when it came from no file
-    std::optional<float> glossy_tolerance = {}; ///< GlossyOptions::tolerance, where there is a glossy part
-    std::optional<Camera> view = {};            ///< the eye that highlights of vertices are for
+    /// In the mesh's unit
+    float bias = 0.0f;
+    /// n of an n x n floor that was added, 0 for none
+    std::uint32_t floor_vertices = 0;
+    /// File name of the mesh, without folders
+    std::string source = {};
+    /// xxHash64 of the mesh file's bytes, 0 when it came from no file
+    std::uint64_t source_hash = 0;
+    /// GlossyOptions::tolerance, where there is a glossy part
+    std::optional<float> glossy_tolerance = {};
+    /// The eye that highlights of vertices are for
+    std::optional<Camera> view = {};
 };
 
 /// All that relighting and drawing needs.
 struct Scene {
     mesh::TriangleMesh mesh;
-    Transfer transfer; ///< of the receivers
+    /// Of the receivers
+    Transfer transfer;
     SceneSettings settings;
-    Receivers receivers = {};   ///< what is lit; load_scene() fills it in for vertices, too
-    ReceiverLayout layout = {}; ///< what they are
+    /// What is lit; load_scene() fills it in for vertices, too
+    Receivers receivers = {};
+    /// What they are
+    ReceiverLayout layout = {};
 };
 
-/// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws std::runtime_error naming the path,
-/// std::invalid_argument when mesh, receivers, layout and transfer do not belong together. Positions and normals of receivers on vertices are the mesh's.
+/// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws
+/// std::runtime_error naming the path, std::invalid_argument when mesh, receivers, layout and
+/// transfer do not belong together. Positions and normals of receivers on vertices are the mesh's.
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
-/// Reads a scene and checks all of it: sizes against the file before anything is allocated, checksums, indices, the tree, the counts.
-/// Throws std::runtime_error "path: expected X, got Y".
+/// Reads a scene and checks all of it: sizes against the file before anything is allocated,
+/// checksums, indices, the tree, the counts. Throws std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
 /// The same of a file's sections as read_sections() gives them; `path` is for messages.

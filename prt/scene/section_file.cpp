@@ -29,7 +29,8 @@ constexpr std::uint32_t Version = 2;
 constexpr std::uint32_t ByteOrderMark = 0x01020304;
 constexpr std::uint32_t MaxSections = 64;
 
-// Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second; level 12 gains 6 % more in five.
+// Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second; level 12
+// gains 6 % more in five.
 constexpr int CompressionLevel = 6;
 
 struct Header {
@@ -39,16 +40,22 @@ struct Header {
     std::uint64_t file_size;
     std::uint32_t num_sections;
     std::uint32_t reserved;
-    std::uint64_t checksum; ///< of the header up to here and the section table
+    /// Of the header up to here and the section table
+    std::uint64_t checksum;
 };
 static_assert(sizeof(Header) == 40);
 
 struct SectionEntry {
-    std::array<char, 16> name; ///< padded with zeros
-    std::uint64_t offset;      ///< from the start of the file
-    std::uint64_t stored_size; ///< compressed
-    std::uint64_t size;        ///< uncompressed
-    std::uint64_t checksum;    ///< of the stored bytes
+    /// Padded with zeros
+    std::array<char, 16> name;
+    /// From the start of the file
+    std::uint64_t offset;
+    /// compressed
+    std::uint64_t stored_size;
+    /// uncompressed
+    std::uint64_t size;
+    /// Of the stored bytes
+    std::uint64_t checksum;
 };
 static_assert(sizeof(SectionEntry) == 48);
 
@@ -79,12 +86,14 @@ public:
 
 private:
     [[noreturn]] void fail(std::string_view expected, std::string_view got) const {
-        throw std::runtime_error(fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
+        throw std::runtime_error(
+            fmt::format("{}: expected {}, got {}", path_.string(), expected, got));
     }
 
     Header checked_header() const {
         Header header;
-        if (bytes_.size() < sizeof header || std::memcmp(bytes_.data(), Magic.data(), Magic.size()) != 0)
+        if (bytes_.size() < sizeof header ||
+            std::memcmp(bytes_.data(), Magic.data(), Magic.size()) != 0)
             fail("a .prt scene", "another kind of file");
         std::memcpy(&header, bytes_.data(), sizeof header);
         if (header.byte_order_mark == std::uint32_t{0x04030201})
@@ -95,7 +104,8 @@ private:
             fail(fmt::format(".prt version {}", Version),
                  fmt::format("version {}, made by a newer relumine", header.version));
         if (header.version != Version)
-            fail(fmt::format(".prt version {}", Version), fmt::format("version {}", header.version));
+            fail(fmt::format(".prt version {}", Version),
+                 fmt::format("version {}", header.version));
         if (header.file_size != bytes_.size())
             fail(fmt::format("{} bytes", header.file_size),
                  fmt::format("{} (truncated or damaged)", bytes_.size()));
@@ -108,7 +118,8 @@ private:
     std::vector<SectionEntry> checked_table(const Header& header) const {
         std::vector<SectionEntry> table(header.num_sections);
         if (!table.empty())
-            std::memcpy(table.data(), bytes_.data() + sizeof header, table.size() * sizeof(SectionEntry));
+            std::memcpy(table.data(), bytes_.data() + sizeof header,
+                        table.size() * sizeof(SectionEntry));
         if (table_checksum(header, table) != header.checksum)
             fail("a matching checksum", "a damaged section table");
         std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
@@ -120,7 +131,8 @@ private:
             if (!inside || entry.size / files::MaxCompressionRatio > entry.stored_size)
                 fail("sections inside the file", "a damaged section table");
             const std::string own_name = name(entry); // goes into messages
-            if (!std::all_of(own_name.begin(), own_name.end(), [](char c) { return c > ' ' && c <= '~'; }))
+            if (!std::all_of(own_name.begin(), own_name.end(),
+                             [](char c) { return c > ' ' && c <= '~'; }))
                 fail("names of sections", "a damaged section table");
         }
         if (end != bytes_.size())
@@ -143,13 +155,15 @@ private:
         if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
             return content_piecewise(entry, Cheap);
         std::vector<std::byte> result(entry.size);
-        const std::size_t size = ZSTD_decompress(result.data(), result.size(), stored, entry.stored_size);
+        const std::size_t size =
+            ZSTD_decompress(result.data(), result.size(), stored, entry.stored_size);
         if (ZSTD_isError(size) != 0 || size != entry.size)
             fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
         return result;
     }
 
-    std::vector<std::byte> content_piecewise(const SectionEntry& entry, std::uint64_t first_size) const {
+    std::vector<std::byte> content_piecewise(const SectionEntry& entry,
+                                             std::uint64_t first_size) const {
         const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
                                                                               ZSTD_freeDCtx);
         if (!context)
@@ -215,7 +229,8 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
     std::vector<std::byte> bytes(header.file_size);
     std::memcpy(bytes.data(), &header, sizeof header);
     if (!table.empty())
-        std::memcpy(bytes.data() + sizeof header, table.data(), table.size() * sizeof(SectionEntry));
+        std::memcpy(bytes.data() + sizeof header, table.data(),
+                    table.size() * sizeof(SectionEntry));
     for (std::size_t i = 0; i < table.size(); ++i)
         std::copy(stored[i].begin(), stored[i].end(),
                   bytes.begin() + static_cast<std::ptrdiff_t>(table[i].offset));

@@ -13,14 +13,15 @@ std::vector<std::byte> packed(const std::vector<bool>& flags) {
 }
 
 void SectionReader::fail(std::string_view section, std::string_view expected) const {
-    throw std::runtime_error(
-        fmt::format("{}: expected {}, got a damaged section '{}'", path_.string(), expected, section));
+    throw std::runtime_error(fmt::format("{}: expected {}, got a damaged section '{}'",
+                                         path_.string(), expected, section));
 }
 
 const std::vector<std::byte>& SectionReader::bytes(const std::string& name) const {
     const auto found = sections_.find(name);
     if (found == sections_.end())
-        throw std::runtime_error(fmt::format("{}: expected a section '{}', got none", path_.string(), name));
+        throw std::runtime_error(
+            fmt::format("{}: expected a section '{}', got none", path_.string(), name));
     return found->second;
 }
 
@@ -37,7 +38,8 @@ std::vector<bool> SectionReader::bits(const std::string& name, std::size_t count
 }
 
 std::uint32_t natural(const nlohmann::json& json) {
-    if (!json.is_number_unsigned() || json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+    if (!json.is_number_unsigned() ||
+        json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
         throw std::out_of_range("expected an integer of 32 bits");
     return json.get<std::uint32_t>();
 }

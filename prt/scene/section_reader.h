@@ -75,7 +75,8 @@ private:
     Sections sections_;
 };
 
-/// Numbers of a JSON object, which the JSON library would cast without a look at the range. They throw std::out_of_range.
+/// Numbers of a JSON object, which the JSON library would cast without a look at the range. They
+/// throw std::out_of_range.
 [[nodiscard]] std::uint32_t natural(const nlohmann::json& json);
 [[nodiscard]] float real(const nlohmann::json& json);
 

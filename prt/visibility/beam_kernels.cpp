@@ -22,26 +22,31 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t Width = TriangleTree::Width;
 
-/// Edge function k of a ray with direction w: ((corner k - o) x edge k) . w, up to sign the volume that ray and edge span. The ray hits the
-/// triangle when all three have the sign of normal . (corner - o), which says from which side the receiver looks.
+/// Edge function k of a ray with direction w: ((corner k - o) x edge k) . w, up to sign the volume
+/// that ray and edge span. The ray hits the triangle when all three have the sign of normal .
+/// (corner - o), which says from which side the receiver looks.
 ///
-/// Error bounds, u = 2^-24, D = largest |corner - o|, L = longest edge, by components. Corners and origins are exact. D and L are off by u
-/// of themselves; a component of the cross product is at most 2 L D and off by 8 u L D; |w| has components of at most 2, off by u;
-/// the sum of three products adds 9 roundings of at most 10 L D. Together less than 120 u L D; the same bound holds for
-/// the errors of Embree's edge functions near a triangle, so that beyond twice that both must agree. Far beside it Embree's may be off by
-/// more, as it rounds corner - o first; RayScene drops such hits.
-/// The normal is at most 2 L^2 and off by 8 u L^2, its product with D off by less than 40 u L^2 D.
+/// Error bounds, u = 2^-24, D = largest |corner - o|, L = longest edge, by components. Corners and
+/// origins are exact. D and L are off by u of themselves; a component of the cross product is at
+/// most 2 L D and off by 8 u L D; |w| has components of at most 2, off by u; the sum of three
+/// products adds 9 roundings of at most 10 L D. Together less than 120 u L D; the same bound holds
+/// for the errors of Embree's edge functions near a triangle, so that beyond twice that both must
+/// agree. Far beside it Embree's may be off by more, as it rounds corner - o first; RayScene drops
+/// such hits. The normal is at most 2 L^2 and off by 8 u L^2, its product with D off by less than
+/// 40 u L^2 D.
 constexpr float EdgeTolerance = 240.0f * Rounding;
 constexpr float SideTolerance = 80.0f * Rounding;
 constexpr float Smallest = 1e-35f; // products below are lost
 
-/// From so many rays for each triangle of a leaf on, rays side by side are faster than triangles side by side. Measured.
+/// From so many rays for each triangle of a leaf on, rays side by side are faster than triangles
+/// side by side. Measured.
 constexpr std::uint32_t RaysPerTriangle = 6;
 
 /// Tests the rays of one receiver against a leaf's triangles: all triangles at a time, ray by ray.
 template<class D>
 void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const PatchPlane& patch,
-               const glm::vec3& origin, std::uint64_t touching, std::uint64_t& rays, std::uint64_t& doubts) {
+               const glm::vec3& origin, std::uint64_t touching, std::uint64_t& rays,
+               std::uint64_t& doubts) {
     using Vector = hn::Vec<D>;
     const auto axis_m = static_cast<std::size_t>(patch.axis);
     const std::size_t axes[3] = {axis_m, (axis_m + 1) % 3, (axis_m + 2) % 3};
@@ -64,9 +69,10 @@ void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const Patc
     const auto cross = [&](const Vector(&p)[3], const Vector(&q)[3], std::size_t a) {
         return hn::MulSub(p[(a + 1) % 3], q[(a + 2) % 3], hn::Mul(p[(a + 2) % 3], q[(a + 1) % 3]));
     };
-    const Vector side = hn::MulAdd(cross(edge[0], edge[1], 0), to_corner[0][0],
-                                   hn::MulAdd(cross(edge[0], edge[1], 1), to_corner[0][1],
-                                              hn::Mul(cross(edge[0], edge[1], 2), to_corner[0][2])));
+    const Vector side =
+        hn::MulAdd(cross(edge[0], edge[1], 0), to_corner[0][0],
+                   hn::MulAdd(cross(edge[0], edge[1], 1), to_corner[0][1],
+                              hn::Mul(cross(edge[0], edge[1], 2), to_corner[0][2])));
     const Vector side_tolerance =
         hn::MulAdd(hn::Mul(product, longest), hn::Set(d, SideTolerance), hn::Set(d, Smallest));
     const auto edge_on = hn::Not(hn::Gt(hn::Abs(side), side_tolerance));
@@ -92,7 +98,8 @@ void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const Patc
         const Vector least = hn::Min(hn::Min(e0, e1), e2);
         auto hit = hn::Gt(least, certain);
         auto maybe = hn::Ge(least, possible);
-        if (any_edge_on) { // seen from near its plane, a triangle is missed for certain only where its line is from both sides
+        if (any_edge_on) { // seen from near its plane, a triangle is missed for certain only where
+                           // its line is from both sides
             const Vector most = hn::Max(hn::Max(e0, e1), e2);
             hit = hn::AndNot(edge_on, hit);
             maybe = hn::Or(maybe, hn::And(edge_on, hn::Le(most, certain)));
@@ -150,17 +157,19 @@ void test_triangle(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const 
     doubts |= maybes;
 }
 
-/// Columns or rows of the patch that 16 boxes cover as one receiver sees them, along one axis. Boxes that begin behind the receiver or too
-/// close for a division cover all.
+/// Columns or rows of the patch that 16 boxes cover as one receiver sees them, along one axis.
+/// Boxes that begin behind the receiver or too close for a division cover all.
 template<class D>
 struct Cover {
     hn::Vec<hn::RebindToSigned<D>> first, last;
 };
 template<class D, class V>
-Cover<D> covered_bins(D d, V low, V high, V per_near, V per_far, V slack, float begin, float bins_per_unit) {
+Cover<D> covered_bins(D d, V low, V high, V per_near, V per_far, V slack, float begin,
+                      float bins_per_unit) {
     const hn::RebindToSigned<D> di;
     const auto zero = hn::Zero(d);
-    // The least quotient: a negative numerator over the least distance, a positive one over the greatest.
+    // The least quotient: a negative numerator over the least distance, a positive one over the
+    // greatest.
     const V least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), per_near, per_far));
     const V most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), per_far, per_near));
     const V scale = hn::Set(d, bins_per_unit);
@@ -174,7 +183,8 @@ Cover<D> covered_bins(D d, V low, V high, V per_near, V per_far, V slack, float 
 }
 
 std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, const Shaft& shaft,
-                            const ShaftLeaves& leaves, const glm::vec3& origin, std::uint64_t& rays) {
+                            const ShaftLeaves& leaves, const glm::vec3& origin,
+                            std::uint64_t& rays) {
     const hn::CappedTag<float, Width> d;
     const hn::RebindToSigned<decltype(d)> di;
     using Vector = hn::Vec<decltype(d)>;
@@ -186,8 +196,9 @@ std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, c
     const Vector o_m = hn::Set(d, patch.sign * o[patch.axis]);
     const Vector o_s = hn::Set(d, o[(patch.axis + 1) % 3]);
     const Vector o_t = hn::Set(d, o[(patch.axis + 2) % 3]);
-    // A difference of coordinates is off by 4 roundings of the reach, and the exact tracer may hit what is 56 off, as for the shaft's margins; a
-    // quotient (of at most 2) by three times that over the distance.
+    // A difference of coordinates is off by 4 roundings of the reach, and the exact tracer may hit
+    // what is 56 off, as for the shaft's margins; a quotient (of at most 2) by three times that
+    // over the distance.
     const Vector lost = hn::Set(d, 192.0f * Rounding * shaft.reach + Smallest);
     const Vector too_near = hn::Set(d, 4096.0f * Rounding * shaft.reach + 64.0f * Smallest);
 
@@ -208,10 +219,10 @@ std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, c
         const Vector per_near = hn::Div(hn::Set(d, 1.0f), near);
         const Vector per_far = hn::Div(hn::Set(d, 1.0f), relative(1, o_m));
         const Vector slack = hn::Mul(lost, per_near);
-        const auto columns = covered_bins(d, relative(2, o_s), relative(3, o_s), per_near, per_far, slack,
-                                          patch.s0, patch.bins_per_s);
-        const auto rows = covered_bins(d, relative(4, o_t), relative(5, o_t), per_near, per_far, slack,
-                                       patch.t0, patch.bins_per_t);
+        const auto columns = covered_bins(d, relative(2, o_s), relative(3, o_s), per_near, per_far,
+                                          slack, patch.s0, patch.bins_per_s);
+        const auto rows = covered_bins(d, relative(4, o_t), relative(5, o_t), per_near, per_far,
+                                       slack, patch.t0, patch.bins_per_t);
         const auto first = hn::Zero(di);
         const auto last = hn::Set(di, PatchPlane::NumBins - 1);
         const auto in_front_i = hn::RebindMask(di, in_front);
@@ -220,9 +231,11 @@ std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, c
                                    hn::Or(hn::Gt(rows.first, last), hn::Gt(first, rows.last)));
         bits &= ~bits_of(di, hn::And(beside, in_front_i));
         alignas(64) std::array<std::int32_t, Width> s_first, s_last, t_first, t_last;
-        hn::Store(hn::IfThenElse(in_front_i, hn::Max(columns.first, first), first), di, s_first.data());
+        hn::Store(hn::IfThenElse(in_front_i, hn::Max(columns.first, first), first), di,
+                  s_first.data());
         hn::Store(hn::IfThenElse(in_front_i, hn::Min(columns.last, last), last), di, s_last.data());
-        hn::Store(hn::IfThenElse(in_front_i, hn::Max(rows.first, first), first), di, t_first.data());
+        hn::Store(hn::IfThenElse(in_front_i, hn::Max(rows.first, first), first), di,
+                  t_first.data());
         hn::Store(hn::IfThenElse(in_front_i, hn::Min(rows.last, last), last), di, t_last.data());
         for (; bits != 0; bits &= bits - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
@@ -231,10 +244,12 @@ std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, c
                 return table[static_cast<std::size_t>(bins[lane])];
             };
             const std::uint64_t touching = at(patch.from_s, s_first) & at(patch.until_s, s_last) &
-                                           at(patch.from_t, t_first) & at(patch.until_t, t_last) & rays;
+                                           at(patch.from_t, t_first) & at(patch.until_t, t_last) &
+                                           rays;
             if (touching == 0)
                 continue;
-            const TriangleTree::Leaf& leaf = tree.leaves[static_cast<std::size_t>(leaves.leaves[i + lane])];
+            const TriangleTree::Leaf& leaf =
+                tree.leaves[static_cast<std::size_t>(leaves.leaves[i + lane])];
             if (static_cast<std::uint32_t>(std::popcount(touching)) > RaysPerTriangle * leaf.size)
                 for (std::size_t triangle = 0; triangle < leaf.size; ++triangle)
                     test_triangle(d, leaf, triangle, patch, origin, rays, doubts);
@@ -259,7 +274,8 @@ HWY_EXPORT(clear_certain);
 } // namespace
 
 std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, const Shaft& shaft,
-                            const ShaftLeaves& leaves, const glm::vec3& origin, std::uint64_t& rays) {
+                            const ShaftLeaves& leaves, const glm::vec3& origin,
+                            std::uint64_t& rays) {
     return HWY_DYNAMIC_DISPATCH(clear_certain)(tree, patch, shaft, leaves, origin, rays);
 }
 

@@ -1,4 +1,5 @@
-// Testing the rays of one receiver through a patch against the triangles of a shaft. Vectorised with run-time dispatch.
+// Testing the rays of one receiver through a patch against the triangles of a shaft. Vectorised
+// with run-time dispatch.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@
 
 namespace relumine::prt {
 
-/// Clears the rays of one receiver that a triangle blocks for certain. Returns those of the rest that are not certain to miss all of them.
-/// `origin` is in the mesh's coordinates.
+/// Clears the rays of one receiver that a triangle blocks for certain. Returns those of the rest
+/// that are not certain to miss all of them. `origin` is in the mesh's coordinates.
 [[nodiscard]] std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch,
                                           const Shaft& shaft, const ShaftLeaves& leaves,
                                           const glm::vec3& origin, std::uint64_t& rays);

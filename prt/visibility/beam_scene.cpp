@@ -20,12 +20,14 @@
 namespace relumine::prt {
 namespace {
 
-/// Coordinates beyond which triple products overflow, in this file's tests or in the exact tracer's, whose answers are then its own.
+/// Coordinates beyond which triple products overflow, in this file's tests or in the exact
+/// tracer's, whose answers are then its own.
 constexpr float LargestReach = 1e12f;
 
-/// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right through an edge may depend on the packet's other rays.
-void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch, std::uint64_t doubts,
-         std::uint64_t asked, std::uint64_t& rays) {
+/// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right
+/// through an edge may depend on the packet's other rays.
+void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch,
+         std::uint64_t doubts, std::uint64_t asked, std::uint64_t& rays) {
     for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
         constexpr std::uint64_t PacketBits = 0xffff;
         if ((doubts >> (p * PacketSize) & PacketBits) == 0)
@@ -36,13 +38,15 @@ void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& p
     }
 }
 
-/// A word for each receiver, bits are directions; or, for each 64 receivers, a word for each direction.
+/// A word for each receiver, bits are directions; or, for each 64 receivers, a word for each
+/// direction.
 using RayWords = std::array<std::uint64_t, ReceiverBlock::MaxSize>;
 
 /// Turns one into the other.
 void transpose_squares(RayWords& words) {
     for (std::size_t first = 0; first < words.size(); first += DirectionPatch::Size)
-        transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first, DirectionPatch::Size));
+        transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first,
+                                                                 DirectionPatch::Size));
 }
 
 /// Around the rays that are asked for.
@@ -62,13 +66,15 @@ Shaft shaft_of_rays(const ReceiverBlock& block, const PatchPlane& plane, const T
     return shaft;
 }
 
-/// Where directions meet more leaves on average, as those of receivers far apart do, the exact tracer is faster. Measured.
+/// Where directions meet more leaves on average, as those of receivers far apart do, the exact
+/// tracer is faster. Measured.
 constexpr std::size_t LeavesPerRay = 4;
 
-/// One direction after the other, all receivers at once; those that are left when it does not pay are the exact tracer's.
+/// One direction after the other, all receivers at once; those that are left when it does not pay
+/// are the exact tracer's.
 void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverBlock& block,
-                        const BlockOrigins& origins, const DirectionPatch& patch, const PatchPlane& plane,
-                        std::span<std::uint64_t> rays) {
+                        const BlockOrigins& origins, const DirectionPatch& patch,
+                        const PatchPlane& plane, std::span<std::uint64_t> rays) {
     static_assert(std::tuple_size_v<ReceiverBits> * DirectionPatch::Size == ReceiverBlock::MaxSize);
     RayWords lit{}, doubts{};
     std::copy(rays.begin(), rays.end(), lit.begin());
@@ -112,7 +118,8 @@ struct BeamScene::Impl {
 
 static_assert(BeamScene::CrowdedShaft <= ShaftLeaves::MaxSize);
 
-BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact, std::size_t crowded_shaft)
+BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
+                     std::size_t crowded_shaft)
     : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact,
                      std::min(crowded_shaft, CrowdedShaft)}) {}
 
@@ -148,7 +155,8 @@ void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& 
         if (rays[i] == 0)
             continue;
         const std::uint64_t asked = rays[i];
-        const std::uint64_t doubts = clear_certain(tree, plane, shaft, leaves, block.origins[i], rays[i]);
+        const std::uint64_t doubts =
+            clear_certain(tree, plane, shaft, leaves, block.origins[i], rays[i]);
         ask(exact, block.origins[i], patch, doubts, asked, rays[i]);
     }
 }

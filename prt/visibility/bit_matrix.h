@@ -10,8 +10,9 @@ namespace relumine::prt {
 /// Receivers come in words of 64, one bit each.
 inline constexpr std::size_t WordSize = 64;
 
-/// Transposes 64 x 64 bits in place: bit j of word i becomes bit i of word j. Swaps off-diagonal quarters of 32 x 32 bits, then of 16 x 16
-/// in each half, and so on (Warren, Hacker's Delight, 7-3).
+/// Transposes 64 x 64 bits in place: bit j of word i becomes bit i of word j. Swaps off-diagonal
+/// quarters of 32 x 32 bits, then of 16 x 16 in each half, and so on (Warren, Hacker's Delight,
+/// 7-3).
 inline void transpose(std::span<std::uint64_t, 64> rows) {
     std::uint64_t mask = 0x00000000ffffffff;
     for (std::size_t width = 32; width != 0; width >>= 1u, mask ^= mask << width)

@@ -13,7 +13,8 @@ namespace relumine::prt {
 /// Rays of a packet: directions that one receiver looks into together.
 inline constexpr std::size_t PacketSize = 16;
 
-/// Directions of a packet in the layout that the ray kernels read, unit vectors. Unused lanes repeat the first direction.
+/// Directions of a packet in the layout that the ray kernels read, unit vectors. Unused lanes
+/// repeat the first direction.
 struct alignas(64) DirectionPacket {
     std::array<float, PacketSize> x{};
     std::array<float, PacketSize> y{};
@@ -27,8 +28,8 @@ struct alignas(64) DirectionPacket {
     }
 };
 
-/// Up to 64 directions inside one narrow cone; direction j is lane j % 16 of packet j / 16. Lanes that are not used repeat the
-/// patch's first direction.
+/// Up to 64 directions inside one narrow cone; direction j is lane j % 16 of packet j / 16. Lanes
+/// that are not used repeat the patch's first direction.
 struct DirectionPatch {
     static constexpr std::size_t NumPackets = 4;
     static constexpr std::size_t Size = NumPackets * PacketSize;
@@ -49,23 +50,29 @@ struct DirectionPatch {
 struct ReceiverBlock {
     static constexpr std::size_t MaxSize = 128;
 
-    std::span<const glm::vec3> origins; ///< [at most MaxSize] where their rays start
-    glm::vec3 mean_normal{0.0f};        ///< a hint: roughly where they face, any length
+    /// [at most MaxSize] where their rays start
+    std::span<const glm::vec3> origins;
+    /// A hint: roughly where they face, any length
+    glm::vec3 mean_normal{0.0f};
 };
 
-/// What stands between receivers and lights. RayScene answers for meshes; tests answer with closed forms.
+/// What stands between receivers and lights. RayScene answers for meshes; tests answer with closed
+/// forms.
 class Blockers {
 public:
     Blockers() = default;
     virtual ~Blockers() = default;
 
-    /// Bit i is set where the ray from `origin` in direction i is blocked; only directions in `active` are traced.
-    /// Fastest when the directions lie close together. Called from many threads at once.
-    [[nodiscard]] virtual std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+    /// Bit i is set where the ray from `origin` in direction i is blocked; only directions in
+    /// `active` are traced. Fastest when the directions lie close together. Called from many
+    /// threads at once.
+    [[nodiscard]] virtual std::uint32_t occluded(const glm::vec3& origin,
+                                                 const DirectionPacket& directions,
                                                  std::uint32_t active) const = 0;
 
-    /// Bit j of rays[i], which asks for the ray from the block's receiver i in the patch's direction j, is cleared where that ray is
-    /// blocked. Same answers as occluded(), which is what it asks here. Called from many threads at once.
+    /// Bit j of rays[i], which asks for the ray from the block's receiver i in the patch's
+    /// direction j, is cleared where that ray is blocked. Same answers as occluded(), which is what
+    /// it asks here. Called from many threads at once.
     virtual void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
                                std::span<std::uint64_t> rays) const;
 
@@ -76,9 +83,11 @@ protected:
     Blockers& operator=(Blockers&&) = default;
 };
 
-/// Which of a packet's `candidates` reach a receiver: above its horizon, n.w > 0 in float, and not blocked.
+/// Which of a packet's `candidates` reach a receiver: above its horizon, n.w > 0 in float, and not
+/// blocked.
 [[nodiscard]] inline std::uint32_t lit_lanes(const Blockers& blockers, const glm::vec3& origin,
-                                             const glm::vec3& normal, const DirectionPacket& directions,
+                                             const glm::vec3& normal,
+                                             const DirectionPacket& directions,
                                              std::uint32_t candidates) {
     std::uint32_t above = 0;
     for (std::uint32_t i = 0; i < PacketSize; ++i) {
@@ -90,8 +99,10 @@ protected:
     return above == 0 ? 0 : above & ~blockers.occluded(origin, directions, above);
 }
 
-/// Where a receiver's rays start: lifted off its surface along the normal, so that the surface does not block itself.
-[[nodiscard]] inline glm::vec3 ray_origin(const glm::vec3& position, const glm::vec3& normal, float bias) {
+/// Where a receiver's rays start: lifted off its surface along the normal, so that the surface does
+/// not block itself.
+[[nodiscard]] inline glm::vec3 ray_origin(const glm::vec3& position, const glm::vec3& normal,
+                                          float bias) {
     return position + bias * normal;
 }
 

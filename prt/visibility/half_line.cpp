@@ -32,7 +32,8 @@ double squared_distance_from_origin(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::dot(nearest, nearest);
 }
 
-/// Whether the part of an edge that is not behind the half-line's start stays farther than `distance` from the whole line.
+/// Whether the part of an edge that is not behind the half-line's start stays farther than
+/// `distance` from the whole line.
 bool edge_passes_by(glm::dvec3 a, glm::dvec3 b, const glm::dvec3& w, double distance) {
     const double ahead_a = glm::dot(a, w) + distance;
     const double ahead_b = glm::dot(b, w) + distance;
@@ -43,7 +44,8 @@ bool edge_passes_by(glm::dvec3 a, glm::dvec3 b, const glm::dvec3& w, double dist
         a = border;
     else if (ahead_b < 0.0)
         b = border;
-    return squared_distance_from_origin(a - glm::dot(a, w) * w, b - glm::dot(b, w) * w) > distance * distance;
+    return squared_distance_from_origin(a - glm::dot(a, w) * w, b - glm::dot(b, w) * w) >
+           distance * distance;
 }
 
 } // namespace
@@ -54,7 +56,8 @@ bool passes_by(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w, do
     if (go_round(corners, w) && height * glm::dot(normal, w) >= 0.0)
         return false; // it hits
     // The start may be close to the middle of the triangle, far from its edges.
-    if (height * height <= distance * distance * glm::dot(normal, normal) && go_round(corners, normal))
+    if (height * height <= distance * distance * glm::dot(normal, normal) &&
+        go_round(corners, normal))
         return false;
     for (std::size_t k = 0; k < 3; ++k)
         if (!edge_passes_by(corners[k], corners[(k + 1) % 3], w, distance))

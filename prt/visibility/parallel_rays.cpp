@@ -31,42 +31,50 @@ constexpr std::size_t MaxReceivers = ReceiverBlock::MaxSize;
 /// Beyond so many leaves in one direction the exact tracer is faster. Measured.
 constexpr std::size_t MostLeaves = 1024;
 
-/// Bounds as those of beam_kernels.cpp, with u = 2^-24, L = longest edge and D = the largest distance of a corner from the middle plus that of the
-/// farthest origin, by components. |s|, |t| <= 2 and off by 2 u. A moved coordinate is at most 3 D and off by 8 u D, a moved
-/// edge at most 3 L and off by 8 u L. The constant's two products are off by 48 u L D each and a rounding of 9 L D, their difference by one of
-/// 18 L D; the two products with the origin by as much, their sums by one of 27 and one of 36 L D, and as many again where
-/// products are not fused: less than 400 u L D. What the exact tracer adds is less than 120 u L D: see beam_kernels.cpp.
+/// Bounds as those of beam_kernels.cpp, with u = 2^-24, L = longest edge and D = the largest
+/// distance of a corner from the middle plus that of the farthest origin, by components. |s|, |t|
+/// <= 2 and off by 2 u. A moved coordinate is at most 3 D and off by 8 u D, a moved edge at most 3
+/// L and off by 8 u L. The constant's two products are off by 48 u L D each and a rounding of 9 L
+/// D, their difference by one of 18 L D; the two products with the origin by as much, their sums by
+/// one of 27 and one of 36 L D, and as many again where products are not fused: less than 400 u L
+/// D. What the exact tracer adds is less than 120 u L D: see beam_kernels.cpp.
 constexpr float EdgeTolerance = 520.0f * Rounding;
-/// The normal is at most 2 L^2 and off by 8 u L^2; its product with a corner or an origin off by less than 60 u L^2 D, the difference by
-/// 12 more; the exact tracer's by less than 40.
+/// The normal is at most 2 L^2 and off by 8 u L^2; its product with a corner or an origin off by
+/// less than 60 u L^2 D, the difference by 12 more; the exact tracer's by less than 40.
 constexpr float SideTolerance = 180.0f * Rounding;
 constexpr float Smallest = 1e-35f; // products below are lost
 
 /// A leaf's triangles as seen along the rays, about the middle of the block.
 ///
-/// The rays' direction is w = sign * axis + s * axis_s + t * axis_t. Every point is moved along w to the plane where its coordinate `axis`
-/// is 0; its other two coordinates stay, and triple products with w become products of two edges in that plane.
+/// The rays' direction is w = sign * axis + s * axis_s + t * axis_t. Every point is moved along w
+/// to the plane where its coordinate `axis` is 0; its other two coordinates stay, and triple
+/// products with w become products of two edges in that plane.
 struct SeenLeaf {
     using Row = std::array<float, Width>;
-    alignas(64) Row s_low, s_high, t_low, t_high; ///< around each triangle
-    /// Edge function k of an origin o is constant - edge_t * o_s + edge_s * o_t; beyond `certain` it has a sign.
+    /// Around each triangle
+    alignas(64) Row s_low, s_high, t_low, t_high;
+    /// Edge function k of an origin o is constant - edge_t * o_s + edge_s * o_t; beyond `certain`
+    /// it has a sign.
     std::array<Row, 3> edge_s, edge_t, constant;
     Row certain;
-    /// normal . (corner 0 - o) = height - normal . o, along axis, axis_s, axis_t; beyond `side_certain` it has a sign.
+    /// normal . (corner 0 - o) = height - normal . o, along axis, axis_s, axis_t; beyond
+    /// `side_certain` it has a sign.
     std::array<Row, 3> normal;
     Row height, side_certain;
 };
 
 /// That of the rays.
 struct Direction {
-    std::size_t axes[3]; ///< axis, axis_s, axis_t
+    /// Axis, axis_s, axis_t
+    std::size_t axes[3];
     float sign, s, t;
-    glm::vec3 unit; ///< as the exact tracer has it
+    /// As the exact tracer has it
+    glm::vec3 unit;
 };
 
 template<class D>
-void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction, const BlockOrigins& origins,
-         SeenLeaf& seen) {
+void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
+         const BlockOrigins& origins, SeenLeaf& seen) {
     using Vector = hn::Vec<D>;
     const Vector along_s = hn::Set(d, direction.sign * direction.s);
     const Vector along_t = hn::Set(d, direction.sign * direction.t);
@@ -102,7 +110,8 @@ void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction, const 
             store(hn::MulSub(moved_s[k], edge_t, hn::Mul(moved_t[k], edge_s)), seen.constant[k]);
         }
         store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)), seen.certain);
-        // Both sides are off by 8 u D, and the exact tracer may hit what is 16 roundings of its distance off, 3 sqrt(3) times that when moved.
+        // Both sides are off by 8 u D, and the exact tracer may hit what is 16 roundings of its
+        // distance off, 3 sqrt(3) times that when moved.
         const Vector lost = hn::MulAdd(reach, hn::Set(d, 128.0f * Rounding), hn::Set(d, Smallest));
         store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_low);
         store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_high);
@@ -112,24 +121,29 @@ void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction, const 
         Vector height = hn::Zero(d);
         for (std::size_t a = 0; a < 3; ++a) {
             const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-            const Vector normal = hn::MulSub(edge[0][b], edge[1][c], hn::Mul(edge[0][c], edge[1][b]));
+            const Vector normal =
+                hn::MulSub(edge[0][b], edge[1][c], hn::Mul(edge[0][c], edge[1][b]));
             store(normal, seen.normal[a]);
             height = hn::MulAdd(normal, from_middle[0][a], height);
         }
         store(height, seen.height);
-        store(hn::MulAdd(hn::Mul(product, longest), hn::Set(d, SideTolerance), hn::Set(d, Smallest)),
-              seen.side_certain);
+        store(
+            hn::MulAdd(hn::Mul(product, longest), hn::Set(d, SideTolerance), hn::Set(d, Smallest)),
+            seen.side_certain);
     }
 }
 
 /// The receivers of a block as the rays see them, in groups of as many as a vector has lanes.
 struct SeenReceivers {
     using Row = BlockOrigins::Row;
-    std::array<const float*, 3> origin; ///< from the middle, along axis, axis_s, axis_t
-    alignas(64) Row s, t;               ///< moved along the rays
+    /// From the middle, along axis, axis_s, axis_t
+    std::array<const float*, 3> origin;
+    /// Moved along the rays
+    alignas(64) Row s, t;
     /// Of each group that has rays: what holds its s and t, and the planes of its own shaft.
     Row s_low, s_high, t_low, t_high;
-    std::array<Row, Shaft::NumPlanes> offsets; ///< infinite where a group has no rays left
+    /// Infinite where a group has no rays left
+    std::array<Row, Shaft::NumPlanes> offsets;
 };
 
 template<class D>
@@ -180,12 +194,12 @@ void see(D d, const Direction& direction, const BlockOrigins& origins, const Rec
     }
 }
 
-/// Tests the rays of a group against a leaf's triangles. Bit i of `rays` is the group's receiver i; clears those that are blocked for certain, and
-/// returns those that are in doubt.
+/// Tests the rays of a group against a leaf's triangles. Bit i of `rays` is the group's receiver i;
+/// clears those that are blocked for certain, and returns those that are in doubt.
 template<class D>
-std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& seen, const Direction& direction,
-                        const BlockOrigins& origins, const SeenReceivers& receivers, std::size_t group,
-                        std::uint32_t& rays) {
+std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& seen,
+                        const Direction& direction, const BlockOrigins& origins,
+                        const SeenReceivers& receivers, std::size_t group, std::uint32_t& rays) {
     using Vector = hn::Vec<D>;
     std::uint32_t near = 0;
     for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
@@ -214,9 +228,11 @@ std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& see
         for (std::size_t a = 0; a < 3; ++a)
             side = hn::NegMulAdd(all(seen.normal[a]), origin[a], side);
         const auto edge_function = [&](std::size_t k) {
-            const Vector e = hn::MulAdd(all(seen.edge_s[k]), origin_t,
-                                        hn::NegMulAdd(all(seen.edge_t[k]), origin_s, all(seen.constant[k])));
-            return hn::Xor(e, hn::And(side, hn::SignBit(d))); // turned so that a hit's are all positive
+            const Vector e =
+                hn::MulAdd(all(seen.edge_s[k]), origin_t,
+                           hn::NegMulAdd(all(seen.edge_t[k]), origin_s, all(seen.constant[k])));
+            return hn::Xor(
+                e, hn::And(side, hn::SignBit(d))); // turned so that a hit's are all positive
         };
         const Vector e0 = edge_function(0);
         const Vector e1 = edge_function(1);
@@ -228,7 +244,8 @@ std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& see
         if (hn::AllFalse(d, hn::Or(maybe, edge_on)))
             continue;
         const std::uint32_t hits = bits_of(d, hn::AndNot(edge_on, hn::Gt(least, certain)));
-        // Seen from near its plane, a triangle is missed for certain only where its line is from both sides.
+        // Seen from near its plane, a triangle is missed for certain only where its line is from
+        // both sides.
         const Vector most = hn::Max(hn::Max(e0, e1), e2);
         const auto unsure = hn::Or(maybe, hn::And(edge_on, hn::Le(most, certain)));
         rays &= ~hits;
@@ -265,12 +282,14 @@ void test_groups(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& f
             if (!is_seen)
                 see(d, leaf, direction, origins, seen);
             is_seen = true;
-            const std::size_t group = first_group + static_cast<std::size_t>(std::countr_zero(bits));
+            const std::size_t group =
+                first_group + static_cast<std::size_t>(std::countr_zero(bits));
             const std::size_t word = group * num_lanes / WordSize;
             const std::size_t shift = group * num_lanes % WordSize;
             const auto asked = static_cast<std::uint32_t>(lit[word] >> shift & lanes);
             std::uint32_t rays = asked;
-            const std::uint64_t doubts = test_leaf(d, leaf, seen, direction, origins, receivers, group, rays);
+            const std::uint64_t doubts =
+                test_leaf(d, leaf, seen, direction, origins, receivers, group, rays);
             lit[word] &= ~(std::uint64_t{asked & ~rays} << shift);
             doubtful[word] |= doubts << shift;
             if (rays == 0) // it needs no more leaves
@@ -280,8 +299,9 @@ void test_groups(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& f
 }
 
 ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                  const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                                  const BlockOrigins& origins, const ReceiverBits& active) {
+                                  const PatchPlane& patch, std::size_t j,
+                                  const glm::vec3& mean_normal, const BlockOrigins& origins,
+                                  const ReceiverBits& active) {
     const hn::CappedTag<float, Width> d;
     const auto axis = static_cast<std::size_t>(patch.axis);
     const Direction direction{.axes = {axis, (axis + 1) % 3, (axis + 2) % 3},
@@ -349,9 +369,11 @@ BlockOrigins::BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree)
 }
 
 ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                  const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                                  const BlockOrigins& origins, const ReceiverBits& active) {
-    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, directions, patch, j, mean_normal, origins, active);
+                                  const PatchPlane& patch, std::size_t j,
+                                  const glm::vec3& mean_normal, const BlockOrigins& origins,
+                                  const ReceiverBits& active) {
+    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, directions, patch, j, mean_normal,
+                                                    origins, active);
 }
 
 } // namespace relumine::prt

@@ -1,4 +1,5 @@
-// Testing the rays of a block of receivers in one direction against the triangles before them. Vectorised with run-time dispatch.
+// Testing the rays of a block of receivers in one direction against the triangles before them.
+// Vectorised with run-time dispatch.
 #pragma once
 
 #include <array>
@@ -14,40 +15,51 @@
 
 namespace relumine::prt {
 
-/// Where a block's rays start, in the layout that the kernel reads. Receivers beyond the block's size repeat its first.
+/// Where a block's rays start, in the layout that the kernel reads. Receivers beyond the block's
+/// size repeat its first.
 struct BlockOrigins {
     using Row = std::array<float, ReceiverBlock::MaxSize>;
 
     BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree);
 
-    alignas(64) std::array<Row, 3> from_centre; ///< x, y, z from the tree's centre
-    alignas(64) std::array<Row, 3> from_middle; ///< from the middle of the block
-    std::span<const glm::vec3> all;             ///< as they are
+    /// x, y, z from the tree's centre
+    alignas(64) std::array<Row, 3> from_centre;
+    /// From the middle of the block
+    alignas(64) std::array<Row, 3> from_middle;
+    /// As they are
+    std::span<const glm::vec3> all;
     glm::vec3 middle{0.0f};
-    float radius = 0.0f; ///< largest coordinate from the middle
-    float reach =
-        0.0f; ///< largest coordinate of the tree's triangles and the origins, from the tree's centre
+    /// Largest coordinate from the middle
+    float radius = 0.0f;
+    /// Largest coordinate of the tree's triangles and the origins, from the tree's centre
+    float reach = 0.0f;
 };
 
 /// One bit for each receiver of a block.
 using ReceiverBits = std::array<std::uint64_t, ReceiverBlock::MaxSize / 64>;
 
 struct ParallelResult {
-    ReceiverBits blocked{};     ///< for certain
-    ReceiverBits doubtful{};    ///< of the rest, those that are not certain to miss everything
-    std::size_t num_leaves = 0; ///< that the rays may meet
+    /// For certain
+    ReceiverBits blocked{};
+    /// Of the rest, those that are not certain to miss everything
+    ReceiverBits doubtful{};
+    /// That the rays may meet
+    std::size_t num_leaves = 0;
 };
 
-/// Tests the rays of `active` receivers in the patch's direction j. Seen along it, receivers are points and triangles stay triangles:
+/// Tests the rays of `active` receivers in the patch's direction j. Seen along it, receivers are
+/// points and triangles stay triangles:
 ///
-///          . . .             16 receivers at a time are compared with one edge at a time, two products each. Receivers that are
-///      /\ . . . .            neighbours on a fine mesh look at the same few triangles, however fine it is, while a patch
+///          . . .             16 receivers at a time are compared with one edge at a time, two
+///          products each. Receivers that are
+///      /\ . . . .            neighbours on a fine mesh look at the same few triangles, however
+///      fine it is, while a patch
 ///     /__\ . . .             of directions meets more and more.
 ///
 /// Rays among too many triangles are all in doubt.
-[[nodiscard]] ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                                const PatchPlane& patch, std::size_t j,
-                                                const glm::vec3& mean_normal, const BlockOrigins& origins,
-                                                const ReceiverBits& active);
+[[nodiscard]] ParallelResult
+test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
+                   const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
+                   const BlockOrigins& origins, const ReceiverBits& active);
 
 } // namespace relumine::prt

@@ -41,18 +41,21 @@ void throw_on_error(RTCDevice device, const char* action) {
             fmt::format("Embree could not {} (error {})", action, static_cast<int>(error)));
 }
 
-/// Whether the corners lie on one line. Exact unless coordinates differ by more than a factor of 2^28.
+/// Whether the corners lie on one line. Exact unless coordinates differ by more than a factor of
+/// 2^28.
 bool has_no_area(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle) {
     const glm::dvec3 corner(mesh.positions[triangle[0]]);
     return glm::cross(glm::dvec3(mesh.positions[triangle[1]]) - corner,
                       glm::dvec3(mesh.positions[triangle[2]]) - corner) == glm::dvec3(0.0);
 }
 
-/// Copies an array into a geometry buffer, which Embree pads as its kernels need, and tells where it is.
+/// Copies an array into a geometry buffer, which Embree pads as its kernels need, and tells where
+/// it is.
 template<typename Element>
 const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
                            const std::vector<Element>& elements) {
-    void* buffer = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
+    void* buffer =
+        rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(Element), elements.size());
     if (buffer != nullptr && !elements.empty())
         std::memcpy(buffer, elements.data(), elements.size() * sizeof(Element));
     return static_cast<const Element*>(buffer);
@@ -64,18 +67,21 @@ struct Buffers {
     const mesh::Triangle* triangles = nullptr;
 };
 
-/// Embree moves corners by a rounding of their distance d and compares noise with noise where a ray runs along a triangle's plane: it then finds hits far
-/// beside the triangle, as far as the boxes of its tree go. Such a hit would be a shadow that nothing casts. What is left are hits
-/// that are no farther off than a ray's own rounding.
+/// Embree moves corners by a rounding of their distance d and compares noise with noise where a ray
+/// runs along a triangle's plane: it then finds hits far beside the triangle, as far as the boxes
+/// of its tree go. Such a hit would be a shadow that nothing casts. What is left are hits that are
+/// no farther off than a ray's own rounding.
 void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
     constexpr double Roundings = 16.0 * 0x1p-24;
     const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
     for (unsigned int i = 0; i < hits->N; ++i) {
         if (hits->valid[i] == 0)
             continue;
-        const glm::dvec3 origin(RTCRayN_org_x(hits->ray, hits->N, i), RTCRayN_org_y(hits->ray, hits->N, i),
+        const glm::dvec3 origin(RTCRayN_org_x(hits->ray, hits->N, i),
+                                RTCRayN_org_y(hits->ray, hits->N, i),
                                 RTCRayN_org_z(hits->ray, hits->N, i));
-        const glm::dvec3 direction(RTCRayN_dir_x(hits->ray, hits->N, i), RTCRayN_dir_y(hits->ray, hits->N, i),
+        const glm::dvec3 direction(RTCRayN_dir_x(hits->ray, hits->N, i),
+                                   RTCRayN_dir_y(hits->ray, hits->N, i),
                                    RTCRayN_dir_z(hits->ray, hits->N, i));
         const mesh::Triangle& triangle = buffers.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
         std::array<glm::dvec3, 3> corners;
@@ -92,7 +98,8 @@ void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
 } // namespace
 
 struct RayScene::Impl {
-    Buffers buffers; ///< at the place that Embree was told
+    /// At the place that Embree was told
+    Buffers buffers;
     DeviceHandle device;
     SceneHandle scene;
 };
@@ -101,9 +108,10 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl
     for (const mesh::Triangle& triangle : mesh.triangles)
         for (const std::uint32_t vertex : triangle)
             for (int axis = 0; axis < 3; ++axis)
-                if (const float x = mesh.positions[vertex][axis]; !(std::abs(x) < LargestCoordinate))
-                    throw std::runtime_error(
-                        fmt::format("expected coordinates within {}, got {}", LargestCoordinate, x));
+                if (const float x = mesh.positions[vertex][axis];
+                    !(std::abs(x) < LargestCoordinate))
+                    throw std::runtime_error(fmt::format("expected coordinates within {}, got {}",
+                                                         LargestCoordinate, x));
     impl_->device.reset(rtcNewDevice(nullptr));
     if (!impl_->device)
         throw std::runtime_error("Embree could not start on this processor");
@@ -112,8 +120,9 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl
     rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
 
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // A triangle without area blocks nothing, but Embree's edge functions, all zero, say "hit" to rays that pass beside it in a plane with
-    // it. It gets a corner that is no number, with which Embree drops it; the others keep their numbers.
+    // A triangle without area blocks nothing, but Embree's edge functions, all zero, say "hit" to
+    // rays that pass beside it in a plane with it. It gets a corner that is no number, with which
+    // Embree drops it; the others keep their numbers.
     std::vector<glm::vec3> positions = mesh.positions;
     std::vector<mesh::Triangle> triangles = mesh.triangles;
     const auto nowhere = static_cast<std::uint32_t>(positions.size());
@@ -121,9 +130,9 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl
     for (mesh::Triangle& triangle : triangles)
         if (has_no_area(mesh, triangle))
             triangle = {nowhere, nowhere, nowhere};
-    impl_->buffers = {.positions =
-                          fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
-                      .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles)};
+    impl_->buffers = {
+        .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
+        .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles)};
     rtcSetGeometryUserData(geometry, &impl_->buffers);
     rtcSetGeometryOccludedFilterFunction(geometry, drop_hits_beside);
     rtcSetGeometryIntersectFilterFunction(geometry, drop_hits_beside);
@@ -185,7 +194,8 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) con
     return ray.tfar < 0.0f;
 }
 
-std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec3& direction) const {
+std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin,
+                                         const glm::vec3& direction) const {
     RTCRayHit query{};
     query.ray.org_x = origin.x;
     query.ray.org_y = origin.y;
@@ -201,8 +211,9 @@ std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin, const glm::vec
     rtcIntersect1(impl_->scene.get(), &context, &query);
     if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return std::nullopt;
-    return Hit{
-        .triangle = query.hit.primID, .barycentric = {query.hit.u, query.hit.v}, .distance = query.ray.tfar};
+    return Hit{.triangle = query.hit.primID,
+               .barycentric = {query.hit.u, query.hit.v},
+               .distance = query.ray.tfar};
 }
 
 float automatic_bias(const mesh::TriangleMesh& blockers) {
@@ -210,8 +221,10 @@ float automatic_bias(const mesh::TriangleMesh& blockers) {
     float largest = 0.0f;
     for (int axis = 0; axis < 3; ++axis)
         largest = std::max({largest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
-    // A sum is rounded by up to half a spacing on each axis; the second half of the four is for the triangles' own rounding.
-    return std::max(1e-4f * bounds.diagonal(), 4.0f * std::numeric_limits<float>::epsilon() * largest);
+    // A sum is rounded by up to half a spacing on each axis; the second half of the four is for the
+    // triangles' own rounding.
+    return std::max(1e-4f * bounds.diagonal(),
+                    4.0f * std::numeric_limits<float>::epsilon() * largest);
 }
 
 } // namespace relumine::prt

@@ -16,16 +16,20 @@ namespace relumine::prt {
 /// Where a ray meets the mesh first.
 struct Hit {
     std::uint32_t triangle = 0;
-    glm::vec2 barycentric{0.0f}; ///< weights of the triangle's second and third vertex
-    float distance = 0.0f;       ///< in units of the ray direction's length
+    /// Weights of the triangle's second and third vertex
+    glm::vec2 barycentric{0.0f};
+    /// In units of the ray direction's length
+    float distance = 0.0f;
 };
 
-/// Triangles prepared for ray queries. Immutable; all queries may run from any number of threads at once.
-/// Triangles block from both sides. Rays are traced watertight (Embree's robust mode: no ray slips through a shared edge).
+/// Triangles prepared for ray queries. Immutable; all queries may run from any number of threads at
+/// once. Triangles block from both sides. Rays are traced watertight (Embree's robust mode: no ray
+/// slips through a shared edge).
 class RayScene final : public Blockers {
 public:
-    /// Builds the accelerator: O(n log n), about 100 bytes per triangle. The mesh may go afterwards. Throws
-    /// std::runtime_error when Embree fails (out of memory, say) or a triangle's coordinates are beyond its range of 1.8e18.
+    /// Builds the accelerator: O(n log n), about 100 bytes per triangle. The mesh may go
+    /// afterwards. Throws std::runtime_error when Embree fails (out of memory, say) or a triangle's
+    /// coordinates are beyond its range of 1.8e18.
     explicit RayScene(const mesh::TriangleMesh& mesh);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;
@@ -37,16 +41,18 @@ public:
     /// Whether anything lies on the ray.
     [[nodiscard]] bool occluded(const glm::vec3& origin, const glm::vec3& direction) const;
 
-    [[nodiscard]] std::optional<Hit> closest_hit(const glm::vec3& origin, const glm::vec3& direction) const;
+    [[nodiscard]] std::optional<Hit> closest_hit(const glm::vec3& origin,
+                                                 const glm::vec3& direction) const;
 
 private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
 
-/// The bias used where none is given: 1e-4 of the blockers' bounding-box diagonal. That is a thousand times the spacing of floats
-/// at the box's size, and well below the edge length of a mesh of a million triangles. Far from the origin, where floats are so sparse
-/// that such a bias would be rounded away and every surface would block its own light, it is four of their spacings.
+/// The bias used where none is given: 1e-4 of the blockers' bounding-box diagonal. That is a
+/// thousand times the spacing of floats at the box's size, and well below the edge length of a mesh
+/// of a million triangles. Far from the origin, where floats are so sparse that such a bias would
+/// be rounded away and every surface would block its own light, it is four of their spacings.
 [[nodiscard]] float automatic_bias(const mesh::TriangleMesh& blockers);
 
 } // namespace relumine::prt

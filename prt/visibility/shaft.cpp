@@ -11,7 +11,8 @@
 namespace relumine::prt {
 namespace {
 
-/// Widest side of a patch's rectangle, in units of its distance. Beyond it a shaft holds most of a scene.
+/// Widest side of a patch's rectangle, in units of its distance. Beyond it a shaft holds most of a
+/// scene.
 constexpr float WidestPatch = 1.1f;
 
 /// Sum of the absolute components.
@@ -26,7 +27,8 @@ float bins_per_unit(float begin, float end) {
 /// The same sum as for the ends of what a box covers, so that rounding keeps their order.
 std::size_t bin(float x, float begin, float bins_per_unit) {
     const float place = std::floor((x - begin) * bins_per_unit);
-    return static_cast<std::size_t>(std::clamp(place, 0.0f, static_cast<float>(PatchPlane::NumBins - 1)));
+    return static_cast<std::size_t>(
+        std::clamp(place, 0.0f, static_cast<float>(PatchPlane::NumBins - 1)));
 }
 
 } // namespace
@@ -66,15 +68,20 @@ PatchPlane patch_plane(const DirectionPatch& patch) {
         plane.from_s[bin(plane.s[j], plane.s0, plane.bins_per_s)] |= bit;
         plane.from_t[bin(plane.t[j], plane.t0, plane.bins_per_t)] |= bit;
     }
-    std::partial_sum(plane.from_s.begin(), plane.from_s.end(), plane.until_s.begin(), std::bit_or());
-    std::partial_sum(plane.from_t.begin(), plane.from_t.end(), plane.until_t.begin(), std::bit_or());
-    std::partial_sum(plane.from_s.rbegin(), plane.from_s.rend(), plane.from_s.rbegin(), std::bit_or());
-    std::partial_sum(plane.from_t.rbegin(), plane.from_t.rend(), plane.from_t.rbegin(), std::bit_or());
+    std::partial_sum(plane.from_s.begin(), plane.from_s.end(), plane.until_s.begin(),
+                     std::bit_or());
+    std::partial_sum(plane.from_t.begin(), plane.from_t.end(), plane.until_t.begin(),
+                     std::bit_or());
+    std::partial_sum(plane.from_s.rbegin(), plane.from_s.rend(), plane.from_s.rbegin(),
+                     std::bit_or());
+    std::partial_sum(plane.from_t.rbegin(), plane.from_t.rend(), plane.from_t.rbegin(),
+                     std::bit_or());
     return plane;
 }
 
 /// The first four pass through the sides of the rectangle, the fifth is behind the
-/// receivers, the sixth is the receivers' own ground, turned towards the patch until all directions leave it.
+/// receivers, the sixth is the receivers' own ground, turned towards the patch until all directions
+/// leave it.
 Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal, float reach) {
     const auto vector = [&](float along, float s, float t) {
         glm::vec3 v;
@@ -102,8 +109,9 @@ Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal, float 
         shaft.normals.back() = normal + turn * vector(1, 0, 0);
     }
     for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-        // Moving to the tree's centre rounds once, the products and sums three times, on both sides: 8. The exact tracer may hit what is 16 roundings
-        // of its distance off, which is 2 sqrt(3) of the reach at most: 56. The bound is still far below the usual bias.
+        // Moving to the tree's centre rounds once, the products and sums three times, on both
+        // sides: 8. The exact tracer may hit what is 16 roundings of its distance off, which is 2
+        // sqrt(3) of the reach at most: 56. The bound is still far below the usual bias.
         shaft.margins[k] =
             96.0f * Rounding * norm_1(shaft.normals[k]) * reach + std::numeric_limits<float>::min();
     shaft.offsets.fill(std::numeric_limits<float>::infinity());

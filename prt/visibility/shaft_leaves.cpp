@@ -25,9 +25,10 @@ constexpr std::size_t Width = TriangleTree::Width;
 
 using Supports = std::array<std::array<float, Width>, Shaft::NumPlanes>;
 
-/// Children of a node that are not outside of the shaft, and the supports of all. The corner of a box that lies farthest along a normal has the high
-/// coordinates where the normal's are positive.
-std::uint32_t children_inside(const TriangleTree::Node& node, const Shaft& shaft, Supports& supports) {
+/// Children of a node that are not outside of the shaft, and the supports of all. The corner of a
+/// box that lies farthest along a normal has the high coordinates where the normal's are positive.
+std::uint32_t children_inside(const TriangleTree::Node& node, const Shaft& shaft,
+                              Supports& supports) {
     const hn::CappedTag<float, Width> d;
     std::uint32_t inside = 0;
     for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
@@ -37,9 +38,9 @@ std::uint32_t children_inside(const TriangleTree::Node& node, const Shaft& shaft
             const auto farthest = [&](std::size_t axis, float component) {
                 return hn::Load(d, node.bounds[component >= 0.0f ? axis + 3 : axis].data() + lane);
             };
-            const auto support = hn::MulAdd(
-                hn::Set(d, n.x), farthest(0, n.x),
-                hn::MulAdd(hn::Set(d, n.y), farthest(1, n.y), hn::Mul(hn::Set(d, n.z), farthest(2, n.z))));
+            const auto support = hn::MulAdd(hn::Set(d, n.x), farthest(0, n.x),
+                                            hn::MulAdd(hn::Set(d, n.y), farthest(1, n.y),
+                                                       hn::Mul(hn::Set(d, n.z), farthest(2, n.z))));
             hn::Store(support, d, supports[k].data() + lane);
             mask = hn::And(mask, hn::Ge(support, hn::Set(d, shaft.offsets[k])));
         }
@@ -48,22 +49,25 @@ std::uint32_t children_inside(const TriangleTree::Node& node, const Shaft& shaft
     return inside;
 }
 
-/// Whether all rays of the shaft run away from the triangle's plane, which then says more than a large triangle's box does.
+/// Whether all rays of the shaft run away from the triangle's plane, which then says more than a
+/// large triangle's box does.
 bool leaves_plane(const TriangleTree::Leaf& leaf, std::size_t lane, const Shaft& shaft) {
     glm::dvec3 corner[3];
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t a = 0; a < 3; ++a)
             corner[k][static_cast<int>(a)] = static_cast<double>(leaf.corners[3 * k + a][lane]);
     const glm::dvec3 normal = glm::cross(corner[1] - corner[0], corner[2] - corner[0]);
-    const glm::dvec3 middle = 0.5 * (glm::dvec3(shaft.origins_low) + glm::dvec3(shaft.origins_high));
+    const glm::dvec3 middle =
+        0.5 * (glm::dvec3(shaft.origins_low) + glm::dvec3(shaft.origins_high));
     const glm::dvec3 half = 0.5 * (glm::dvec3(shaft.origins_high) - glm::dvec3(shaft.origins_low));
     const double height = glm::dot(normal, middle - corner[0]);
     const double spread = glm::dot(glm::abs(normal), half);
-    // Embree sees the receiver's side of the plane in float; a ray that runs along the plane must not be judged.
+    // Embree sees the receiver's side of the plane in float; a ray that runs along the plane must
+    // not be judged.
     const double size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
     const double longest = static_cast<double>(leaf.longest[lane]);
-    const double margin =
-        64.0 * static_cast<double>(Rounding) * (size + longest * longest) * static_cast<double>(shaft.reach);
+    const double margin = 64.0 * static_cast<double>(Rounding) * (size + longest * longest) *
+                          static_cast<double>(shaft.reach);
     if (!(std::abs(height) > spread + margin))
         return false;
     const double side = height > 0.0 ? 1.0 : -1.0;
@@ -83,8 +87,8 @@ bool leaves_planes(const TriangleTree::Leaf& leaf, const Shaft& shaft) {
     return true;
 }
 
-/// Writes the supports of a leaf's triangles, which are much closer than those of its box where a surface runs along a plane. False where one says
-/// that the leaf is outside.
+/// Writes the supports of a leaf's triangles, which are much closer than those of its box where a
+/// surface runs along a plane. False where one says that the leaf is outside.
 bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre, const Shaft& shaft,
                      ShaftLeaves& leaves, std::size_t place) {
     const hn::CappedTag<float, Width> d;
@@ -100,7 +104,8 @@ bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre, co
             const Vector ny = hn::Set(d, shaft.normals[k].y);
             const Vector nz = hn::Set(d, shaft.normals[k].z);
             const auto along = [&](std::size_t i) {
-                return hn::MulAdd(nx, corner[i], hn::MulAdd(ny, corner[i + 1], hn::Mul(nz, corner[i + 2])));
+                return hn::MulAdd(nx, corner[i],
+                                  hn::MulAdd(ny, corner[i + 1], hn::Mul(nz, corner[i + 2])));
             };
             const Vector support = hn::Max(hn::Max(along(0), along(3)), along(6));
             most[k] = lane == 0 ? support : hn::Max(most[k], support);
@@ -128,7 +133,8 @@ float near_side(const TriangleTree::Node& node, std::size_t lane, const Shaft& s
     return shaft.sign > 0.0f ? node.bounds[axis][lane] : -node.bounds[axis + 3][lane];
 }
 
-/// Calls visit(node, lane, leaf, supports) for each leaf whose box reaches into the shaft, until it returns false.
+/// Calls visit(node, lane, leaf, supports) for each leaf whose box reaches into the shaft, until it
+/// returns false.
 template<class Visit>
 bool visit_leaves(const TriangleTree& tree, const Shaft& shaft, std::vector<std::int32_t>& stack,
                   const Visit& visit) {
@@ -140,7 +146,8 @@ bool visit_leaves(const TriangleTree& tree, const Shaft& shaft, std::vector<std:
         const std::int32_t index = stack.back();
         const TriangleTree::Node& node = tree.nodes[static_cast<std::size_t>(index)];
         stack.pop_back();
-        for (std::uint32_t bits = children_inside(node, shaft, supports); bits != 0; bits &= bits - 1) {
+        for (std::uint32_t bits = children_inside(node, shaft, supports); bits != 0;
+             bits &= bits - 1) {
             const auto lane = static_cast<std::uint32_t>(std::countr_zero(bits));
             const std::int32_t child = node.child[lane];
             if (child >= 0)
@@ -152,10 +159,12 @@ bool visit_leaves(const TriangleTree& tree, const Shaft& shaft, std::vector<std:
     return true;
 }
 
-bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most, ShaftLeaves& leaves) {
+bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
+                 ShaftLeaves& leaves) {
     leaves.found.clear();
     leaves.order.clear();
-    const auto add = [&](std::int32_t node, std::uint32_t lane, std::int32_t leaf, const Supports&) {
+    const auto add = [&](std::int32_t node, std::uint32_t lane, std::int32_t leaf,
+                         const Supports&) {
         if (leaves_planes(tree.leaves[static_cast<std::size_t>(leaf)], shaft))
             return true;
         const float near = near_side(tree.nodes[static_cast<std::size_t>(node)], lane, shaft);
@@ -173,7 +182,8 @@ bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
         const TriangleTree::Node& node = tree.nodes[static_cast<std::size_t>(found.node)];
         const std::int32_t leaf = found.leaf;
         const std::size_t i = leaves.size;
-        if (!supports_inside(tree.leaves[static_cast<std::size_t>(leaf)], tree.centre, shaft, leaves, i))
+        if (!supports_inside(tree.leaves[static_cast<std::size_t>(leaf)], tree.centre, shaft,
+                             leaves, i))
             continue;
         ++leaves.size;
         leaves.leaves[i] = leaf;
@@ -199,7 +209,8 @@ bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
 bool find_boxes(const TriangleTree& tree, const Shaft& shaft, std::size_t most, ShaftBoxes& boxes) {
     boxes.found.clear();
     boxes.order.clear();
-    const auto add = [&](std::int32_t node, std::uint32_t lane, std::int32_t leaf, const Supports& supports) {
+    const auto add = [&](std::int32_t node, std::uint32_t lane, std::int32_t leaf,
+                         const Supports& supports) {
         const float near = near_side(tree.nodes[static_cast<std::size_t>(node)], lane, shaft);
         boxes.order.push_back(sort_key(near, boxes.found.size()));
         ShaftBoxes::Found& found = boxes.found.emplace_back();
@@ -225,7 +236,8 @@ HWY_EXPORT(find_leaves);
 HWY_EXPORT(find_boxes);
 } // namespace
 
-bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most, ShaftLeaves& leaves) {
+bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
+                 ShaftLeaves& leaves) {
     return HWY_DYNAMIC_DISPATCH(find_leaves)(tree, shaft, most, leaves);
 }
 

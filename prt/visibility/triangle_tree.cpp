@@ -40,7 +40,8 @@ struct Item {
 struct Part {
     std::span<Item> items;
     Box box;
-    bool is_settled = false; ///< a leaf that no cut makes better
+    /// A leaf that no cut makes better
+    bool is_settled = false;
     [[nodiscard]] bool fits_leaf() const { return items.size() <= Width; }
 };
 
@@ -51,7 +52,8 @@ Part part_of(std::span<Item> items) {
     return part;
 }
 
-/// Where to cut a part in two: the best of 15 planes on each axis by the surface area heuristic, counted in whole leaves.
+/// Where to cut a part in two: the best of 15 planes on each axis by the surface area heuristic,
+/// counted in whole leaves.
 std::pair<Part, Part> split(const Part& part) {
     constexpr int NumBins = 16;
     Box middles;
@@ -103,8 +105,9 @@ std::pair<Part, Part> split(const Part& part) {
     }
     auto middle = part.items.begin() + static_cast<std::ptrdiff_t>(part.items.size() / 2);
     if (best_cut > 0) // otherwise all lie in one place: halves
-        middle = std::stable_partition(part.items.begin(), part.items.end(),
-                                       [&](const Item& item) { return bin_of(item, best_axis) < best_cut; });
+        middle = std::stable_partition(part.items.begin(), part.items.end(), [&](const Item& item) {
+            return bin_of(item, best_axis) < best_cut;
+        });
     const auto first_size = static_cast<std::size_t>(middle - part.items.begin());
     return {part_of(part.items.first(first_size)), part_of(part.items.subspan(first_size))};
 }
@@ -122,14 +125,15 @@ public:
             const auto rank = [](const Part& part) {
                 return part.is_settled ? -1.0 : part.box.half_area();
             };
-            const auto biggest = std::max_element(
-                parts.begin(), parts.end(), [&](const Part& a, const Part& b) { return rank(a) < rank(b); });
+            const auto biggest =
+                std::max_element(parts.begin(), parts.end(),
+                                 [&](const Part& a, const Part& b) { return rank(a) < rank(b); });
             if (biggest->is_settled)
                 break;
             const auto [first, second] = split(*biggest);
             // Triangles that would fit one leaf part only where they are of very different size.
-            if (biggest->fits_leaf() &&
-                std::min(first.box.half_area(), second.box.half_area()) > 0.005 * biggest->box.half_area()) {
+            if (biggest->fits_leaf() && std::min(first.box.half_area(), second.box.half_area()) >
+                                            0.005 * biggest->box.half_area()) {
                 biggest->is_settled = true;
                 continue;
             }
@@ -184,7 +188,8 @@ private:
 
 } // namespace
 
-TriangleTree triangle_tree(std::span<const glm::vec3> positions, std::span<const mesh::Triangle> triangles) {
+TriangleTree triangle_tree(std::span<const glm::vec3> positions,
+                           std::span<const mesh::Triangle> triangles) {
     TriangleTree tree;
     if (triangles.empty())
         return tree;
@@ -201,7 +206,8 @@ TriangleTree triangle_tree(std::span<const glm::vec3> positions, std::span<const
     }
     const Part whole = part_of(items);
     for (int axis = 0; axis < 3; ++axis)
-        tree.extent = std::max({tree.extent, std::abs(whole.box.low[axis]), std::abs(whole.box.high[axis])});
+        tree.extent =
+            std::max({tree.extent, std::abs(whole.box.low[axis]), std::abs(whole.box.high[axis])});
     Builder(positions, triangles, tree).node(whole);
     return tree;
 }

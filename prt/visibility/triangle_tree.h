@@ -1,4 +1,5 @@
-// A bounding volume hierarchy whose nodes have sixteen children, in the layout that vector kernels read.
+// A bounding volume hierarchy whose nodes have sixteen children, in the layout that vector kernels
+// read.
 #pragma once
 
 #include <array>
@@ -13,27 +14,33 @@
 
 namespace relumine::prt {
 
-/// Triangles sorted into leaves of up to 16, and nodes of up to 16 children above them. The boxes' coordinates are relative to `centre`, in
-/// float: each is off by at most 2^-24 of `extent`. The triangles' are those given.
+/// Triangles sorted into leaves of up to 16, and nodes of up to 16 children above them. The boxes'
+/// coordinates are relative to `centre`, in float: each is off by at most 2^-24 of `extent`. The
+/// triangles' are those given.
 struct TriangleTree {
     static constexpr std::size_t Width = 16;
 
     struct alignas(64) Node {
-        /// Boxes of the children: low x, y, z, high x, y, z. An unused lane is an inside-out box, which is outside of everything.
+        /// Boxes of the children: low x, y, z, high x, y, z. An unused lane is an inside-out box,
+        /// which is outside of everything.
         std::array<std::array<float, Width>, 6> bounds;
-        std::array<std::int32_t, Width> child; ///< >= 0: that node; < 0: leaf ~child
+        /// >= 0: that node; < 0: leaf ~child
+        std::array<std::int32_t, Width> child;
     };
     struct alignas(64) Leaf {
-        std::array<std::array<float, Width>, 9>
-            corners;                      ///< x, y, z of corners 0, 1, 2; unused lanes repeat lane 0
-        std::array<float, Width> longest; ///< largest component of the triangle's edges
+        /// x, y, z of corners 0, 1, 2; unused lanes repeat lane 0
+        std::array<std::array<float, Width>, 9> corners;
+        /// Largest component of the triangle's edges
+        std::array<float, Width> longest;
         std::uint32_t size = 0;
     };
 
-    std::vector<Node> nodes; ///< the root first; empty where there are no triangles
+    /// The root first; empty where there are no triangles
+    std::vector<Node> nodes;
     std::vector<Leaf> leaves;
     glm::vec3 centre{0.0f};
-    float extent = 0.0f; ///< largest coordinate
+    /// Largest coordinate
+    float extent = 0.0f;
 };
 
 /// Splits where the surface area heuristic says. The same tree for the same triangles. O(n log n).

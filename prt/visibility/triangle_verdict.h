@@ -13,7 +13,7 @@ namespace relumine::prt {
 enum class Verdict { Miss, Hit, Doubt };
 
 /// The ray from `origin` into the unit direction `w`, and triangle `lane` of a leaf.
-[[nodiscard]] Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3& origin,
-                            const glm::vec3& w);
+[[nodiscard]] Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane,
+                            const glm::vec3& origin, const glm::vec3& w);
 
 } // namespace relumine::prt

@@ -12,10 +12,12 @@
 
 namespace relumine::relight {
 
-/// Writes [values.size() x 3] float32 as .npy version 1.0 (numpy.load). Whole or not at all. Throws std::runtime_error naming the path.
+/// Writes [values.size() x 3] float32 as .npy version 1.0 (numpy.load). Whole or not at all. Throws
+/// std::runtime_error naming the path.
 void save_npy(const std::filesystem::path& path, std::span<const glm::vec3> values);
 
-/// Writes [num_frames x num_values x 3] float32 as .npy, frame by frame: only one frame is in memory. Without commit() no file.
+/// Writes [num_frames x num_values x 3] float32 as .npy, frame by frame: only one frame is in
+/// memory. Without commit() no file.
 class NpyFrames {
 public:
     /// Throws std::runtime_error naming the path, as all its functions do.
@@ -34,11 +36,12 @@ private:
 /// Vectors in rows: the array's shape without its last axis, which is x, y, z.
 struct VectorArray {
     std::vector<std::size_t> shape;
-    std::vector<glm::vec3> values; ///< as many as the product of the shape, C order
+    /// As many as the product of the shape, C order
+    std::vector<glm::vec3> values;
 };
 
-/// Reads a .npy file (versions 1 to 3) of little-endian float32 or float64, C order, whose last axis is 3 long.
-/// Throws std::runtime_error "path: expected X, got Y".
+/// Reads a .npy file (versions 1 to 3) of little-endian float32 or float64, C order, whose last
+/// axis is 3 long. Throws std::runtime_error "path: expected X, got Y".
 [[nodiscard]] VectorArray load_npy(const std::filesystem::path& path);
 
 } // namespace relumine::relight

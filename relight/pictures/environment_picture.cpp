@@ -48,7 +48,8 @@ public:
     void put(int x, int y, const glm::vec3& colour, float opacity = 1.0f) {
         if (x < 0 || y < 0 || x >= Width || y >= Height)
             return;
-        glm::vec3& pixel = picture_.pixels[static_cast<std::size_t>(y) * Width + static_cast<std::size_t>(x)];
+        glm::vec3& pixel =
+            picture_.pixels[static_cast<std::size_t>(y) * Width + static_cast<std::size_t>(x)];
         pixel = glm::mix(pixel, colour, opacity);
     }
 
@@ -74,7 +75,8 @@ public:
             for (int row = 0; row < 7; ++row) {
                 for (int column = 0; column < 5; ++column) {
                     const int dot_x = start + column * Dot, dot_y = top + (row + 1) * Dot;
-                    if (glyph->rows[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)] == '#')
+                    if (glyph->rows[static_cast<std::size_t>(row)]
+                                   [static_cast<std::size_t>(column)] == '#')
                         box(dot_x, dot_y, dot_x + Dot, dot_y + Dot, colour, 1.0f);
                 }
             }
@@ -119,7 +121,8 @@ Place place(const glm::dvec3& w) {
             (0.5 - angles.elevation_degrees / 180.0) * Height};
 }
 
-/// Reinhard's global operator: the geometric mean of luminance becomes middle grey, the brightest stays below white.
+/// Reinhard's global operator: the geometric mean of luminance becomes middle grey, the brightest
+/// stays below white.
 void tone_map(std::vector<glm::vec3>& pixels) {
     double sum = 0.0, largest = 0.0;
     for (const glm::vec3& pixel : pixels)
@@ -140,18 +143,18 @@ void tone_map(std::vector<glm::vec3>& pixels) {
 void check_environment_picture(const std::string& path) {
     const std::string extension = std::filesystem::path(path).extension().string();
     if (extension != ".png")
-        throw std::runtime_error(
-            fmt::format("{}: expected a picture's name that ends in .png, got '{}'", path, extension));
+        throw std::runtime_error(fmt::format(
+            "{}: expected a picture's name that ends in .png, got '{}'", path, extension));
 }
 
 void save_environment_picture(const std::string& path, const cubemap::EnvironmentImage& image,
                               const SunMark& sun) {
-    const cubemap::CubeMap map =
-        cubemap::resample(image, std::min<std::uint32_t>(Width / 4, cubemap::natural_resolution(image)));
-    relight::Picture picture{.width = Width,
-                             .height = Height,
-                             .pixels =
-                                 cubemap::to_image(map, cubemap::Layout::LatLong, Width, Height).pixels};
+    const cubemap::CubeMap map = cubemap::resample(
+        image, std::min<std::uint32_t>(Width / 4, cubemap::natural_resolution(image)));
+    relight::Picture picture{
+        .width = Width,
+        .height = Height,
+        .pixels = cubemap::to_image(map, cubemap::Layout::LatLong, Width, Height).pixels};
     tone_map(picture.pixels);
 
     Canvas canvas(picture);
@@ -167,18 +170,19 @@ void save_environment_picture(const std::string& path, const cubemap::Environmen
     constexpr int Beside = 22; // from a cross to its name
     const int middle = Height / 2;
     // A pole is a whole row of the picture, and -Z lies on both its ends.
-    for (const Axis& axis : {Axis{"+X", Width / 4, middle, red}, Axis{"-X", 3 * Width / 4, middle, red},
-                             Axis{"+Z", Width / 2, middle, blue}, Axis{"-Z", 0, middle, blue},
-                             Axis{"-Z", Width - 1, middle, blue}, Axis{"+Y", Width / 2, 0, green},
-                             Axis{"-Y", Width / 2, Height - 1, green}}) {
+    for (const Axis& axis :
+         {Axis{"+X", Width / 4, middle, red}, Axis{"-X", 3 * Width / 4, middle, red},
+          Axis{"+Z", Width / 2, middle, blue}, Axis{"-Z", 0, middle, blue},
+          Axis{"-Z", Width - 1, middle, blue}, Axis{"+Y", Width / 2, 0, green},
+          Axis{"-Y", Width / 2, Height - 1, green}}) {
         canvas.cross(axis.x, axis.y, axis.colour);
         canvas.text(axis.x, axis.y + (axis.y > middle ? -Beside : Beside), axis.name, axis.colour);
     }
     if (!sun.label.empty()) {
         const Place at = place(sun.direction);
         canvas.ring(at.x, at.y, yellow);
-        canvas.text(static_cast<int>(at.x), static_cast<int>(at.y + (at.y > 40.0 ? -28.0 : 28.0)), sun.label,
-                    yellow);
+        canvas.text(static_cast<int>(at.x), static_cast<int>(at.y + (at.y > 40.0 ? -28.0 : 28.0)),
+                    sun.label, yellow);
     }
     relight::save_picture(path, picture);
 }

@@ -13,7 +13,8 @@ float suitable_exposure_ev(std::span<const glm::vec3> radiance) {
         brightness.push_back(std::max({value.r, value.g, value.b}));
     if (brightness.empty())
         return 0.0f;
-    const auto bright = brightness.begin() + static_cast<std::ptrdiff_t>(brightness.size() * 49 / 50);
+    const auto bright =
+        brightness.begin() + static_cast<std::ptrdiff_t>(brightness.size() * 49 / 50);
     std::nth_element(brightness.begin(), bright, brightness.end());
     if (!(*bright > 0.0f) || (*bright > 0.4f && *bright < 2.5f))
         return 0.0f;

@@ -7,8 +7,8 @@
 
 namespace relumine::relight {
 
-/// In stops: 0 where that leaves the brightest fiftieth of the radiances neither dark nor far beyond white; else what makes it white, in half
-/// stops, from -20 to 20. O(n).
+/// In stops: 0 where that leaves the brightest fiftieth of the radiances neither dark nor far
+/// beyond white; else what makes it white, in half stops, from -20 to 20. O(n).
 [[nodiscard]] float suitable_exposure_ev(std::span<const glm::vec3> radiance);
 
 } // namespace relumine::relight

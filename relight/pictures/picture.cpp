@@ -31,7 +31,8 @@ float aspect_of(const PictureOptions& options) {
     return static_cast<float>(options.width) / static_cast<float>(options.height);
 }
 
-/// Box around what stands on the ground: triangles wholly in the lowest horizontal plane are left out.
+/// Box around what stands on the ground: triangles wholly in the lowest horizontal plane are left
+/// out.
 mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh) {
     const mesh::Bounds all = mesh::bounds(mesh);
     const float ground = all.min.y + 1e-3f * all.size().y;
@@ -60,8 +61,8 @@ std::vector<std::byte> encode_png(const Picture& picture, float scale) {
         for (int channel = 0; channel < 3; ++channel)
             bytes.push_back(srgb_byte(picture.pixels[i][channel] / alpha * scale));
         if (num_channels == 4) // linear
-            bytes.push_back(
-                static_cast<std::uint8_t>(std::lround(std::clamp(picture.alpha[i], 0.0f, 1.0f) * 255.0f)));
+            bytes.push_back(static_cast<std::uint8_t>(
+                std::lround(std::clamp(picture.alpha[i], 0.0f, 1.0f) * 255.0f)));
     }
     std::vector<std::byte> png;
     const auto append = [](void* context, void* data, int size) {
@@ -79,7 +80,8 @@ std::vector<std::byte> encode_png(const Picture& picture, float scale) {
 
 } // namespace
 
-Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& options, float fov_degrees) {
+Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& options,
+                        float fov_degrees) {
     const mesh::Bounds box = subject_bounds(mesh);
     const glm::vec3 from_target = glm::normalize(glm::vec3(0.45f, 0.4f, 1.0f));
     // About the origin: far from it floats would not hold so short a way from target to eye.
@@ -93,11 +95,15 @@ Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& op
         const glm::vec3 sign((corner & 1) != 0 ? 0.5f : -0.5f, (corner & 2) != 0 ? 0.5f : -0.5f,
                              (corner & 4) != 0 ? 0.5f : -0.5f);
         const glm::vec3 offset = sign * box.size();
-        const float across = std::abs(glm::dot(offset, frame.right)) / glm::dot(frame.right, frame.right);
+        const float across =
+            std::abs(glm::dot(offset, frame.right)) / glm::dot(frame.right, frame.right);
         const float upwards = std::abs(glm::dot(offset, frame.up)) / glm::dot(frame.up, frame.up);
-        distance = std::max(distance, Margin * std::max(across, upwards) - glm::dot(offset, frame.forward));
+        distance = std::max(distance,
+                            Margin * std::max(across, upwards) - glm::dot(offset, frame.forward));
     }
-    return {.eye = box.center() + distance * from_target, .target = box.center(), .fov_degrees = fov_degrees};
+    return {.eye = box.center() + distance * from_target,
+            .target = box.center(),
+            .fov_degrees = fov_degrees};
 }
 
 Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
@@ -116,11 +122,12 @@ constexpr std::uint32_t NoTriangle = ~std::uint32_t{0};
 
 } // namespace
 
-PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const Camera& camera,
-                         const PictureOptions& options, std::size_t max_bytes)
+PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                         const Camera& camera, const PictureOptions& options, std::size_t max_bytes)
     : mesh_(mesh), rays_(rays), camera_(camera), options_(options) {
     const prt::PictureRays grid = rays_of(camera, options);
-    const std::size_t num_samples = std::size_t{options.width} * options.height * grid.samples_per_pixel();
+    const std::size_t num_samples =
+        std::size_t{options.width} * options.height * grid.samples_per_pixel();
     if (num_samples > max_bytes / sizeof(Sample))
         return;
     samples_.resize(num_samples);
@@ -128,9 +135,11 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
         std::size_t index = std::size_t{y} * options.width * grid.samples_per_pixel();
         for (std::uint32_t x = 0; x < options.width; ++x)
             for (std::uint32_t i = 0; i < grid.samples_per_pixel(); ++i) {
-                const std::optional<prt::Hit> hit = rays.closest_hit(camera.eye, grid.direction(x, y, i));
-                samples_[index++] = hit ? Sample{hit->triangle, hit->barycentric.x, hit->barycentric.y}
-                                        : Sample{NoTriangle, 0.0f, 0.0f};
+                const std::optional<prt::Hit> hit =
+                    rays.closest_hit(camera.eye, grid.direction(x, y, i));
+                samples_[index++] =
+                    hit ? Sample{hit->triangle, hit->barycentric.x, hit->barycentric.y}
+                        : Sample{NoTriangle, 0.0f, 0.0f};
             }
     });
 }
@@ -173,12 +182,15 @@ Picture PictureView::draw(std::span<const glm::vec3> vertex_radiance,
 }
 
 void save_picture(const std::filesystem::path& path, const Picture& picture, double exposure_ev) {
-    if (picture.pixels.empty() || picture.pixels.size() != std::size_t{picture.width} * picture.height)
-        throw std::invalid_argument(fmt::format("{}: expected {} x {} pixels, got {}", path.string(),
-                                                picture.width, picture.height, picture.pixels.size()));
+    if (picture.pixels.empty() ||
+        picture.pixels.size() != std::size_t{picture.width} * picture.height)
+        throw std::invalid_argument(fmt::format("{}: expected {} x {} pixels, got {}",
+                                                path.string(), picture.width, picture.height,
+                                                picture.pixels.size()));
     if (!picture.alpha.empty() && picture.alpha.size() != picture.pixels.size())
         throw std::invalid_argument(fmt::format("{}: expected one alpha per pixel, got {} for {}",
-                                                path.string(), picture.alpha.size(), picture.pixels.size()));
+                                                path.string(), picture.alpha.size(),
+                                                picture.pixels.size()));
     const auto scale = static_cast<float>(std::exp2(exposure_ev));
     std::vector<std::byte> bytes;
     std::string extension = path.extension().string();
@@ -195,8 +207,8 @@ void save_picture(const std::filesystem::path& path, const Picture& picture, dou
             pixel *= scale;
         bytes = cubemap::encode_exr(image, picture.alpha);
     } else {
-        throw std::invalid_argument(
-            fmt::format("{}: expected .png or .exr, got '{}'", path.string(), path.extension().string()));
+        throw std::invalid_argument(fmt::format("{}: expected .png or .exr, got '{}'",
+                                                path.string(), path.extension().string()));
     }
     files::OutputFile file(path);
     file.write(bytes);

@@ -21,7 +21,8 @@ constexpr double Top = 40.0;
 constexpr double Bottom = 56.0;
 
 // Okabe and Ito's colours, which colour-blind readers can tell apart.
-constexpr std::array Colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000"};
+constexpr std::array Colours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
+                                "#e69f00", "#56b4e9", "#000000"};
 
 std::string escaped(const std::string& text) {
     std::string result;
@@ -57,7 +58,8 @@ public:
         if (low_ > high_)
             low_ = high_ = 1.0;
         if (scale_ == Scale::Log) {
-            // Whole powers of two or ten would waste the plot; a twentieth of the range stays free at both ends.
+            // Whole powers of two or ten would waste the plot; a twentieth of the range stays free
+            // at both ends.
             const double margin = std::max(0.05 * std::log(high_ / low_), 0.05);
             low_ *= std::exp(-margin);
             high_ *= std::exp(margin);
@@ -169,21 +171,21 @@ private:
         const double bottom = Height - Bottom;
         const double right = Width - Right;
         for (const double tick : x_.ticks()) {
-            put(R"(<line x1="{0:.1f}" y1="{1}" x2="{0:.1f}" y2="{2}" stroke="#dddddd"/>)", across(tick), Top,
-                bottom);
-            put(R"(<text x="{:.1f}" y="{}" text-anchor="middle">{}</text>)", across(tick), bottom + 17.0,
-                number(tick));
+            put(R"(<line x1="{0:.1f}" y1="{1}" x2="{0:.1f}" y2="{2}" stroke="#dddddd"/>)",
+                across(tick), Top, bottom);
+            put(R"(<text x="{:.1f}" y="{}" text-anchor="middle">{}</text>)", across(tick),
+                bottom + 17.0, number(tick));
         }
         for (const double tick : y_.ticks()) {
-            put(R"(<line x1="{0}" y1="{1:.1f}" x2="{2}" y2="{1:.1f}" stroke="#dddddd"/>)", Left, down(tick),
-                right);
-            put(R"(<text x="{}" y="{:.1f}" text-anchor="end">{}</text>)", Left - 6.0, down(tick) + 4.0,
-                number(tick));
+            put(R"(<line x1="{0}" y1="{1:.1f}" x2="{2}" y2="{1:.1f}" stroke="#dddddd"/>)", Left,
+                down(tick), right);
+            put(R"(<text x="{}" y="{:.1f}" text-anchor="end">{}</text>)", Left - 6.0,
+                down(tick) + 4.0, number(tick));
         }
         put(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="none" stroke="black"/>)", Left, Top,
             right - Left, bottom - Top);
-        put(R"(<text x="{}" y="{}" text-anchor="middle">{}</text>)", 0.5 * (Left + right), Height - 16.0,
-            escaped(plot_.x_label));
+        put(R"(<text x="{}" y="{}" text-anchor="middle">{}</text>)", 0.5 * (Left + right),
+            Height - 16.0, escaped(plot_.x_label));
         put(R"svg(<text x="18" y="{0}" text-anchor="middle" transform="rotate(-90 18 {0})">{1}</text>)svg",
             0.5 * (Top + bottom), escaped(plot_.y_label));
     }
@@ -200,11 +202,13 @@ private:
                     down(series.y[i]), colour);
         }
         if (series.line)
-            put(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"/>)", points, colour);
+            put(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"/>)", points,
+                colour);
         const double y = Top + 12.0 + 20.0 * static_cast<double>(index);
-        put(R"(<rect x="{}" y="{}" width="16" height="4" fill="{}"/>)", Width - Right + 12.0, y - 2.0,
-            colour);
-        put(R"(<text x="{}" y="{}">{}</text>)", Width - Right + 34.0, y + 4.0, escaped(series.name));
+        put(R"(<rect x="{}" y="{}" width="16" height="4" fill="{}"/>)", Width - Right + 12.0,
+            y - 2.0, colour);
+        put(R"(<text x="{}" y="{}">{}</text>)", Width - Right + 34.0, y + 4.0,
+            escaped(series.name));
     }
 
     static constexpr std::size_t MaxMarked = 40; // points of a line; more would hide it

@@ -13,8 +13,10 @@ struct Plot {
     struct Series {
         std::string name;
         std::vector<double> x;
-        std::vector<double> y; ///< as many as x
-        bool line = true;      ///< points joined by a line; otherwise points alone
+        /// As many as x
+        std::vector<double> y;
+        /// Points joined by a line; otherwise points alone
+        bool line = true;
     };
     std::string title = {};
     std::string x_label = {};
@@ -24,8 +26,9 @@ struct Plot {
     std::vector<Series> series = {};
 };
 
-/// The plot as a whole SVG document, 720 x 440, with axes, grid, ticks and a legend. Points that are not finite, or not above zero on a
-/// logarithmic axis, are left out. Throws std::invalid_argument for a series whose x and y differ in number.
+/// The plot as a whole SVG document, 720 x 440, with axes, grid, ticks and a legend. Points that
+/// are not finite, or not above zero on a logarithmic axis, are left out. Throws
+/// std::invalid_argument for a series whose x and y differ in number.
 [[nodiscard]] std::string svg(const Plot& plot);
 
 } // namespace relumine::relight

@@ -13,15 +13,15 @@ namespace {
 
 void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::vec3> radiance) {
     if (radiance.size() != num_receivers)
-        throw std::invalid_argument(
-            fmt::format("expected the radiance of {} receivers, got {}", num_receivers, radiance.size()));
+        throw std::invalid_argument(fmt::format("expected the radiance of {} receivers, got {}",
+                                                num_receivers, radiance.size()));
 }
 
-/// Means over the samples of each pixel. `behind(x, y, i)`: radiance of a sample without a receiver. Coverage goes to the picture's
-/// alpha where that is asked for.
+/// Means over the samples of each pixel. `behind(x, y, i)`: radiance of a sample without a
+/// receiver. Coverage goes to the picture's alpha where that is asked for.
 template<typename Behind>
-Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance, const Behind& behind,
-                 bool with_alpha) {
+Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
+                 const Behind& behind, bool with_alpha) {
     require_one_per_receiver(layout.samples.size(), radiance);
     const std::size_t num_pixels = std::size_t{layout.width} * layout.height;
     Picture picture{.width = layout.width, .height = layout.height};
@@ -31,13 +31,15 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
     const auto per_pixel = static_cast<std::uint32_t>(layout.samples_per_pixel());
     tbb::parallel_for(std::uint32_t{0}, layout.height, [&](std::uint32_t y) {
         std::size_t pixel = std::size_t{y} * layout.width;
-        const auto first = std::lower_bound(layout.samples.begin(), layout.samples.end(), pixel * per_pixel);
+        const auto first =
+            std::lower_bound(layout.samples.begin(), layout.samples.end(), pixel * per_pixel);
         auto receiver = static_cast<std::size_t>(first - layout.samples.begin());
         for (std::uint32_t x = 0; x < layout.width; ++x, ++pixel) {
             glm::vec3 sum(0.0f);
             std::uint32_t num_hits = 0;
             for (std::uint32_t i = 0; i < per_pixel; ++i) {
-                if (receiver < layout.samples.size() && layout.samples[receiver] == pixel * per_pixel + i) {
+                if (receiver < layout.samples.size() &&
+                    layout.samples[receiver] == pixel * per_pixel + i) {
                     sum += radiance[receiver++];
                     ++num_hits;
                 } else {
@@ -85,7 +87,8 @@ private:
         const std::uint32_t x = texel % picture_.width;
         const std::uint32_t y = texel / picture_.width;
         for (std::uint32_t v = y - std::min(y, 1u); v <= std::min(y + 1, picture_.height - 1); ++v)
-            for (std::uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, picture_.width - 1); ++u)
+            for (std::uint32_t u = x - std::min(x, 1u); u <= std::min(x + 1, picture_.width - 1);
+                 ++u)
                 visit(v * picture_.width + u);
     }
 
@@ -102,8 +105,10 @@ private:
     }
 
     Picture& picture_;
-    std::vector<std::uint32_t> ring_of_; ///< [height * width] 0: receivers
-    std::vector<std::uint32_t> ring_;    ///< the outermost one
+    /// [height * width] 0: receivers
+    std::vector<std::uint32_t> ring_of_;
+    /// The outermost one
+    std::vector<std::uint32_t> ring_;
 };
 
 } // namespace
@@ -112,10 +117,14 @@ Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radia
                 const cubemap::CubeMap& background) {
     if (background.resolution == 0)
         throw std::invalid_argument("expected a background with texels");
-    const prt::PictureRays rays(layout.camera, layout.width, layout.height, layout.samples_per_axis);
+    const prt::PictureRays rays(layout.camera, layout.width, layout.height,
+                                layout.samples_per_axis);
     return averaged(
         layout, radiance,
-        [&](auto x, auto y, auto i) { return cubemap::sample(background, rays.direction(x, y, i)); }, false);
+        [&](auto x, auto y, auto i) {
+            return cubemap::sample(background, rays.direction(x, y, i));
+        },
+        false);
 }
 
 Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance) {
@@ -123,7 +132,8 @@ Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec
         layout, radiance, [](auto, auto, auto) { return glm::vec3(0.0f); }, true);
 }
 
-Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance, std::uint32_t gutter) {
+Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance,
+                std::uint32_t gutter) {
     require_one_per_receiver(layout.texels.size(), radiance);
     Picture picture{.width = layout.width, .height = layout.height};
     picture.pixels.resize(layout.num_texels());

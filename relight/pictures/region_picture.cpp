@@ -1,4 +1,5 @@
-// Tone mapping based on: E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone Reproduction for Digital Images", SIGGRAPH 2002.
+// Tone mapping based on: E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone
+// Reproduction for Digital Images", SIGGRAPH 2002.
 #include "relight/pictures/region_picture.h"
 
 #include <algorithm>
@@ -14,7 +15,8 @@ namespace {
 
 const glm::vec3 LineColour(0.05f, 0.75f, 0.2f);
 
-/// How many pixels of the picture a pixel of the map becomes, or how many of the map become one of the picture.
+/// How many pixels of the picture a pixel of the map becomes, or how many of the map become one of
+/// the picture.
 struct Scale {
     std::uint32_t grow = 1, shrink = 1;
     explicit Scale(std::uint32_t width) {
@@ -72,7 +74,8 @@ public:
         const double value = key_ * lights::luminance(radiance);
         if (value <= 0.0)
             return glm::vec3(0.0f);
-        const double shown = value * (1.0 + value / (white_ * white_)) / (1.0 + value); // their Eq. 4
+        const double shown =
+            value * (1.0 + value / (white_ * white_)) / (1.0 + value); // their Eq. 4
         return glm::vec3(glm::min(radiance * (key_ * shown / value), glm::dvec3(1.0)));
     }
 
@@ -91,8 +94,10 @@ Picture environment_picture(const lights::LatLongGrid& grid, const Scale& scale)
             const std::uint32_t first_y = y * scale.shrink / scale.grow;
             glm::dvec3 sum(0.0);
             double num = 0.0;
-            for (std::uint32_t j = first_y; j < std::min(first_y + scale.shrink, grid.height()); ++j)
-                for (std::uint32_t i = first_x; i < std::min(first_x + scale.shrink, grid.width()); ++i) {
+            for (std::uint32_t j = first_y; j < std::min(first_y + scale.shrink, grid.height());
+                 ++j)
+                for (std::uint32_t i = first_x; i < std::min(first_x + scale.shrink, grid.width());
+                     ++i) {
                     sum += grid.radiance(i, j);
                     num += 1.0;
                 }
@@ -102,18 +107,21 @@ Picture environment_picture(const lights::LatLongGrid& grid, const Scale& scale)
     return picture;
 }
 
-void blend(Picture& picture, std::int64_t x, std::int64_t y, const glm::vec3& colour, double coverage) {
+void blend(Picture& picture, std::int64_t x, std::int64_t y, const glm::vec3& colour,
+           double coverage) {
     if (y < 0 || y >= picture.height || coverage <= 0.0)
         return;
     const std::int64_t width = picture.width;
-    const auto column = static_cast<std::size_t>(((x % width) + width) % width); // longitude goes round
+    const auto column =
+        static_cast<std::size_t>(((x % width) + width) % width); // longitude goes round
     glm::vec3& pixel = picture.pixels[static_cast<std::size_t>(y) * picture.width + column];
     pixel = glm::mix(pixel, colour, static_cast<float>(std::min(coverage, 1.0)));
 }
 
 void draw_borders(Picture& picture, const lights::PixelRectangle& region, const Scale& scale) {
     const auto left = scale.of(region.x0), right = std::min(scale.of(region.x1), picture.width - 1);
-    const auto top = scale.of(region.y0), bottom = std::min(scale.of(region.y1), picture.height - 1);
+    const auto top = scale.of(region.y0),
+               bottom = std::min(scale.of(region.y1), picture.height - 1);
     for (auto x = left; x <= right; ++x) {
         blend(picture, x, top, LineColour, 1.0);
         blend(picture, x, bottom, LineColour, 1.0);
@@ -145,7 +153,8 @@ void draw_light(Picture& picture, const lights::DistantLight& light) {
     const auto row = std::llround(y);
     for (std::int64_t j = row - reach; j <= row + reach; ++j)
         for (std::int64_t i = column - reach; i <= column + reach; ++i) {
-            const double distance = std::hypot(static_cast<double>(i) - x, static_cast<double>(j) - y);
+            const double distance =
+                std::hypot(static_cast<double>(i) - x, static_cast<double>(j) - y);
             blend(picture, i, j, glm::vec3(0.0f), disc(distance, radius + 1.5));
             blend(picture, i, j, colour, disc(distance, radius));
         }
@@ -153,7 +162,8 @@ void draw_light(Picture& picture, const lights::DistantLight& light) {
 
 } // namespace
 
-Picture region_picture(const cubemap::EnvironmentImage& lat_long, const lights::Placement& placement) {
+Picture region_picture(const cubemap::EnvironmentImage& lat_long,
+                       const lights::Placement& placement) {
     const lights::LatLongGrid grid(lat_long);
     const Scale scale(grid.width());
     Picture picture = environment_picture(grid, scale);

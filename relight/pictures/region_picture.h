@@ -7,9 +7,10 @@
 
 namespace relumine::relight {
 
-/// The lat-long tone-mapped (Reinhard's global operator), between 1024 and 2048 pixels wide where whole multiples of its own size allow, the
-/// regions' borders as thin lines and every light as a small disc in its own colour with a dark ring. Linear colours in [0, 1].
-/// Throws std::invalid_argument for images that LatLongGrid refuses.
+/// The lat-long tone-mapped (Reinhard's global operator), between 1024 and 2048 pixels wide where
+/// whole multiples of its own size allow, the regions' borders as thin lines and every light as a
+/// small disc in its own colour with a dark ring. Linear colours in [0, 1]. Throws
+/// std::invalid_argument for images that LatLongGrid refuses.
 [[nodiscard]] Picture region_picture(const cubemap::EnvironmentImage& lat_long,
                                      const lights::Placement& placement);
 

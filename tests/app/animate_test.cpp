@@ -33,14 +33,15 @@ protected:
     }
     void lamps(int num_frames) const {
         for (int i = 0; i < num_frames; ++i)
-            write("lamp." + std::to_string(i) + ".hdr", lamp_hdr(10 + 20 * static_cast<std::uint32_t>(i)));
+            write("lamp." + std::to_string(i) + ".hdr",
+                  lamp_hdr(10 + 20 * static_cast<std::uint32_t>(i)));
     }
 };
 
 TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
     lamps(4);
-    const nlohmann::json report = succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.###.npy",
-                                           "--vertices", "all.npy", "--json"})
+    const nlohmann::json report = succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o",
+                                           "lit.###.npy", "--vertices", "all.npy", "--json"})
                                       .json();
     EXPECT_EQ(report["frames"], 4);
     EXPECT_EQ(report["frames_lit"], 4);
@@ -58,13 +59,15 @@ TEST_F(Animate, EveryFrameIsWhatRelightMakesOfIt) {
 }
 
 TEST_F(Animate, PicturesAreThoseOfRelight) {
-    succeed({"generate", "sequence", "switch", "-o", "seq", "--num-frames", "4", "--face-resolution", "16",
+    succeed({"generate", "sequence", "switch", "-o", "seq", "--num-frames", "4",
+             "--face-resolution", "16", "-q"});
+    succeed({"animate", "scene.prt", "seq/switch.%04d.exr", "-o", "lit.%04d.png", "--size", "40x30",
              "-q"});
-    succeed({"animate", "scene.prt", "seq/switch.%04d.exr", "-o", "lit.%04d.png", "--size", "40x30", "-q"});
-    // Full relightings are bit by bit the same: the first frame, and the one where the light goes on.
+    // Full relightings are bit by bit the same: the first frame, and the one where the light goes
+    // on.
     for (const char* frame : {"0000", "0001"}) {
-        succeed({"relight", "scene.prt", std::string("seq/switch.") + frame + ".exr", "-o", "one.png",
-                 "--size", "40x30"});
+        succeed({"relight", "scene.prt", std::string("seq/switch.") + frame + ".exr", "-o",
+                 "one.png", "--size", "40x30"});
         EXPECT_TRUE(read("one.png") == read(std::string("lit.") + frame + ".png"));
     }
     EXPECT_TRUE(read("lit.0002.png") == read("lit.0003.png"));
@@ -72,13 +75,13 @@ TEST_F(Animate, PicturesAreThoseOfRelight) {
 }
 
 TEST_F(Animate, TheSameForAnyNumberOfThreads) {
-    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "6", "--face-resolution", "16",
-             "-q"});
+    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "6",
+             "--face-resolution", "16", "-q"});
     for (const char* method : {"prt", "importance"}) {
-        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "a.npy", "--threads", "1", "--method",
-                 method});
-        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "b.npy", "--threads", "2", "--method",
-                 method});
+        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "a.npy", "--threads", "1",
+                 "--method", method});
+        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "b.npy", "--threads", "2",
+                 "--method", method});
         EXPECT_TRUE(read("a.npy") == read("b.npy")) << method;
     }
 }
@@ -86,16 +89,18 @@ TEST_F(Animate, TheSameForAnyNumberOfThreads) {
 TEST_F(Animate, EverySequenceIsMadeAndRead) {
     write("probe.hdr", lamp_hdr(20));
     for (const char* kind : {"sun", "switch", "clouds", "tunnel"})
-        succeed(
-            {"generate", "sequence", kind, "-o", kind, "--num-frames", "3", "--face-resolution", "8", "-q"});
-    succeed({"generate", "sequence", "turn", "-o", "turn", "--num-frames", "3", "--env", "probe.hdr", "-q"});
+        succeed({"generate", "sequence", kind, "-o", kind, "--num-frames", "3", "--face-resolution",
+                 "8", "-q"});
+    succeed({"generate", "sequence", "turn", "-o", "turn", "--num-frames", "3", "--env",
+             "probe.hdr", "-q"});
     for (const char* kind : {"sun", "switch", "clouds", "tunnel", "turn"}) {
         const std::string name(kind);
         EXPECT_EQ(std::distance(fs::directory_iterator(folder() / name), {}), 3);
         succeed({"info", name + "/" + name + ".0002.exr"});
-        const nlohmann::json report = succeed({"animate", "scene.prt", name + "/" + name + ".####.exr",
-                                               "--vertices", "v.npy", "--json"})
-                                          .json();
+        const nlohmann::json report =
+            succeed({"animate", "scene.prt", name + "/" + name + ".####.exr", "--vertices", "v.npy",
+                     "--json"})
+                .json();
         EXPECT_EQ(report["frames"], 3);
     }
     misuse({"generate", "sequence", "-o", "x"}, "KIND");
@@ -108,25 +113,27 @@ TEST_F(Animate, EverySequenceIsMadeAndRead) {
 }
 
 TEST_F(Animate, ClustersLightLikeTheFramesAndFlickerIsMeasured) {
-    succeed(
-        {"generate", "sequence", "sun", "-o", "seq", "--num-frames", "6", "--face-resolution", "32", "-q"});
+    succeed({"generate", "sequence", "sun", "-o", "seq", "--num-frames", "6", "--face-resolution",
+             "32", "-q"});
     succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "prt.npy", "-q"});
-    const auto same = succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "again.npy",
-                               "--measure", "prt.npy", "--json"})
+    const auto same = succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices",
+                               "again.npy", "--measure", "prt.npy", "--json"})
                           .json();
     EXPECT_EQ(same["mean_inconsistency"], 0.0);
     EXPECT_EQ(same["mean_relative_l2"], 0.0);
-    const auto clusters = succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--method", "clusters",
-                                   "--clusters", "100", "--samples", "400", "--vertices", "clusters.npy",
-                                   "--measure", "prt.npy", "--plot", "e.svg", "--json"})
-                              .json();
+    const auto clusters =
+        succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--method", "clusters", "--clusters",
+                 "100", "--samples", "400", "--vertices", "clusters.npy", "--measure", "prt.npy",
+                 "--plot", "e.svg", "--json"})
+            .json();
     EXPECT_EQ(clusters["samples"], 2400);
     EXPECT_GT(clusters["mean_live_lights"].get<double>(), 1.0);
     EXPECT_LT(clusters["mean_relative_l2"].get<double>(), 0.15);
     EXPECT_GT(clusters["mean_inconsistency"].get<double>(), 0.0);
     ASSERT_EQ(clusters["inconsistency"].size(), 5u);
     EXPECT_NE(read("e.svg").find("</svg>"), std::string::npos);
-    // A frame of pictures made later from all the same inputs is kept; other clusters are other pictures.
+    // A frame of pictures made later from all the same inputs is kept; other clusters are other
+    // pictures.
     const std::vector<std::string> pictures = {
         "animate", "scene.prt", "seq/sun.%04d.exr", "--method", "clusters", "--clusters",
         "20",      "-o",        "a.%04d.npy",       "--resume", "--json"};
@@ -137,7 +144,8 @@ TEST_F(Animate, ClustersLightLikeTheFramesAndFlickerIsMeasured) {
     EXPECT_EQ(succeed(others).json()["frames_kept"], 0);
     misuse({"animate", "scene.prt", "seq/sun.%04d.exr", "-o", "b.%04d.npy", "--measure", "prt.npy"},
            "expected --vertices");
-    fail({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "b.npy", "--measure", "none.npy"},
+    fail({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "b.npy", "--measure",
+          "none.npy"},
          {"none.npy: expected a .npy file"});
 }
 
@@ -146,12 +154,14 @@ TEST_F(Animate, MissingAndDifferentFramesAreToldBeforeWorkStarts) {
     fs::remove(folder() / "lamp.2.hdr");
     fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy"},
          {"lamp.%d.hdr", "expected frames 0 to 3 without a gap", "none for 2"});
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-5", "-o", "lit.%d.npy"}, {"none for 4-5"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-5", "-o", "lit.%d.npy"},
+         {"none for 4-5"});
     write("lamp.2.hdr", white_hdr()); // 64 x 32
     fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy"},
          {"lamp.2.hdr", "expected 128x64", "got 64x32"});
     fail({"animate", "scene.prt", "none.%d.hdr", "-o", "lit.%d.npy"}, {"none.%d.hdr", "no file"});
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-1", "-o", "lit.%d.npy"}, {"--frames", "3-1"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "3-1", "-o", "lit.%d.npy"},
+         {"--frames", "3-1"});
     succeed({"animate", "scene.prt", "lamp.%d.hdr", "--frames", "0-1", "-o", "lit.%d.npy", "-q"});
 }
 
@@ -161,8 +171,8 @@ TEST_F(Animate, ABadFrameEndsItAndFinishedFramesStay) {
     const auto run_until_2 = [&](const std::vector<std::string>& parts) {
         for (const char* name : {"lit.0.npy", "lit.1.npy", "lit.all.npy.done"})
             fs::remove(folder() / name);
-        const Result result = relumine(
-            {"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--vertices", "v.npy", "-q"});
+        const Result result = relumine({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy",
+                                        "--vertices", "v.npy", "-q"});
         EXPECT_EQ(result.exit_code, 1) << result.described();
         EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.described();
         for (const std::string& part : parts)
@@ -185,7 +195,8 @@ TEST_F(Animate, ABadFrameEndsItAndFinishedFramesStay) {
     // Mended, it goes on from there.
     write("lamp.2.hdr", whole);
     const nlohmann::json report =
-        succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume", "--json"}).json();
+        succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume", "--json"})
+            .json();
     EXPECT_EQ(report["frames_kept"], 2);
     EXPECT_EQ(report["frames_lit"], 2);
 }
@@ -212,15 +223,15 @@ TEST_F(Animate, ResumeMakesOnlyWhatIsNotThereAnyMore) {
     write("lit.all.npy.done", "nonsense\n");
     EXPECT_EQ(kept(), 0);
     // One file of all frames needs all of them lit.
-    EXPECT_EQ(succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume", "--vertices",
-                       "v.npy", "--json"})
+    EXPECT_EQ(succeed({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.npy", "--resume",
+                       "--vertices", "v.npy", "--json"})
                   .json()["frames_lit"],
               4);
 }
 
 TEST_F(Animate, AnInterruptLeavesWholeFramesToGoOnFrom) {
-    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "100", "--face-resolution", "32",
-             "-q"});
+    succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "100",
+             "--face-resolution", "32", "-q"});
     const std::vector<std::string> command = {"animate", "scene.prt",    "seq/tunnel.%04d.exr",
                                               "-o",      "lit.%04d.png", "--size",
                                               "500x400", "-q",           "--resume"};
@@ -242,14 +253,16 @@ TEST_F(Animate, AnInterruptLeavesWholeFramesToGoOnFrom) {
     EXPECT_LT(num_frames, 100u);
     std::vector<std::string> again = command;
     again.insert(again.end(), {"--json", "--frames", "0-20"});
-    EXPECT_EQ(succeed(again).json()["frames_kept"].get<std::size_t>(), std::min<std::size_t>(num_frames, 21));
+    EXPECT_EQ(succeed(again).json()["frames_kept"].get<std::size_t>(),
+              std::min<std::size_t>(num_frames, 21));
 }
 
 TEST_F(Animate, AMovieNeedsFfmpeg) {
     lamps(2);
     const std::string path = std::getenv("PATH");
-    const std::vector<std::string> command = {"animate", "scene.prt", "lamp.%d.hdr", "-o",  "lit.%d.png",
-                                              "--mp4",   "out.mp4",   "--size",      "8x6", "-q"};
+    const std::vector<std::string> command = {"animate",    "scene.prt", "lamp.%d.hdr", "-o",
+                                              "lit.%d.png", "--mp4",     "out.mp4",     "--size",
+                                              "8x6",        "-q"};
     ::setenv("PATH", folder().c_str(), 1);
     fail(command, {"out.mp4: expected ffmpeg on the PATH"});
 
@@ -276,14 +289,18 @@ TEST_F(Animate, OutputsThatCannotBe) {
     lamps(2);
     misuse({"animate", "scene.prt", "lamp.%d.hdr"}, "-o");
     misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--bound", "-1"}, "--bound");
-    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--method", "magic"}, "--method");
+    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--method", "magic"},
+           "--method");
     fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.png"},
          {"lit.png", "a place for the frame's number"});
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.jpg"}, {"lit.%d.jpg", "expected .png"});
-    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "no/lit.%d.png"}, {"no/lit.%d.png", "cannot write"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.jpg"},
+         {"lit.%d.jpg", "expected .png"});
+    fail({"animate", "scene.prt", "lamp.%d.hdr", "-o", "no/lit.%d.png"},
+         {"no/lit.%d.png", "cannot write"});
     fail({"animate", "scene.prt", "lamp.%d.hdr", "--vertices", "v.txt"}, {"v.txt", ".npy"});
     write("in.0.exr", exr_file(4, 2, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));
-    fail({"animate", "scene.prt", "in.%d.exr", "-o", "in.%d.exr"}, {"in.0.exr", "other than the input"});
+    fail({"animate", "scene.prt", "in.%d.exr", "-o", "in.%d.exr"},
+         {"in.0.exr", "other than the input"});
     fail({"animate", "missing.prt", "lamp.%d.hdr", "-o", "lit.%d.png"}, {"missing.prt"});
 }
 

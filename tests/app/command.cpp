@@ -25,7 +25,8 @@ namespace {
 constexpr double MaxSeconds = 200.0; // an unoptimised build with sanitizers is slow
 
 double now() {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 std::string content(const fs::path& path) {
@@ -71,8 +72,8 @@ void become_program(const char* folder, const char* out, const char* err, const 
 } // namespace
 
 std::string Result::described() const {
-    return fmt::format("exit code {}, signal {}, {:.2f} s, {} bytes\nstdout: {}\nstderr: {}\n", exit_code,
-                       signal, seconds, peak_bytes, out, err);
+    return fmt::format("exit code {}, signal {}, {:.2f} s, {} bytes\nstdout: {}\nstderr: {}\n",
+                       exit_code, signal, seconds, peak_bytes, out, err);
 }
 
 nlohmann::json Result::json() const {
@@ -81,12 +82,14 @@ nlohmann::json Result::json() const {
     return result.is_object() ? result : nlohmann::json::object();
 }
 
-Process::Process(const fs::path& folder, const std::vector<std::string>& arguments, const RunOptions& options)
+Process::Process(const fs::path& folder, const std::vector<std::string>& arguments,
+                 const RunOptions& options)
     : start_(now()) {
     static int count = 0;
     const fs::path captured =
         fs::path(testing::TempDir()) / fmt::format("relumine_app_{}_{}", ::getpid(), count++);
-    out_ = options.stdout_path.empty() ? fs::path(captured.string() + ".out") : fs::path(options.stdout_path);
+    out_ = options.stdout_path.empty() ? fs::path(captured.string() + ".out")
+                                       : fs::path(options.stdout_path);
     err_ = captured.string() + ".err";
     std::vector<std::string> words = {"relumine"};
     words.insert(words.end(), arguments.begin(), arguments.end());
@@ -165,7 +168,8 @@ Result Process::wait() {
 
 AppTest::AppTest() {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    std::string name = fmt::format("relumine_{}_{}_{}", ::getpid(), test.test_suite_name(), test.name());
+    std::string name =
+        fmt::format("relumine_{}_{}_{}", ::getpid(), test.test_suite_name(), test.name());
     std::replace(name.begin(), name.end(), '/', '_');
     folder_ = fs::path(testing::TempDir()) / name;
     fs::remove_all(folder_);
@@ -177,7 +181,8 @@ AppTest::~AppTest() {
     fs::remove_all(folder_, ignored);
 }
 
-Result AppTest::relumine(const std::vector<std::string>& arguments, const RunOptions& options) const {
+Result AppTest::relumine(const std::vector<std::string>& arguments,
+                         const RunOptions& options) const {
     return Process(folder_, arguments, options).wait();
 }
 
@@ -187,8 +192,8 @@ Result AppTest::succeed(const std::vector<std::string>& arguments) const {
     return result;
 }
 
-Result AppTest::fail(const std::vector<std::string>& arguments, const std::vector<std::string>& parts,
-                     const RunOptions& options) const {
+Result AppTest::fail(const std::vector<std::string>& arguments,
+                     const std::vector<std::string>& parts, const RunOptions& options) const {
     const std::vector<std::string> before = files();
     Result result = relumine(arguments, options);
     const std::string what = joined(arguments) + "\n" + result.described();
@@ -222,9 +227,11 @@ std::vector<std::string> AppTest::files() const {
         if (entry.is_symlink())
             result.push_back(name + " -> " + fs::read_symlink(entry.path()).string());
         else if (entry.is_regular_file())
-            result.push_back(fmt::format("{} {:x}", name, std::hash<std::string>{}(content(entry.path()))));
+            result.push_back(
+                fmt::format("{} {:x}", name, std::hash<std::string>{}(content(entry.path()))));
         else
-            result.push_back(fmt::format("{} type {}", name, static_cast<int>(entry.status().type())));
+            result.push_back(
+                fmt::format("{} type {}", name, static_cast<int>(entry.status().type())));
     }
     std::sort(result.begin(), result.end());
     return result;

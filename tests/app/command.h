@@ -13,7 +13,8 @@
 
 namespace relumine::app {
 
-/// What a build with sanitizers may take of each, in units of what the program as it is shipped may take.
+/// What a build with sanitizers may take of each, in units of what the program as it is shipped may
+/// take.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 inline constexpr int SanitizerFactor = 20;
 #else
@@ -22,12 +23,15 @@ inline constexpr int SanitizerFactor = 1;
 
 /// What a command did.
 struct Result {
-    int exit_code = -1; ///< -1 when a signal ended it
-    int signal = 0;     ///< the signal that ended it
+    /// -1 when a signal ended it
+    int exit_code = -1;
+    /// The signal that ended it
+    int signal = 0;
     std::string out;
     std::string err;
     double seconds = 0.0;
-    std::uint64_t peak_bytes = 0; ///< largest resident set
+    /// Largest resident set
+    std::uint64_t peak_bytes = 0;
 
     /// For messages of failed tests.
     [[nodiscard]] std::string described() const;
@@ -36,9 +40,12 @@ struct Result {
 };
 
 struct RunOptions {
-    std::optional<std::uint64_t> max_file_bytes = {}; ///< writing beyond fails, as on a full disk
-    std::string stdout_path = {};                     ///< where stdout goes instead of Result::out
-    int ignored_signal = 0;                           ///< from the start, as `nohup` does it
+    /// Writing beyond fails, as on a full disk
+    std::optional<std::uint64_t> max_file_bytes = {};
+    /// Where stdout goes instead of Result::out
+    std::string stdout_path = {};
+    /// From the start, as `nohup` does it
+    int ignored_signal = 0;
 };
 
 /// A running `relumine`. Killed, with a test failure, when it does not end.
@@ -53,7 +60,8 @@ public:
     void send(int signal) const;
     /// False when it ended.
     [[nodiscard]] bool is_running();
-    /// Waits until the program has come so far that it takes signals (its threads block those that one of them waits for).
+    /// Waits until the program has come so far that it takes signals (its threads block those that
+    /// one of them waits for).
     void wait_until_it_takes(int signal);
     [[nodiscard]] Result wait();
 
@@ -82,10 +90,11 @@ protected:
                                   const RunOptions& options = {}) const;
     /// The same, expected to succeed.
     Result succeed(const std::vector<std::string>& arguments) const;
-    /// Expected to end with exit code 1 and one line that begins "relumine: " and holds all of `parts`, within `max_seconds`, and to
-    /// leave every file of the folder as it was and no new one.
-    Result fail(const std::vector<std::string>& arguments, const std::vector<std::string>& parts = {},
-                const RunOptions& options = {}) const;
+    /// Expected to end with exit code 1 and one line that begins "relumine: " and holds all of
+    /// `parts`, within `max_seconds`, and to leave every file of the folder as it was and no new
+    /// one.
+    Result fail(const std::vector<std::string>& arguments,
+                const std::vector<std::string>& parts = {}, const RunOptions& options = {}) const;
     /// Expected to end with exit code 2, one line on stderr and nothing done.
     Result misuse(const std::vector<std::string>& arguments, const std::string& part = {}) const;
 

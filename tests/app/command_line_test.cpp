@@ -30,7 +30,8 @@ protected:
         {"generate", "constant", "-o", "new", "--face-resolution", "16"}};
 };
 
-std::vector<std::string> with(std::vector<std::string> arguments, const std::vector<std::string>& more) {
+std::vector<std::string> with(std::vector<std::string> arguments,
+                              const std::vector<std::string>& more) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     return arguments;
 }
@@ -136,16 +137,17 @@ TEST_F(CommandLine, OutputThatCannotBePrintedIsAFailure) {
 TEST_F(CommandLine, OddFileNamesWork) {
     precompute();
     for (const std::string name :
-         {"with space", "quote'\"s", "umlaut \xc3\xa4\xc3\xb6", "\xe7\x85\xa7\xe6\x98\x8e", "per%cent {0}",
-          "a.b.c", "back\\slash", "star*", "bad utf8 \xff\xfe"}) {
+         {"with space", "quote'\"s", "umlaut \xc3\xa4\xc3\xb6", "\xe7\x85\xa7\xe6\x98\x8e",
+          "per%cent {0}", "a.b.c", "back\\slash", "star*", "bad utf8 \xff\xfe"}) {
         write(name + ".obj", octahedron_obj());
         write(name + ".hdr", white_hdr());
-        const Result made =
-            succeed({"precompute", name + ".obj", "-o", name + ".prt", "--face-resolution", "16", "--json"});
+        const Result made = succeed({"precompute", name + ".obj", "-o", name + ".prt",
+                                     "--face-resolution", "16", "--json"});
         EXPECT_EQ(made.json().value("vertices", 0), 6) << name;
         succeed({"relight", name + ".prt", name + ".hdr", "-o", name + ".npy"});
         EXPECT_TRUE(fs::exists(folder() / (name + ".npy"))) << name;
-        EXPECT_EQ(succeed({"info", name + ".prt", "--json"}).json().value("vertices", 0), 6) << name;
+        EXPECT_EQ(succeed({"info", name + ".prt", "--json"}).json().value("vertices", 0), 6)
+            << name;
         fail({"info", name + " missing.prt"}, {name + " missing.prt"});
     }
 }

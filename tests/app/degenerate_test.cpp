@@ -1,4 +1,5 @@
-// Meshes at the edge of what is one, through the whole program. Files that are none (NaN, no faces) are in mesh_files_test.cpp.
+// Meshes at the edge of what is one, through the whole program. Files that are none (NaN, no faces)
+// are in mesh_files_test.cpp.
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +29,8 @@ protected:
 
     /// Each vertex's radiance, albedo 1.
     [[nodiscard]] Radiance lit(const std::string& obj, const std::string& environment,
-                               const std::vector<std::string>& options = {"--face-resolution", "64"}) const {
+                               const std::vector<std::string>& options = {"--face-resolution",
+                                                                          "64"}) const {
         write("mesh.obj", obj);
         std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", "mesh.prt"};
         arguments.insert(arguments.end(), options.begin(), options.end());
@@ -41,7 +43,8 @@ protected:
         return lit(obj, environment, {"--face-resolution", "64", "--engine", engine});
     }
     /// Down to single texels, so that clusters do not depend on what else is in the mesh.
-    [[nodiscard]] Radiance finely_lit(const std::string& obj, const std::string& environment) const {
+    [[nodiscard]] Radiance finely_lit(const std::string& obj,
+                                      const std::string& environment) const {
         return lit(obj, environment, {"--face-resolution", "16", "--tolerance", "0"});
     }
 };
@@ -51,7 +54,8 @@ std::string text(const mesh::TriangleMesh& mesh, float scale = 1.0f,
     std::string obj;
     for (const glm::vec3& position : mesh.positions) {
         const glm::vec3 p = scale * position + offset;
-        obj += fmt::format("v {} {} {}\n", p.x, p.y, p.z); // the shortest that reads back to the same bits
+        obj += fmt::format("v {} {} {}\n", p.x, p.y,
+                           p.z); // the shortest that reads back to the same bits
     }
     for (const auto& [a, b, c] : mesh.triangles)
         obj += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
@@ -78,8 +82,9 @@ TEST_F(Degenerate, OneTriangleSeesItsHemisphere) {
         EXPECT_NEAR(radiance[0], 1.0f, 2e-3f); // a white furnace, but for the horizon's clusters
     for (const auto& radiance : lit(up, "below.hdr"))
         EXPECT_NEAR(radiance[0], 0.0f, 1e-12f); // cells end at the horizon but for rounding
-    EXPECT_LT(succeed({"verify", "mesh.prt", "lamp.hdr", "--json"}).json()["relative_l2"].get<double>(),
-              0.02);
+    EXPECT_LT(
+        succeed({"verify", "mesh.prt", "lamp.hdr", "--json"}).json()["relative_l2"].get<double>(),
+        0.02);
     // Turned over, it is the other way round.
     const std::string down = "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 3 2\n";
     for (const auto& radiance : lit(down, "below.hdr"))
@@ -87,14 +92,16 @@ TEST_F(Degenerate, OneTriangleSeesItsHemisphere) {
 }
 
 TEST_F(Degenerate, VerticesInOnePointHaveNoSideThatLightCouldReach) {
-    const Radiance radiance = lit("v 1 2 3\nv 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\nf 2 3 4\n", "white.hdr");
+    const Radiance radiance =
+        lit("v 1 2 3\nv 1 2 3\nv 1 2 3\nv 1 2 3\nf 1 2 3\nf 2 3 4\n", "white.hdr");
     ASSERT_EQ(radiance.size(), 4u);
     expect_black(radiance, 0, 4);
     succeed({"verify", "mesh.prt", "white.hdr"});
 }
 
 TEST_F(Degenerate, SizeMakesNoDifference) {
-    // Powers of two change no digit of any coordinate, so that not one bit of the result may change either.
+    // Powers of two change no digit of any coordinate, so that not one bit of the result may change
+    // either.
     const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
     for (const char* engine : {"beam", "embree"})
         for (const char* environment : {"white.hdr", "lamp.hdr"}) {
@@ -106,16 +113,19 @@ TEST_F(Degenerate, SizeMakesNoDifference) {
 }
 
 TEST_F(Degenerate, NorDoesAPlaceFarAway) {
-    // Of whole numbers, which floats still have at 2^20; a bias of 1e-4 times the size, 0.04, they have not.
+    // Of whole numbers, which floats still have at 2^20; a bias of 1e-4 times the size, 0.04, they
+    // have not.
     const mesh::TriangleMesh mesh =
         scenes::joined(scenes::floor_grid(9, 256.0f), scenes::box({-32, 16, -32}, {32, 48, 32}));
     const Radiance here = lit(text(mesh), "white.hdr");
-    const Radiance there = lit(text(mesh, 1.0f, glm::vec3(0x1p20f, -0x1p20f, 0x1p20f)), "white.hdr");
+    const Radiance there =
+        lit(text(mesh, 1.0f, glm::vec3(0x1p20f, -0x1p20f, 0x1p20f)), "white.hdr");
     expect_equal(there, here, mesh.num_vertices(), 0.02);
 }
 
 TEST_F(Degenerate, SliversBlockLikeTheirWhole) {
-    // A plate over a floor: of two triangles, and as a fan of 500 from one corner, ten thousand times as long as wide.
+    // A plate over a floor: of two triangles, and as a fan of 500 from one corner, ten thousand
+    // times as long as wide.
     const mesh::TriangleMesh floor = scenes::floor_grid(9, 4.0f);
     mesh::TriangleMesh plate;
     plate.positions = {{-1, 1, -1}, {-1, 1, 1}, {1, 1, 1}, {1, 1, -1}};
@@ -148,8 +158,9 @@ TEST_F(Degenerate, DoubledFacesBlockOnce) {
 }
 
 TEST_F(Degenerate, AClosedMeshInsideOutIsBlack) {
-    const std::string inside_out = "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
-                                   "f 3 1 5\nf 3 6 1\nf 3 2 6\nf 3 5 2\nf 4 5 1\nf 4 1 6\nf 4 6 2\nf 4 2 5\n";
+    const std::string inside_out =
+        "v 1 0 0\nv -1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 0 0 -1\n"
+        "f 3 1 5\nf 3 6 1\nf 3 2 6\nf 3 5 2\nf 4 5 1\nf 4 1 6\nf 4 6 2\nf 4 2 5\n";
     for (const char* environment : {"white.hdr", "lamp.hdr"})
         expect_black(lit(inside_out, environment), 0, 6);
 }
@@ -163,11 +174,13 @@ TEST_F(Degenerate, InsideAClosedBoxThereIsNoLight) {
         for (const char* environment : {"white.hdr", "lamp.hdr"}) {
             const Radiance radiance = lit_with(engine, text(mesh), environment);
             expect_black(radiance, 8, 11);
-            EXPECT_GT(*std::max_element(radiance.begin(), radiance.begin() + 8), (std::array<float, 3>{}))
+            EXPECT_GT(*std::max_element(radiance.begin(), radiance.begin() + 8),
+                      (std::array<float, 3>{}))
                 << "outside there is";
         }
-    EXPECT_LT(succeed({"verify", "mesh.prt", "white.hdr", "--json"}).json()["relative_l2"].get<double>(),
-              0.02);
+    EXPECT_LT(
+        succeed({"verify", "mesh.prt", "white.hdr", "--json"}).json()["relative_l2"].get<double>(),
+        0.02);
 }
 
 TEST_F(Degenerate, UnusedVerticesTakeNoLightAndChangeNothing) {

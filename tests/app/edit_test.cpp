@@ -45,7 +45,8 @@ TEST_F(Edit, BrightensTheSideThatFacesTheDisc) {
 TEST_F(Edit, GainZeroAndAWholeSphereTurnTheLightOff) {
     succeed(command({"--disc", "0,1,0", "--radius", "180", "--gain", "0"}));
     for (const auto& value : npy_values(read("new.npy")))
-        // The point opposite is the disc's rim; the coverage of the texel it lies in is good to 0.5 %.
+        // The point opposite is the disc's rim; the coverage of the texel it lies in is good to 0.5
+        // %.
         EXPECT_NEAR(value[0], 0.0f, 1e-4f);
 }
 
@@ -53,7 +54,8 @@ TEST_F(Edit, TheSavedEnvironmentGivesTheSame) {
     for (const char* name : {"new.exr", "new.hdr"}) {
         succeed(command({"--disc", "0,1,1", "--gain", "8", "--save-env", name}));
         succeed({"relight", "scene.prt", name, "-o", "again.npy"});
-        EXPECT_LT(relative_l2(npy_values(read("again.npy")), npy_values(read("new.npy"))), 5e-3) << name;
+        EXPECT_LT(relative_l2(npy_values(read("again.npy")), npy_values(read("new.npy"))), 5e-3)
+            << name;
     }
 }
 
@@ -69,7 +71,8 @@ TEST_F(Edit, BadOptionsAreRefused) {
 }
 
 TEST_F(Edit, ABadSavedEnvironmentIsFoundOutBeforeAnythingIsWritten) {
-    for (const char* name : {"saved.txt", "saved", "missing/saved.exr", "new.npy", ".", "/proc/saved.exr"})
+    for (const char* name :
+         {"saved.txt", "saved", "missing/saved.exr", "new.npy", ".", "/proc/saved.exr"})
         fail(command({"--disc", "0,1,0", "--save-env", name}));
     fail(command({"--disc", "0,1,0", "--save-env", "white.hdr"}), {"white.hdr"});
     fail({"edit", "scene.prt", "white.hdr", "-o", "same.exr", "--size", "8x8", "--disc", "0,1,0",
@@ -78,7 +81,9 @@ TEST_F(Edit, ABadSavedEnvironmentIsFoundOutBeforeAnythingIsWritten) {
 }
 
 TEST_F(Edit, GainBeyondWhatAFloatHoldsIsRefused) {
-    write("white.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) { return Rgb{4.0f, 4.0f, 4.0f}; }));
+    write("white.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) {
+              return Rgb{4.0f, 4.0f, 4.0f};
+          }));
     fail(command({"--disc", "0,1,0", "--gain", "3e38"}), {"expected"});
     misuse(command({"--disc", "0,1,0", "--gain", "1e39"}), "--gain");
 }
@@ -93,12 +98,14 @@ TEST_F(Edit, LayersAreAppliedOneByOneAndEachTellsItsCost) {
     still = still.substr(0, still.find("],\n  \"frames\"")) + "]}";
     write("layers.json", still);
     const nlohmann::json report =
-        succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy", "--json"}).json();
+        succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy", "--json"})
+            .json();
     ASSERT_EQ(report["edits"].size(), 2u);
     EXPECT_EQ(report["edits"][0]["name"], "lamp");
     EXPECT_LT(report["edits"][0]["clusters"], report["clusters"]);
     EXPECT_GT(report["edits"][1]["receivers"], 0);
-    // The octahedron's corner on +X sees 1 + 4 sin(30 degrees)^2 = 2, the one on -X half of the white.
+    // The octahedron's corner on +X sees 1 + 4 sin(30 degrees)^2 = 2, the one on -X half of the
+    // white.
     const auto values = npy_values(read("new.npy"));
     EXPECT_NEAR(values[0][0], 2.0, 0.02);
     EXPECT_NEAR(values[0][1], 1.5, 0.015);
@@ -112,7 +119,8 @@ TEST_F(Edit, FramesBecomeNumberedFiles) {
     for (const auto& [name, gain] :
          {std::pair{"frame.001.npy", 1.0}, {"frame.002.npy", 2.0}, {"frame.003.npy", 4.0}})
         EXPECT_NEAR(npy_values(read(name))[0][0], 1.0 + gain, 0.01 * (1.0 + gain)) << name;
-    fail({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "frame.%s.npy"}, {"frame.%s.npy", "%04d"});
+    fail({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "frame.%s.npy"},
+         {"frame.%s.npy", "%04d"});
 }
 
 TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
@@ -127,10 +135,12 @@ TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
 }
 
 TEST_F(Edit, LitByShowsWhatARegionLights) {
-    // A disc of 30 degrees: sin(30 degrees)^2 of the white light on the corner that faces it, nothing on the other side.
-    const nlohmann::json disc = succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--gain", "1",
-                                         "--lit-by", "1,0,0,30", "-o", "new.npy", "--json"})
-                                    .json();
+    // A disc of 30 degrees: sin(30 degrees)^2 of the white light on the corner that faces it,
+    // nothing on the other side.
+    const nlohmann::json disc =
+        succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--gain", "1", "--lit-by",
+                 "1,0,0,30", "-o", "new.npy", "--json"})
+            .json();
     EXPECT_NEAR(npy_values(read("new.npy"))[0][0], 0.25, 0.01);
     EXPECT_EQ(npy_values(read("new.npy"))[1][0], 0.0f);
     EXPECT_GT(disc["lit_by_share"], 0.01);
@@ -139,7 +149,8 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
     // A layer's region, with the light of the layers in it.
     write("layers.json", Lamp);
     const auto lit_by = [&](const std::string& region, const std::string& output) {
-        succeed({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", region, "-o", output, "-q"});
+        succeed({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", region, "-o", output,
+                 "-q"});
     };
     lit_by("1,0,0,40", "new.npy"); // the lamp's 30 degrees and a ring of white around it
     const auto values = npy_values(read("new.npy"));
@@ -158,8 +169,8 @@ TEST_F(Edit, LitByShowsWhatARegionLights) {
          {"nobody", "1,0,0", "0,0,0,10", "1,0,0,0", "1,0,0,181", "1,0,0,x", "1,0,0,nan", ","})
         misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", bad, "-o", "bad.npy"},
                "--lit-by");
-    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", "lamp", "--who", "1,0,0", "-o",
-            "bad.exr"},
+    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--lit-by", "lamp", "--who", "1,0,0",
+            "-o", "bad.exr"},
            "--who");
     EXPECT_FALSE(std::filesystem::exists(folder() / "bad.npy"));
 }
@@ -168,12 +179,15 @@ TEST_F(Edit, WhoIsAPictureAndAsksForAPoint) {
     write("layers.json", Lamp);
     fail({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "1,0,0", "-o", "who.npy"},
          {"who.npy", ".exr or .png"});
-    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "here", "-o", "who.exr"}, "--who");
+    misuse({"edit", "scene.prt", "white.hdr", "layers.json", "--who", "here", "-o", "who.exr"},
+           "--who");
 }
 
 TEST_F(Edit, BrokenLayersAreRefusedWithTheirLine) {
-    write("broken.json", "{\n\"version\": 1,\n\"layers\": [\n{\"name\": \"a\", \"type\": \"disk\"}]}");
-    fail({"edit", "scene.prt", "white.hdr", "broken.json", "-o", "new.npy"}, {"broken.json:4: expected"});
+    write("broken.json",
+          "{\n\"version\": 1,\n\"layers\": [\n{\"name\": \"a\", \"type\": \"disk\"}]}");
+    fail({"edit", "scene.prt", "white.hdr", "broken.json", "-o", "new.npy"},
+         {"broken.json:4: expected"});
     write("cut.json", "{\"version\": 1, \"layers\": [\n");
     fail({"edit", "scene.prt", "white.hdr", "cut.json", "-o", "new.npy"}, {"cut.json:"});
     misuse({"edit", "scene.prt", "white.hdr", "-o", "new.npy"}, "LAYERS");
@@ -181,8 +195,8 @@ TEST_F(Edit, BrokenLayersAreRefusedWithTheirLine) {
 
 TEST_F(Edit, WatchFollowsWhatAnotherProgramSaves) {
     write("layers.json", "{\"version\": 1, \"layers\": []}");
-    Process process(folder(),
-                    {"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy", "--watch", "--json"});
+    Process process(folder(), {"edit", "scene.prt", "white.hdr", "layers.json", "-o", "new.npy",
+                               "--watch", "--json"});
     const auto first_value = [&] {
         try {
             return npy_values(read("new.npy"))[0][0];
@@ -201,11 +215,15 @@ TEST_F(Edit, WatchFollowsWhatAnotherProgramSaves) {
     EXPECT_TRUE(becomes(1.0f));
     // Once in place, once by renaming over it, once as something that is no picture.
     std::this_thread::sleep_for(std::chrono::milliseconds(300)); // until it watches
-    write("white.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) { return Rgb{4.0f, 4.0f, 4.0f}; }));
+    write("white.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) {
+              return Rgb{4.0f, 4.0f, 4.0f};
+          }));
     EXPECT_TRUE(becomes(4.0f));
     write("white.hdr", "half written");
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
-    write("other.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) { return Rgb{2.0f, 2.0f, 2.0f}; }));
+    write("other.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t) {
+              return Rgb{2.0f, 2.0f, 2.0f};
+          }));
     std::filesystem::rename(folder() / "other.hdr", folder() / "white.hdr");
     EXPECT_TRUE(becomes(2.0f));
     process.send(SIGINT);

@@ -15,7 +15,8 @@ protected:
     /// What six vertices at +X -X +Y -Y +Z -Z receive, luminance aside: the green channel.
     [[nodiscard]] std::vector<float> lit(const std::string& environment,
                                          const std::vector<std::string>& options = {}) const {
-        std::vector<std::string> arguments = {"relight", "scene.prt", environment, "-o", "lit.npy", "-q"};
+        std::vector<std::string> arguments = {"relight", "scene.prt", environment,
+                                              "-o",      "lit.npy",   "-q"};
         arguments.insert(arguments.end(), options.begin(), options.end());
         succeed(arguments);
         std::vector<float> values;
@@ -46,8 +47,8 @@ TEST_F(EnvConvert, EveryLayoutLightsTheSame) {
             if (extension == "HDR" && layout != "strip" && layout != "octahedral")
                 continue;
             const std::string out = fmt::format("{}.{}", layout, extension);
-            const auto report = succeed({"env", "convert", "lamp.hdr", "-o", out, "--to-layout", layout,
-                                         "--face-resolution", "32", "--json"})
+            const auto report = succeed({"env", "convert", "lamp.hdr", "-o", out, "--to-layout",
+                                         layout, "--face-resolution", "32", "--json"})
                                     .json();
             EXPECT_NEAR(report["output"]["mean_radiance"][1].get<double>() /
                             report["input"]["mean_radiance"][1].get<double>(),
@@ -68,7 +69,8 @@ TEST_F(EnvConvert, SixFilesInAndOut) {
     succeed({"env", "convert", "sky_{face}.exr", "-o", "back.exr"});
     std::filesystem::remove(folder() / "sky_nz.exr");
     fail({"info", "sky_{face}.exr"}, {"sky_nz.exr"});
-    succeed({"env", "convert", "lamp.hdr", "-o", "sky_nz.exr", "--to-layout", "octahedral", "--size", "31"});
+    succeed({"env", "convert", "lamp.hdr", "-o", "sky_nz.exr", "--to-layout", "octahedral",
+             "--size", "31"});
     fail({"info", "sky_{face}.exr"}, {"sky_nz.exr", "32x32", "31x31"});
     fail({"env", "convert", "sky_{face}.exr", "-o", "sky_px.exr"}, {"sky_px.exr", "input"});
 }
@@ -76,10 +78,12 @@ TEST_F(EnvConvert, SixFilesInAndOut) {
 TEST_F(EnvConvert, ConventionsThereAndBackLightTheSame) {
     make_scene();
     const std::vector<float> expected = lit("lamp.hdr");
-    for (const std::string name : {"usd", "mitsuba", "blender", "threejs", "opengl", "directx", "pbrt"}) {
-        succeed({"env", "convert", "lamp.hdr", "-o", "there.exr", "--to", name, "--face-resolution", "32"});
-        succeed({"env", "convert", "there.exr", "-o", "back.exr", "--from", name, "--to-layout", "latlong",
-                 "--size", "128"});
+    for (const std::string name :
+         {"usd", "mitsuba", "blender", "threejs", "opengl", "directx", "pbrt"}) {
+        succeed({"env", "convert", "lamp.hdr", "-o", "there.exr", "--to", name, "--face-resolution",
+                 "32"});
+        succeed({"env", "convert", "there.exr", "-o", "back.exr", "--from", name, "--to-layout",
+                 "latlong", "--size", "128"});
         expect_same(expected, lit("back.exr"), name);
     }
     // A wrong reading shows: Blender's middle is a quarter turn away from OpenEXR's.
@@ -90,15 +94,16 @@ TEST_F(EnvConvert, ConventionsThereAndBackLightTheSame) {
     EXPECT_EQ(lit("same.hdr"), expected); // columns were moved, nothing else
 }
 
-// What lit the scene before is in the sun's file and the map without it, in whatever axes the map is written.
+// What lit the scene before is in the sun's file and the map without it, in whatever axes the map
+// is written.
 TEST_F(EnvConvert, SplitsTheSunOff) {
     make_scene();
     succeed({"generate", "sun_sky", "-o", ".", "--face-resolution", "64", "-q"});
     const std::vector<float> whole = lit("sun_sky.exr");
     for (const std::string to : {"openexr", "blender", "opengl"}) {
-        const auto report =
-            succeed({"env", "convert", "sun_sky.exr", "-o", "sky.exr", "--to", to, "--split-sun", "--json"})
-                .json();
+        const auto report = succeed({"env", "convert", "sun_sky.exr", "-o", "sky.exr", "--to", to,
+                                     "--split-sun", "--json"})
+                                .json();
         EXPECT_GT(report["sun"]["share_of_power"].get<double>(), 0.3);
         EXPECT_EQ(report["sun"]["file"], "sky.sun.json");
         succeed({"env", "convert", "sky.exr", "-o", "back.exr", "--from", to, "-q"});
@@ -116,12 +121,16 @@ TEST_F(EnvConvert, SplitsTheSunOff) {
 
 TEST_F(EnvConvert, SaysWhatIsWrong) {
     write("env.hdr", white_hdr());
-    write("square.hdr", hdr_file(32, 32, [](std::uint32_t, std::uint32_t) { return Rgb{1, 1, 1}; }));
+    write("square.hdr", hdr_file(32, 32, [](std::uint32_t, std::uint32_t) {
+              return Rgb{1, 1, 1};
+          }));
     fail({"env", "convert", "square.hdr", "-o", "out.exr"}, {"square.hdr", "--layout", "32x32"});
-    succeed({"env", "convert", "square.hdr", "-o", "ok.exr", "--from", "pbrt", "--to-layout", "latlong",
-             "--size", "32"});
-    fail({"env", "convert", "square.hdr", "-o", "out.exr", "--layout", "cross"}, {"square.hdr", "3:4"});
-    fail({"env", "convert", "env.hdr", "-o", "out.exr", "--from", "opengl"}, {"env.hdr", "cube", "opengl"});
+    succeed({"env", "convert", "square.hdr", "-o", "ok.exr", "--from", "pbrt", "--to-layout",
+             "latlong", "--size", "32"});
+    fail({"env", "convert", "square.hdr", "-o", "out.exr", "--layout", "cross"},
+         {"square.hdr", "3:4"});
+    fail({"env", "convert", "env.hdr", "-o", "out.exr", "--from", "opengl"},
+         {"env.hdr", "cube", "opengl"});
     fail({"env", "convert", "env.hdr", "-o", "out.png"}, {"out.png", ".exr"});
     fail({"env", "convert", "env.hdr", "-o", "no/out.exr"}, {"no/out.exr"});
     fail({"env", "convert", "missing.hdr", "-o", "out.exr"}, {"missing.hdr"});
@@ -129,15 +138,19 @@ TEST_F(EnvConvert, SaysWhatIsWrong) {
     misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to", "maya"}, "maya");
     misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to", "pbrt", "--to-layout", "cube"},
            "octahedral");
-    misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--from", "usd", "--layout", "cube"}, "latlong");
+    misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--from", "usd", "--layout", "cube"},
+           "latlong");
     misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "fisheye"}, "fisheye");
-    misuse({"env", "convert", "env.hdr", "-o", "out_{face}.exr", "--to-layout", "cross"}, "six files");
+    misuse({"env", "convert", "env.hdr", "-o", "out_{face}.exr", "--to-layout", "cross"},
+           "six files");
     for (const char* size : {"0", "-4", "12x", "x12", "64x33x1", "1e3", "99999999"})
-        misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "cross", "--size", size},
-               "--size");
+        misuse(
+            {"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "cross", "--size", size},
+            "--size");
     misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "cross", "--size", "64"},
            "multiple of 3");
-    misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "cube", "--size", "8x9"}, "8x9");
+    misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--to-layout", "cube", "--size", "8x9"},
+           "8x9");
     misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--size", "8", "--face-resolution", "8"},
            "--face-resolution");
     misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--face-resolution", "99999"}, "16384");

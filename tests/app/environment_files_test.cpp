@@ -25,9 +25,10 @@ protected:
         write(name, content);
         std::vector<std::string> all = parts;
         all.push_back(name);
-        for (const std::vector<std::string>& arguments : {std::vector<std::string>{"info", name},
-                                                          {"relight", "scene.prt", name, "-o", "new.npy"},
-                                                          {"verify", "scene.prt", name}}) {
+        for (const std::vector<std::string>& arguments :
+             {std::vector<std::string>{"info", name},
+              {"relight", "scene.prt", name, "-o", "new.npy"},
+              {"verify", "scene.prt", name}}) {
             const Result result = fail(arguments, all);
             EXPECT_LT(result.seconds, 1.0 * SanitizerFactor) << name;
             EXPECT_LT(result.peak_bytes, 200'000'000u * SanitizerFactor) << name;
@@ -40,13 +41,18 @@ Rgb grey(std::uint32_t, std::uint32_t) {
 }
 
 TEST_F(EnvironmentFiles, AspectRatiosThatNoLayoutHas) {
-    for (const auto& [width, height] : {std::pair{30u, 30u}, {16u, 32u}, {100u, 40u}, {1u, 1u}, {32u, 15u}}) {
-        refused("env.hdr", hdr_file(width, height, grey), {"2:1", fmt::format("{}x{}", width, height)});
-        refused("env.exr", exr_file(width, height, grey), {"2:1", fmt::format("{}x{}", width, height)});
+    for (const auto& [width, height] :
+         {std::pair{30u, 30u}, {16u, 32u}, {100u, 40u}, {1u, 1u}, {32u, 15u}}) {
+        refused("env.hdr", hdr_file(width, height, grey),
+                {"2:1", fmt::format("{}x{}", width, height)});
+        refused("env.exr", exr_file(width, height, grey),
+                {"2:1", fmt::format("{}x{}", width, height)});
     }
     write("square.hdr", hdr_file(32, 32, grey));
-    fail({"relight", "scene.prt", "square.hdr", "-o", "new.npy", "--layout", "cube"}, {"square.hdr", "1:6"});
-    fail({"relight", "scene.prt", "square.hdr", "-o", "new.npy", "--layout", "cross"}, {"square.hdr", "3:4"});
+    fail({"relight", "scene.prt", "square.hdr", "-o", "new.npy", "--layout", "cube"},
+         {"square.hdr", "1:6"});
+    fail({"relight", "scene.prt", "square.hdr", "-o", "new.npy", "--layout", "cross"},
+         {"square.hdr", "3:4"});
 }
 
 TEST_F(EnvironmentFiles, LayoutsByTheirAspectRatio) {
@@ -81,12 +87,14 @@ TEST_F(EnvironmentFiles, BadPixelsAreCountedRefusedAndFixedOnRequest) {
     EXPECT_EQ(info["num_infinite"], 2);
     EXPECT_EQ(info["num_negative"], 4);
     const Result told = succeed({"info", "bad.exr"});
-    EXPECT_NE(told.out.find("3 NaN, 2 infinite, 4 negative"), std::string::npos) << told.described();
+    EXPECT_NE(told.out.find("3 NaN, 2 infinite, 4 negative"), std::string::npos)
+        << told.described();
 
     fail({"relight", "scene.prt", "bad.exr", "-o", "new.npy"},
          {"bad.exr", "--fix-env", "5 NaN/Inf", "4 negative", "(0, 8)"});
     fail({"verify", "scene.prt", "bad.exr"}, {"bad.exr", "--fix-env"});
-    fail({"edit", "scene.prt", "bad.exr", "-o", "new.npy", "--disc", "0,1,0"}, {"bad.exr", "--fix-env"});
+    fail({"edit", "scene.prt", "bad.exr", "-o", "new.npy", "--disc", "0,1,0"},
+         {"bad.exr", "--fix-env"});
 
     const Result fixed = succeed({"relight", "scene.prt", "bad.exr", "-o", "new.npy", "--fix-env"});
     EXPECT_NE(fixed.out.find("replaced 9 bad pixels"), std::string::npos) << fixed.described();
@@ -97,7 +105,9 @@ TEST_F(EnvironmentFiles, BadPixelsAreCountedRefusedAndFixedOnRequest) {
             EXPECT_LE(channel, 1.01f);
         }
     EXPECT_FALSE(
-        succeed({"relight", "scene.prt", "bad.exr", "-o", "new.npy", "--fix-env", "--json"}).json().empty());
+        succeed({"relight", "scene.prt", "bad.exr", "-o", "new.npy", "--fix-env", "--json"})
+            .json()
+            .empty());
 }
 
 TEST_F(EnvironmentFiles, NothingButBadPixels) {
@@ -112,7 +122,8 @@ TEST_F(EnvironmentFiles, NothingButBadPixels) {
                       info["num_negative"].get<int>(),
                   512);
         // There is nothing left to light with, or black; either way no NaN.
-        const Result fixed = relumine({"relight", "scene.prt", "bad.exr", "-o", "black.npy", "--fix-env"});
+        const Result fixed =
+            relumine({"relight", "scene.prt", "bad.exr", "-o", "black.npy", "--fix-env"});
         if (fixed.exit_code == 0) {
             for (const auto& value : npy_values(read("black.npy")))
                 EXPECT_EQ(value[0], 0.0f) << bad;
@@ -123,14 +134,17 @@ TEST_F(EnvironmentFiles, NothingButBadPixels) {
 }
 
 TEST_F(EnvironmentFiles, BlackIsAnEnvironment) {
-    write("black.hdr", hdr_file(32, 16, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
+    write("black.hdr", hdr_file(32, 16, [](std::uint32_t, std::uint32_t) {
+              return Rgb{0.0f, 0.0f, 0.0f};
+          }));
     succeed({"info", "black.hdr"});
     succeed({"info", "black.hdr", "--json"});
     succeed({"relight", "scene.prt", "black.hdr", "-o", "black.npy"});
     for (const auto& value : npy_values(read("black.npy")))
         EXPECT_EQ(value[0], 0.0f);
     EXPECT_EQ(succeed({"verify", "scene.prt", "black.hdr", "--json"}).json()["max_abs"], 0.0);
-    succeed({"edit", "scene.prt", "black.hdr", "-o", "black.npy", "--disc", "0,1,0", "--gain", "5"});
+    succeed(
+        {"edit", "scene.prt", "black.hdr", "-o", "black.npy", "--disc", "0,1,0", "--gain", "5"});
     succeed({"relight", "scene.prt", "black.hdr", "-o", "black.png", "--size", "8x8"});
 }
 
@@ -138,13 +152,14 @@ TEST_F(EnvironmentFiles, HugeDeclaredSizes) {
     for (const char* size :
          {"-Y 40000 +X 80000", "-Y 1000000000 +X 2000000000", "-Y 99999999999 +X 199999999998",
           "-Y 16384 +X 32768", "-Y 0 +X 0", "-Y -16 +X -32"})
-        refused("env.hdr", std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n") + size + "\n\1\2\3\4");
+        refused("env.hdr",
+                std::string("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n") + size + "\n\1\2\3\4");
     // The declared window of an intact small picture, changed.
     const std::string small = exr_file(32, 16, grey);
     const std::string tag("box2i\0\x10\0\0\0\0\0\0\0\0\0\0\0", 18);
-    for (const std::string& corner :
-         {std::string("\xff\xff\0\0\xff\x7f\0\0", 8), std::string("\xff\xff\xff\x7f\xff\xff\xff\x3f", 8),
-          std::string("\xff\xff\xff\xff\xff\xff\xff\xff", 8)}) {
+    for (const std::string& corner : {std::string("\xff\xff\0\0\xff\x7f\0\0", 8),
+                                      std::string("\xff\xff\xff\x7f\xff\xff\xff\x3f", 8),
+                                      std::string("\xff\xff\xff\xff\xff\xff\xff\xff", 8)}) {
         std::string huge = small;
         const std::size_t window = huge.find(tag);
         ASSERT_NE(window, std::string::npos);

@@ -37,7 +37,8 @@ TEST_F(EnvironmentInfo, Irradiance) {
 }
 
 TEST_F(EnvironmentInfo, SunInWorldAxes) {
-    // Column 96 is longitude -90, row 16 elevation 45; the pixel's centre lies half a pixel further.
+    // Column 96 is longitude -90, row 16 elevation 45; the pixel's centre lies half a pixel
+    // further.
     write("sun.exr", exr_file(128, 64, sky_with_sun(96, 15, 4000.0f)));
     const nlohmann::json sun = info("sun.exr")["sun"];
     ASSERT_TRUE(sun.is_object());
@@ -46,15 +47,16 @@ TEST_F(EnvironmentInfo, SunInWorldAxes) {
     EXPECT_LT(sun["direction"][0].get<double>(), -0.6);
     EXPECT_GT(sun["direction"][1].get<double>(), 0.6);
     const double solid_angle =
-        2.0 * 3.14159265 / 128.0 * (std::cos(15.0 * 3.14159265 / 64.0) - std::cos(16.0 * 3.14159265 / 64.0));
+        2.0 * 3.14159265 / 128.0 *
+        (std::cos(15.0 * 3.14159265 / 64.0) - std::cos(16.0 * 3.14159265 / 64.0));
     EXPECT_NEAR(sun["solid_angle"].get<double>(), solid_angle, 1e-7);
     EXPECT_NEAR(sun["irradiance"][1].get<double>(), 3999.0 * solid_angle, 0.05);
     const double sky = 2.0 * 3.14159265 * 1.25;
-    EXPECT_NEAR(sun["share_of_power"].get<double>(), 3999.0 * solid_angle / (3999.0 * solid_angle + sky),
-                1e-3);
+    EXPECT_NEAR(sun["share_of_power"].get<double>(),
+                3999.0 * solid_angle / (3999.0 * solid_angle + sky), 1e-3);
     const Result told = succeed({"info", "sun.exr"});
-    for (const char* part : {"sun towards", "azimuth -91.4, elevation 46.4", "degrees wide", "% of all light",
-                             "seams and poles     in line"})
+    for (const char* part : {"sun towards", "azimuth -91.4, elevation 46.4", "degrees wide",
+                             "% of all light", "seams and poles     in line"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
 }
 
@@ -71,7 +73,9 @@ TEST_F(EnvironmentInfo, NoSunAndWhy) {
 TEST_F(EnvironmentInfo, ClippedSun) {
     // A flat top of 3 x 3 pixels at 40 times the sky.
     write("clipped.exr", exr_file(256, 128, [](std::uint32_t x, std::uint32_t y) {
-              const float value = x >= 60 && x < 63 && y >= 30 && y < 33 ? 40.0f : y < 64 ? 1.0f : 0.25f;
+              const float value = x >= 60 && x < 63 && y >= 30 && y < 33 ? 40.0f
+                                  : y < 64                               ? 1.0f
+                                                                         : 0.25f;
               return Rgb{value, value, value};
           }));
     const nlohmann::json clipped = info("clipped.exr")["clipped_sun"];
@@ -89,7 +93,8 @@ TEST_F(EnvironmentInfo, SeamsOutOfLine) {
     ASSERT_EQ(faults.size(), 1u);
     EXPECT_EQ(faults[0]["where"], "top row");
     EXPECT_GT(faults[0]["step_ev"], 5.0);
-    EXPECT_NE(succeed({"info", "black_row.exr"}).out.find("top row out of line"), std::string::npos);
+    EXPECT_NE(succeed({"info", "black_row.exr"}).out.find("top row out of line"),
+              std::string::npos);
 }
 
 TEST_F(EnvironmentInfo, BadPixelsDoNotSpoilTheFigures) {
@@ -115,7 +120,9 @@ TEST_F(EnvironmentInfo, Picture) {
     succeed({"info", "sky.exr", "--picture", "sky.png"});
     EXPECT_NE(read("sun.png"), read("sky.png"));
     // Maps of any size and none too dark.
-    write("dot.exr", exr_file(2, 1, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
+    write("dot.exr", exr_file(2, 1, [](std::uint32_t, std::uint32_t) {
+              return Rgb{0.0f, 0.0f, 0.0f};
+          }));
     succeed({"info", "dot.exr", "--picture", "dot.png"});
     EXPECT_EQ(png_size(read("dot.png")), (Size{1024, 512}));
 }

@@ -41,7 +41,8 @@ std::vector<std::array<float, 3>> npy_values(const std::string& bytes) {
     require(shape != std::string::npos, "no shape");
     const std::size_t count = std::stoull(header.substr(shape + 10));
     require(header.find(", 3)", shape) != std::string::npos, "not rows of three");
-    require(bytes.size() == 10 + header_bytes + count * 12, "another number of values than the header says");
+    require(bytes.size() == 10 + header_bytes + count * 12,
+            "another number of values than the header says");
     std::vector<std::array<float, 3>> values(count);
     if (count > 0)
         std::memcpy(values.data(), bytes.data() + 10 + header_bytes, count * 12);
@@ -70,7 +71,8 @@ Size exr_size(const std::string& bytes) {
 nlohmann::json glb_json(const std::string& bytes) {
     require(bytes.rfind("glTF", 0) == 0, "no binary glTF");
     require(at<std::uint32_t>(bytes, 4) == 2, "not glTF 2");
-    require(at<std::uint32_t>(bytes, 8) == bytes.size(), "the length in the header is not the file's");
+    require(at<std::uint32_t>(bytes, 8) == bytes.size(),
+            "the length in the header is not the file's");
     require(bytes.substr(16, 4) == "JSON", "no JSON chunk first");
     return nlohmann::json::parse(bytes.substr(20, at<std::uint32_t>(bytes, 12)));
 }
@@ -83,7 +85,8 @@ std::size_t ply_element(const std::string& bytes, const std::string& name) {
     return std::stoull(header.substr(found + 9 + name.size()));
 }
 
-double relative_l2(const std::vector<std::array<float, 3>>& a, const std::vector<std::array<float, 3>>& b) {
+double relative_l2(const std::vector<std::array<float, 3>>& a,
+                   const std::vector<std::array<float, 3>>& b) {
     require(a.size() == b.size(), "different numbers of values");
     double error = 0.0;
     double norm = 0.0;

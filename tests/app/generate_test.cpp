@@ -30,11 +30,12 @@ TEST_F(Generate, AllMakesEveryScenesAndEnvironmentsFile) {
             EXPECT_GT(info["mean_luminance"], 0.0);
         }
     }
-    for (const char* name : {"colonnade.ply", "knot.ply", "blob.ply", "sphere.ply", "sun_sky.exr",
-                             "soft_boxes.exr", "small_light.exr", "constant.exr", "sun_sky_latlong.exr"})
+    for (const char* name :
+         {"colonnade.ply", "knot.ply", "blob.ply", "sphere.ply", "sun_sky.exr", "soft_boxes.exr",
+          "small_light.exr", "constant.exr", "sun_sky_latlong.exr"})
         EXPECT_TRUE(names.contains(name)) << name;
-    EXPECT_EQ(names.size(),
-              static_cast<std::size_t>(std::distance(fs::directory_iterator(folder() / "deep/er"), {})));
+    EXPECT_EQ(names.size(), static_cast<std::size_t>(
+                                std::distance(fs::directory_iterator(folder() / "deep/er"), {})));
 }
 
 TEST_F(Generate, TheSameEveryTime) {
@@ -69,13 +70,15 @@ TEST_F(Generate, FoldersThatCannotBe) {
     fail({"generate", "blob", "-o", "file/folder", "--vertices", "1000"}, {"file/folder"});
     fail({"generate", "blob", "-o", "/proc/folder", "--vertices", "1000"}, {"/proc/folder"});
     fs::create_directories(folder() / "taken/blob.ply");
-    fail({"generate", "blob", "-o", "taken", "--vertices", "1000"}, {"taken/blob.ply", "cannot write"});
+    fail({"generate", "blob", "-o", "taken", "--vertices", "1000"},
+         {"taken/blob.ply", "cannot write"});
 }
 
 TEST_F(Generate, AFullDiskLeavesTheOldFiles) {
     write("blob.ply", "precious");
     write("constant.exr", "precious");
-    fail({"generate", "blob", "-o", ".", "--vertices", "1000"}, {"blob.ply"}, {.max_file_bytes = 100});
+    fail({"generate", "blob", "-o", ".", "--vertices", "1000"}, {"blob.ply"},
+         {.max_file_bytes = 100});
     fail({"generate", "constant", "-o", ".", "--face-resolution", "8"}, {"constant.exr"},
          {.max_file_bytes = 100});
 }

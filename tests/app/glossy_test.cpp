@@ -16,9 +16,9 @@ protected:
         write("white.hdr", white_hdr());
     }
     nlohmann::json make(const std::string& scene, const std::vector<std::string>& more) const {
-        std::vector<std::string> arguments = {"precompute", "mesh.obj", "-o", scene,    "--face-resolution",
-                                              "64",         "--floor",  "9",  "--json", "--tolerance",
-                                              "0.03"};
+        std::vector<std::string> arguments = {
+            "precompute", "mesh.obj", "-o",          scene, "--face-resolution", "64", "--floor",
+            "9",          "--json",   "--tolerance", "0.03"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         return succeed(arguments).json();
     }
@@ -37,7 +37,8 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
     const auto shiny = npy_values(read("lit.npy"));
     const auto dull = npy_values(read("dull.npy"));
     ASSERT_EQ(shiny.size(), dull.size());
-    // Under white light albedo (1 - F0) and most of F0 come back, 0.15 + 0.5, where the eye sees the surface.
+    // Under white light albedo (1 - F0) and most of F0 come back, 0.15 + 0.5, where the eye sees
+    // the surface.
     const auto brightest = [](const auto& values) {
         return (*std::max_element(values.begin(), values.end(),
                                   [](const auto& a, const auto& b) { return a[0] < b[0]; }))[0];
@@ -46,8 +47,8 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
 }
 
 TEST_F(Glossy, PixelsTexelsEditsAndFramesTakeThem) {
-    make("s.prt",
-         {"--material", "blinn:exponent=20,kd=0.3,ks=0.5", "--view", "auto", "--receivers", "pixels:24x16"});
+    make("s.prt", {"--material", "blinn:exponent=20,kd=0.3,ks=0.5", "--view", "auto", "--receivers",
+                   "pixels:24x16"});
     succeed({"relight", "s.prt", "white.hdr", "-o", "lit.exr"});
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{24, 16}));
     EXPECT_LT(succeed({"verify", "s.prt", "white.hdr", "--json"}).json()["relative_l2"], 0.03);
@@ -83,21 +84,24 @@ TEST_F(Glossy, ColoursMayChangeAfterwards) {
     make("plain.prt", {});
     fail({"relight", "plain.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "0.5"},
          {"plain.prt", "materials"});
-    misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "-1"}, "--surface-albedo");
+    misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "-1"},
+           "--surface-albedo");
 }
 
 TEST_F(Glossy, LimitsAreSaid) {
     const std::string sharp = "ggx:roughness=0.05,f0=0.5";
-    const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution", "16",
-                                   "--material", sharp, "--view", "auto"});
+    const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution",
+                                   "16", "--material", sharp, "--view", "auto"});
     EXPECT_NE(warned.out.find("smoother than roughness"), std::string::npos) << warned.out;
-    const Result no_view =
-        succeed({"precompute", "mesh.obj", "-o", "d.prt", "--face-resolution", "16", "--material", sharp});
+    const Result no_view = succeed(
+        {"precompute", "mesh.obj", "-o", "d.prt", "--face-resolution", "16", "--material", sharp});
     EXPECT_NE(no_view.out.find("--view"), std::string::npos) << no_view.out;
-    fail({"lights", "white.hdr", "-n", "4", "--method", "transfer", "--scene", "s.prt", "-o", "l.json"},
+    fail({"lights", "white.hdr", "-n", "4", "--method", "transfer", "--scene", "s.prt", "-o",
+          "l.json"},
          {"s.prt", "highlights"});
     misuse({"precompute", "mesh.obj", "-o", "n.prt", "--material", "glass"}, "--material");
-    misuse({"precompute", "mesh.obj", "-o", "n.prt", "--glossy-tolerance", "0"}, "--glossy-tolerance");
+    misuse({"precompute", "mesh.obj", "-o", "n.prt", "--glossy-tolerance", "0"},
+           "--glossy-tolerance");
 }
 
 } // namespace

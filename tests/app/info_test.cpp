@@ -23,7 +23,8 @@ TEST_F(Info, Mesh) {
 }
 
 TEST_F(Info, MaterialsOfAMesh) {
-    write("a.mtl", "newmtl shiny\nKd 0.5\nKs 0.25\nNs 50\nmap_Kd gone.png\nnewmtl metal\nPr 0.25\nPm 1\n");
+    write("a.mtl",
+          "newmtl shiny\nKd 0.5\nKs 0.25\nNs 50\nmap_Kd gone.png\nnewmtl metal\nPr 0.25\nPm 1\n");
     write("parts.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no lid\nusemtl shiny\nf 1 2 3\n");
     const nlohmann::json info = succeed({"info", "parts.obj", "--json"}).json();
     ASSERT_EQ(info["materials"].size(), 2u);
@@ -40,7 +41,8 @@ TEST_F(Info, MaterialsOfAMesh) {
                              "group               lid", "not found           gone.png"})
         EXPECT_NE(told.out.find(part), std::string::npos) << part << told.described();
     write("a.mtl", "newmtl shiny\nKd 2\n");
-    fail({"info", "parts.obj"}, {"parts.obj: a.mtl: expected a number of 0 to 1 in line 2, got '2'"});
+    fail({"info", "parts.obj"},
+         {"parts.obj: a.mtl: expected a number of 0 to 1 in line 2, got '2'"});
     write("a.gltf", "{\"asset\": {\"version\": \"2.0\"}");
     fail({"info", "a.gltf"}, {"a.gltf: expected glTF's JSON, got a syntax error"});
     EXPECT_TRUE(succeed({"info", "mesh.obj", "--json"}).json()["materials"].empty());
@@ -77,8 +79,8 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
 }
 
 TEST_F(Info, Scene) {
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--tolerance", "0.25",
-             "--min-depth", "2", "--bias", "0.125", "--floor", "4"});
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--tolerance",
+             "0.25", "--min-depth", "2", "--bias", "0.125", "--floor", "4"});
     const nlohmann::json info = succeed({"info", "scene.prt", "--json"}).json();
     EXPECT_EQ(info["kind"], "scene");
     EXPECT_EQ(info["vertices"], 22);
@@ -89,7 +91,8 @@ TEST_F(Info, Scene) {
     EXPECT_EQ(info["floor"], 4);
     EXPECT_EQ(info["source"], "mesh.obj");
     EXPECT_FALSE(info.contains("epsilon"));
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--epsilon", "0.5"});
+    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "--epsilon",
+             "0.5"});
     EXPECT_EQ(succeed({"info", "scene.prt", "--json"}).json()["epsilon"], 0.5);
 }
 
@@ -102,8 +105,8 @@ TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
     EXPECT_GT(info["brightest_direction"][0], 0.99);
     EXPECT_EQ(info["max_luminance"], 512.0);
     EXPECT_EQ(info["samples_on_borders"], false);
-    for (const char* key : {"assumptions", "mean_radiance", "mean_luminance", "dynamic_range_ev", "num_nan",
-                            "num_infinite", "num_negative"})
+    for (const char* key : {"assumptions", "mean_radiance", "mean_luminance", "dynamic_range_ev",
+                            "num_nan", "num_infinite", "num_negative"})
         EXPECT_TRUE(info.contains(key)) << key;
     const Result told = succeed({"info", "lamp.hdr"});
     for (const char* part : {"lat-long", "assumed", "mean radiance", "brightest", "bad pixels"})
@@ -111,9 +114,12 @@ TEST_F(Info, BrightestDirectionAndRangeOfAnEnvironment) {
 }
 
 TEST_F(Info, LayoutOnRequest) {
-    write("odd.hdr", hdr_file(30, 30, [](std::uint32_t, std::uint32_t) { return Rgb{1.0f, 1.0f, 1.0f}; }));
+    write("odd.hdr", hdr_file(30, 30, [](std::uint32_t, std::uint32_t) {
+              return Rgb{1.0f, 1.0f, 1.0f};
+          }));
     fail({"info", "odd.hdr"}, {"30x30"});
-    EXPECT_EQ(succeed({"info", "odd.hdr", "--layout", "latlong", "--json"}).json()["layout"], "lat-long");
+    EXPECT_EQ(succeed({"info", "odd.hdr", "--layout", "latlong", "--json"}).json()["layout"],
+              "lat-long");
     fail({"info", "odd.hdr", "--layout", "cube"}, {"odd.hdr", "30x30"});
     misuse({"info", "odd.hdr", "--layout", "dodecahedron"}, "--layout");
 }

@@ -23,9 +23,9 @@ protected:
 
 TEST_F(Lights, WritesAListWhoseLightsAddUpToTheMap) {
     for (const std::string method : {"median-cut", "variance", "importance"}) {
-        const auto report =
-            succeed({"lights", "white.hdr", "-n", "16", "--method", method, "-o", "lights.json", "--json"})
-                .json();
+        const auto report = succeed({"lights", "white.hdr", "-n", "16", "--method", method, "-o",
+                                     "lights.json", "--json"})
+                                .json();
         EXPECT_EQ(report["lights"], 16);
         EXPECT_EQ(report["method"], method);
         const auto list = nlohmann::json::parse(read("lights.json"));
@@ -47,15 +47,18 @@ TEST_F(Lights, FindsTheLamp) {
     succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lamp.json"});
     const auto light = nlohmann::json::parse(read("lamp.json"))["lights"][0];
     EXPECT_NEAR(light["direction"][0].get<double>(), 1.0, 1e-3);
-    // Turned by 90 degrees it comes from -Z (+Z goes to +X, +X to -Z), and as a cube map it keeps its power.
+    // Turned by 90 degrees it comes from -Z (+Z goes to +X, +X to -Z), and as a cube map it keeps
+    // its power.
     succeed({"lights", "lamp.hdr", "-n", "1", "-o", "turned.json", "--rotate", "90"});
     const auto turned = nlohmann::json::parse(read("turned.json"))["lights"][0];
     EXPECT_NEAR(turned["direction"][2].get<double>(), -1.0, 1e-3);
-    EXPECT_NEAR(turned["irradiance"][0].get<double>() / light["irradiance"][0].get<double>(), 1.0, 1e-6);
+    EXPECT_NEAR(turned["irradiance"][0].get<double>() / light["irradiance"][0].get<double>(), 1.0,
+                1e-6);
 }
 
 TEST_F(Lights, EveryFormatByExtensionOrName) {
-    for (const std::string file : {"a.json", "a.csv", "a.pbrt", "a.xml", "a.usda", "a.py", "a.gltf"})
+    for (const std::string file :
+         {"a.json", "a.csv", "a.pbrt", "a.xml", "a.usda", "a.py", "a.gltf"})
         succeed({"lights", "lamp.hdr", "-n", "4", "-o", file});
     EXPECT_THAT(read("a.csv"), testing::StartsWith("# 4 distant lights of lamp.hdr, variance"));
     EXPECT_THAT(read("a.pbrt"), HasSubstr("LightSource \"distant\""));
@@ -95,7 +98,8 @@ TEST_F(Lights, RefusesWhatItCannotDo) {
     fail({"lights", "white.hdr", "-o", "l.txt"}, {"l.txt: expected .json, .csv", "got '.txt'"});
     fail({"lights", "white.hdr", "-o", "white.hdr", "--format", "csv"},
          {"expected an output other than the input"});
-    fail({"lights", "white.hdr", "--picture", "l.jpg"}, {"l.jpg: expected .png or .exr, got '.jpg'"});
+    fail({"lights", "white.hdr", "--picture", "l.jpg"},
+         {"l.jpg: expected .png or .exr, got '.jpg'"});
     fail({"lights", "white.hdr", "-o", "l.png", "--format", "csv", "--picture", "./l.png"},
          {"expected a picture other than the light list"});
     fail({"lights", "white.hdr", "-o", "missing/l.json"}, {"missing/l.json"});
@@ -116,9 +120,12 @@ TEST_F(Lights, RefusesWhatItCannotDo) {
 }
 
 TEST_F(Lights, ABlackMapGivesBlackLights) {
-    write("black.hdr", hdr_file(16, 8, [](std::uint32_t, std::uint32_t) { return Rgb{0.0f, 0.0f, 0.0f}; }));
-    const auto report =
-        succeed({"lights", "black.hdr", "-n", "128", "-o", "l.json", "--picture", "l.png", "--json"}).json();
+    write("black.hdr", hdr_file(16, 8, [](std::uint32_t, std::uint32_t) {
+              return Rgb{0.0f, 0.0f, 0.0f};
+          }));
+    const auto report = succeed({"lights", "black.hdr", "-n", "128", "-o", "l.json", "--picture",
+                                 "l.png", "--json"})
+                            .json();
     EXPECT_EQ(report["power"][0], 0.0);
     EXPECT_EQ(report["lights"], 128);
 }
@@ -126,8 +133,8 @@ TEST_F(Lights, ABlackMapGivesBlackLights) {
 TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
     write("mesh.obj", octahedron_obj());
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
-    const auto transfer = succeed({"lights", "lamp.hdr", "-n", "4", "--method", "transfer", "--scene",
-                                   "scene.prt", "-o", "lights.json", "--json"})
+    const auto transfer = succeed({"lights", "lamp.hdr", "-n", "4", "--method", "transfer",
+                                   "--scene", "scene.prt", "-o", "lights.json", "--json"})
                               .json();
     EXPECT_LE(transfer["lights"].get<int>(), 4);
     EXPECT_LT(transfer["relative_l2"].get<double>(), 0.05);
@@ -141,8 +148,8 @@ TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
 TEST_F(Lights, ComparesAllMethodsOnAScene) {
     write("mesh.obj", octahedron_obj());
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
-    const auto report = succeed({"lights", "lamp.hdr", "--compare", "scene.prt", "-n", "1,8", "--samples",
-                                 "0", "--plot", "plot.svg", "--json"})
+    const auto report = succeed({"lights", "lamp.hdr", "--compare", "scene.prt", "-n", "1,8",
+                                 "--samples", "0", "--plot", "plot.svg", "--json"})
                             .json();
     ASSERT_EQ(report["rows"].size(), 8u); // four methods, two numbers
     for (const auto& row : report["rows"]) {
@@ -154,10 +161,12 @@ TEST_F(Lights, ComparesAllMethodsOnAScene) {
                 HasSubstr("| transfer | 2 |"));
     misuse({"lights", "lamp.hdr", "-n", "1,2", "-o", "a.json"}, "expected one number of lights");
     misuse({"lights", "lamp.hdr", "--compare", "scene.prt", "-o", "a.json"}, "expected neither -o");
-    fail({"lights", "lamp.hdr", "--compare", "scene.prt", "--plot", "a.png"}, {"a.png: expected .svg"});
+    fail({"lights", "lamp.hdr", "--compare", "scene.prt", "--plot", "a.png"},
+         {"a.png: expected .svg"});
 }
 
-// The lamp's one light gives what the lamp gives, traced, through the clusters, and on the mesh alone.
+// The lamp's one light gives what the lamp gives, traced, through the clusters, and on the mesh
+// alone.
 TEST_F(Lights, LightASceneOrAMesh) {
     write("mesh.obj", octahedron_obj());
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
@@ -168,9 +177,10 @@ TEST_F(Lights, LightASceneOrAMesh) {
         return npy_values(read("lit.npy"));
     };
     const auto expected = lit({"relight", "scene.prt", "lamp.hdr"});
-    for (const auto& radiance : {lit({"relight", "scene.prt", "--lights", "lamp.json"}),
-                                 lit({"relight", "scene.prt", "--lights", "lamp.json", "--clusters-only"}),
-                                 lit({"relight", "mesh.obj", "--lights", "lamp.json"})}) {
+    for (const auto& radiance :
+         {lit({"relight", "scene.prt", "--lights", "lamp.json"}),
+          lit({"relight", "scene.prt", "--lights", "lamp.json", "--clusters-only"}),
+          lit({"relight", "mesh.obj", "--lights", "lamp.json"})}) {
         ASSERT_EQ(radiance.size(), expected.size());
         for (std::size_t i = 0; i < expected.size(); ++i)
             EXPECT_NEAR(radiance[i][1], expected[i][1], 0.02f * expected[0][1]) << i;
@@ -186,7 +196,8 @@ TEST_F(Lights, RelightingWithThemSaysWhatIsWrong) {
     fail({"relight", "mesh.obj", "lamp.hdr", "-o", "a.npy"}, {"mesh.obj: expected a scene file"});
     fail({"relight", "mesh.obj", "--lights", "lamp.json", "--clusters-only", "-o", "a.npy"},
          {"mesh.obj: expected a scene file with --clusters-only"});
-    write("bad.json", R"({"version": 1, "lights": [{"direction": [0, 1, 0], "irradiance": [1, -1, 1]}]})");
+    write("bad.json",
+          R"({"version": 1, "lights": [{"direction": [0, 1, 0], "irradiance": [1, -1, 1]}]})");
     fail({"relight", "mesh.obj", "--lights", "bad.json", "-o", "a.npy"}, {"bad.json:1"});
 }
 

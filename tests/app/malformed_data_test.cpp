@@ -34,7 +34,8 @@ protected:
         }
         EXPECT_EQ(result.exit_code, 1) << file << result.described();
         EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.described();
-        EXPECT_NE(result.err.find(file.filename().string()), std::string::npos) << result.described();
+        EXPECT_NE(result.err.find(file.filename().string()), std::string::npos)
+            << result.described();
         EXPECT_EQ(files(), before) << file;
         return false;
     }
@@ -47,9 +48,10 @@ TEST_F(MalformedData, Meshes) {
                      << "; set RELUMINE_DATA_DIR to the folder that holds it";
     for (const fs::path& mesh : meshes) {
         const bool described = is_read_or_refused({"info", mesh.string()}, mesh);
-        const bool precomputed = is_read_or_refused(
-            {"precompute", mesh.string(), "-o", "new.prt", "--face-resolution", "16", "--tolerance", "0.1"},
-            mesh);
+        const bool precomputed =
+            is_read_or_refused({"precompute", mesh.string(), "-o", "new.prt", "--face-resolution",
+                                "16", "--tolerance", "0.1"},
+                               mesh);
         EXPECT_EQ(described, precomputed) << mesh;
         fs::remove(folder() / "new.prt");
     }
@@ -67,8 +69,8 @@ TEST_F(MalformedData, Environments) {
                                                      {"--layout", "latlong"},
                                                      {"--fix-env"},
                                                      {"--fix-env", "--layout", "latlong"}}) {
-            std::vector<std::string> arguments = {"relight", "scene.prt", environment.string(), "-o",
-                                                  "new.npy"};
+            std::vector<std::string> arguments = {"relight", "scene.prt", environment.string(),
+                                                  "-o", "new.npy"};
             arguments.insert(arguments.end(), more.begin(), more.end());
             if (is_read_or_refused(arguments, environment)) {
                 EXPECT_FALSE(more.empty()) << environment << ": square pictures and damaged files";

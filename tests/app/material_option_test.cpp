@@ -58,11 +58,13 @@ TEST(MaterialOption, Groups) {
     mesh.triangle_groups = {0, 1};
     EXPECT_EQ(parse_material("a=b:c=lambert:albedo=0").group, "a=b:c");
     EXPECT_EQ(parse_material("ggx=lambert").group, "ggx");
-    const prt::SurfaceOverride one = surface_override({parse_material("body=lambert:albedo=0.5")}, mesh);
+    const prt::SurfaceOverride one =
+        surface_override({parse_material("body=lambert:albedo=0.5")}, mesh);
     EXPECT_EQ(one(mesh, 0, Gold).albedo, glm::vec3(0.5f));
     EXPECT_EQ(one(mesh, 1, Gold), Gold);
     const prt::SurfaceOverride both = surface_override(
-        {parse_material("lambert:albedo=1"), parse_material("a=b:c=ggx:roughness=0.5,albedo=0.5")}, mesh);
+        {parse_material("lambert:albedo=1"), parse_material("a=b:c=ggx:roughness=0.5,albedo=0.5")},
+        mesh);
     EXPECT_EQ(both(mesh, 0, Gold).albedo, glm::vec3(1.0f));
     EXPECT_EQ(both(mesh, 1, Gold).shape, 0.5f);
     const auto unknown = [&mesh] {

@@ -9,7 +9,8 @@ class MaxMemory : public AppTest {
 protected:
     [[nodiscard]] static std::vector<std::string> run(const std::string& size,
                                                       const std::vector<std::string>& more = {}) {
-        std::vector<std::string> words = {"precompute", "knot.ply", "-o", "scene.prt", "--max-memory", size};
+        std::vector<std::string> words = {"precompute", "knot.ply",     "-o",
+                                          "scene.prt",  "--max-memory", size};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
@@ -42,8 +43,8 @@ TEST_F(MaxMemory, EnoughOfItChangesNothing) {
 TEST_F(MaxMemory, HoldsForHighlights) {
     succeed({"generate", "knot", "-o", ".", "--vertices", "5000", "-q"});
     const auto glossy = [](std::vector<std::string> more) {
-        more.insert(more.end(),
-                    {"--tolerance", "0.05", "--view", "auto", "--material", "ggx:roughness=0.3,f0=0.04"});
+        more.insert(more.end(), {"--tolerance", "0.05", "--view", "auto", "--material",
+                                 "ggx:roughness=0.3,f0=0.04"});
         return more;
     };
     // Room for the clusters, but not for some megabytes of highlights.

@@ -72,7 +72,8 @@ TEST_F(MeshFiles, IndicesOutOfRange) {
 }
 
 TEST_F(MeshFiles, HugeDeclaredSizes) {
-    for (const char* huge : {"1000000000", "4294967295", "100000000000", "99999999999999999999999"}) {
+    for (const char* huge :
+         {"1000000000", "4294967295", "100000000000", "99999999999999999999999"}) {
         refused("mesh.ply", ply(huge, "1", "0 0 0\n"));
         refused("mesh.ply", ply("3", huge, "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
         refused("mesh.off", std::string("OFF\n") + huge + " 1 0\n0 0 0\n");

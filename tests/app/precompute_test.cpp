@@ -33,8 +33,8 @@ protected:
 
 TEST_F(Precompute, AllKeysOfTheReport) {
     const nlohmann::json report = made({});
-    for (const char* key :
-         {"vertices", "triangles", "clusters", "samples", "rays", "seconds", "peak_bytes", "file_bytes"}) {
+    for (const char* key : {"vertices", "triangles", "clusters", "samples", "rays", "seconds",
+                            "peak_bytes", "file_bytes"}) {
         ASSERT_TRUE(report.contains(key)) << key;
         EXPECT_TRUE(report[key].is_number()) << key;
     }
@@ -48,7 +48,8 @@ TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
     EXPECT_EQ(made({"--floor", "5"})["triangles"], 8 + 32);
     EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["floor"], 5);
     // Without a number, last on the line or before another option.
-    EXPECT_EQ(made({"--min-depth", "1", "--tolerance", "0.2", "--floor"})["vertices"], 6 + 193 * 193);
+    EXPECT_EQ(made({"--min-depth", "1", "--tolerance", "0.2", "--floor"})["vertices"],
+              6 + 193 * 193);
     EXPECT_EQ(made({"--floor", "3", "--floor-scale", "8"})["vertices"], 6 + 9);
 }
 
@@ -58,7 +59,8 @@ TEST_F(Precompute, ToleranceAndDepthChangeTheClusters) {
     EXPECT_EQ(made({"--tolerance", "0", "--min-depth", "0"})["clusters"], 6 * 16 * 16)
         << "down to single texels";
     EXPECT_EQ(made({"--epsilon", "0"})["clusters"], 6 * 16 * 16);
-    EXPECT_EQ(made({"--face-resolution", "1", "--tolerance", "0", "--min-depth", "0"})["clusters"], 6);
+    EXPECT_EQ(made({"--face-resolution", "1", "--tolerance", "0", "--min-depth", "0"})["clusters"],
+              6);
 }
 
 TEST_F(Precompute, SmoothNormalsReplaceTheFiles) {
@@ -120,7 +122,8 @@ TEST_F(Precompute, TheOutputIsNeverTheInputNorAnythingButAScene) {
 
 TEST_F(Precompute, OutputsThatCannotBeWrittenAreFoundOutAtOnce) {
     fail({"precompute", "mesh.obj", "-o", "missing/new.prt"}, {"missing/new.prt", "cannot write"});
-    fail({"precompute", "mesh.obj", "-o", "mesh.obj/new.prt"}, {"mesh.obj/new.prt", "cannot write"});
+    fail({"precompute", "mesh.obj", "-o", "mesh.obj/new.prt"},
+         {"mesh.obj/new.prt", "cannot write"});
     fail({"precompute", "mesh.obj", "-o", "/proc/new.prt"}, {"/proc/new.prt", "cannot write"});
     fs::create_directory(folder() / "folder.prt");
     fail({"precompute", "mesh.obj", "-o", "folder.prt"}, {"folder.prt", "cannot write"});

@@ -14,10 +14,12 @@ std::string square_ply(bool twice = false) {
     const std::string corners = "-1 0 -1 0 1\n-1 0 1 0 0\n1 0 1 1 0\n1 0 -1 1 1\n";
     const std::string above = "-1 1 -1 0 1\n-1 1 1 0 0\n1 1 1 1 0\n1 1 -1 1 1\n";
     return "ply\nformat ascii 1.0\nelement vertex " + std::string(twice ? "8" : "4") +
-           "\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\n"
+           "\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty "
+           "float v\n"
            "element face " +
-           std::string(twice ? "2" : "1") + "\nproperty list uchar int vertex_indices\nend_header\n" +
-           corners + (twice ? above : "") + "4 0 1 2 3\n" + (twice ? "4 4 5 6 7\n" : "");
+           std::string(twice ? "2" : "1") +
+           "\nproperty list uchar int vertex_indices\nend_header\n" + corners +
+           (twice ? above : "") + "4 0 1 2 3\n" + (twice ? "4 4 5 6 7\n" : "");
 }
 
 class Receivers : public AppTest {
@@ -28,19 +30,19 @@ protected:
         write("white.hdr", white_hdr());
     }
     void make_pixels(const std::string& receivers = "pixels:24x16:2") const {
-        succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance", "0.05",
-                 "--receivers", receivers, "--view", "auto", "-q"});
+        succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance",
+                 "0.05", "--receivers", receivers, "--view", "auto", "-q"});
     }
     void make_texels() const {
-        succeed({"precompute", "square.ply", "-o", "tx.prt", "--face-resolution", "32", "--receivers",
-                 "texels:8x8", "-q"});
+        succeed({"precompute", "square.ply", "-o", "tx.prt", "--face-resolution", "32",
+                 "--receivers", "texels:8x8", "-q"});
     }
 };
 
 TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
     const nlohmann::json made =
-        succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance", "0.05",
-                 "--receivers", "pixels:24x16:2", "--view", "0,1,5,0,0,0,40", "--json"})
+        succeed({"precompute", "mesh.obj", "-o", "px.prt", "--face-resolution", "16", "--tolerance",
+                 "0.05", "--receivers", "pixels:24x16:2", "--view", "0,1,5,0,0,0,40", "--json"})
             .json();
     EXPECT_EQ(made["layout"]["kind"], "pixels");
     EXPECT_EQ(made["vertices"], 6);
@@ -56,16 +58,18 @@ TEST_F(Receivers, PixelsBecomeThePictureOfTheirView) {
     succeed({"relight", "px.prt", "white.hdr", "-o", "lit.npy"});
     const auto values = npy_values(read("lit.npy"));
     EXPECT_EQ(values.size(), num_receivers);
-    for (const auto& value : values) // a white furnace: flat faces under smooth normals see a little less
+    for (const auto& value :
+         values) // a white furnace: flat faces under smooth normals see a little less
         EXPECT_LT(value[0], 1.01f);
 
     const nlohmann::json info = succeed({"info", "px.prt", "--json"}).json();
     EXPECT_EQ(info["receivers"], num_receivers);
     EXPECT_EQ(info["layout"]["samples_per_axis"], 2);
     EXPECT_EQ(info["layout"]["fov"], 40.0);
-    EXPECT_NEAR(info["layout"]["coverage"].get<double>(), static_cast<double>(num_receivers) / (24 * 16 * 4),
-                1e-9);
-    EXPECT_NE(succeed({"info", "px.prt"}).out.find("pixels 24 x 16, 2 x 2 samples each"), std::string::npos);
+    EXPECT_NEAR(info["layout"]["coverage"].get<double>(),
+                static_cast<double>(num_receivers) / (24 * 16 * 4), 1e-9);
+    EXPECT_NE(succeed({"info", "px.prt"}).out.find("pixels 24 x 16, 2 x 2 samples each"),
+              std::string::npos);
 }
 
 TEST_F(Receivers, AllCommandsTakePixels) {
@@ -79,13 +83,14 @@ TEST_F(Receivers, AllCommandsTakePixels) {
     succeed({"edit", "px.prt", "white.hdr", "-o", "edited.png", "--disc", "0,1,0", "--gain", "3"});
     EXPECT_EQ(png_size(read("edited.png")), (Size{24, 16}));
     succeed({"edit", "px.prt", "white.hdr", "-o", "who.exr", "--disc", "0,1,0", "--who", "0,1,0"});
-    const nlohmann::json verified =
-        succeed({"verify", "px.prt", "white.hdr", "--face-resolution", "16", "--samples", "50", "--json"})
-            .json();
+    const nlohmann::json verified = succeed({"verify", "px.prt", "white.hdr", "--face-resolution",
+                                             "16", "--samples", "50", "--json"})
+                                        .json();
     EXPECT_LT(verified["relative_l2"], 0.05);
     EXPECT_TRUE(verified.contains("worst_receiver"));
-    const nlohmann::json lights =
-        succeed({"lights", "white.hdr", "-o", "list.json", "-n", "16", "--scene", "px.prt", "--json"}).json();
+    const nlohmann::json lights = succeed({"lights", "white.hdr", "-o", "list.json", "-n", "16",
+                                           "--scene", "px.prt", "--json"})
+                                      .json();
     EXPECT_LT(lights["relative_l2"], 0.5);
     succeed({"relight", "px.prt", "--lights", "list.json", "-o", "by_list.png"});
     succeed({"lights", "white.hdr", "--compare", "px.prt", "-n", "4", "--samples", "20"});
@@ -110,10 +115,11 @@ TEST_F(Receivers, TexelsBecomeALightmap) {
 TEST_F(Receivers, OverlappingChartsAreAWarning) {
     // The centres of the four on the diagonal are inside no triangle, but on edges.
     write("twice.ply", square_ply(true));
-    const Result made = succeed(
-        {"precompute", "twice.ply", "-o", "tx.prt", "--face-resolution", "8", "--receivers", "texels:4x4"});
-    EXPECT_NE(made.out.find("warning: 12 texels lie in several triangles, the first at column 1, row 0"),
-              std::string::npos)
+    const Result made = succeed({"precompute", "twice.ply", "-o", "tx.prt", "--face-resolution",
+                                 "8", "--receivers", "texels:4x4"});
+    EXPECT_NE(
+        made.out.find("warning: 12 texels lie in several triangles, the first at column 1, row 0"),
+        std::string::npos)
         << made.out;
 }
 
@@ -122,21 +128,26 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
     make_texels();
     for (const char* scene : {"px.prt", "tx.prt"}) {
         for (const char* output : {"new.ply", "new.glb"}) {
-            fail({"relight", scene, "white.hdr", "-o", output}, {output, "expected .png, .exr or .npy"});
+            fail({"relight", scene, "white.hdr", "-o", output},
+                 {output, "expected .png, .exr or .npy"});
             fail({"edit", scene, "white.hdr", "-o", output, "--disc", "0,1,0"}, {output});
         }
-        fail({"relight", scene, "white.hdr", "-o", "new.png", "--eye", "1,2,3"}, {"--eye", "no camera"});
-        fail({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"}, {"--size", "no camera"});
+        fail({"relight", scene, "white.hdr", "-o", "new.png", "--eye", "1,2,3"},
+             {"--eye", "no camera"});
+        fail({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"},
+             {"--size", "no camera"});
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
     }
-    fail({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"}, {"--transparent", "pixels"});
+    fail({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"},
+         {"--transparent", "pixels"});
     fail({"relight", "px.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, {"colours"});
 }
 
 TEST_F(Receivers, ReceiversThatCannotBe) {
     const auto precompute = [](const std::string& mesh, const std::string& receivers,
                                const std::string& view = "") {
-        std::vector<std::string> arguments = {"precompute", mesh, "-o", "new.prt", "--receivers", receivers};
+        std::vector<std::string> arguments = {"precompute", mesh,          "-o",
+                                              "new.prt",    "--receivers", receivers};
         if (!view.empty())
             arguments.insert(arguments.end(), {"--view", view});
         return arguments;
@@ -144,9 +155,9 @@ TEST_F(Receivers, ReceiversThatCannotBe) {
     misuse(precompute("mesh.obj", "pixels:8x8"), "--view");
     misuse(precompute("mesh.obj", "vertices", "left"), "--view");
     for (const char* receivers :
-         {"pixels", "pixels:8", "pixels:8x", "pixels:8x8:", "pixels:8x8:2:2", "pixels:8x8x8", "pixels:-8x8",
-          "pixels:0x8", "pixels:8x99999", "pixels:8x8:0", "pixels:8x8:99", "pixels:16384x16384:8", "faces",
-          "texels:"})
+         {"pixels", "pixels:8", "pixels:8x", "pixels:8x8:", "pixels:8x8:2:2", "pixels:8x8x8",
+          "pixels:-8x8", "pixels:0x8", "pixels:8x99999", "pixels:8x8:0", "pixels:8x8:99",
+          "pixels:16384x16384:8", "faces", "texels:"})
         misuse(precompute("mesh.obj", receivers, "auto"), "--receivers");
     misuse(precompute("square.ply", "texels:8x8:2"), "--receivers");
     for (const char* view : {"left", "1,2,3", "1,2,3,4,5,x", "1,2,3,4,5,6,7,8", "1,2,3,1,2,3",

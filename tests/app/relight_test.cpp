@@ -133,8 +133,10 @@ TEST_F(Relight, SaysWhichExposureSuitsAPicture) {
         command.insert(command.end(), more.begin(), more.end());
         return succeed(command).out;
     };
-    EXPECT_NE(out("new.png", {"--albedo", "8"}).find("; --exposure -3 suits it better\n"), std::string::npos);
-    EXPECT_EQ(out("new.png", {"--albedo", "8", "--exposure", "-3"}).find("suits"), std::string::npos);
+    EXPECT_NE(out("new.png", {"--albedo", "8"}).find("; --exposure -3 suits it better\n"),
+              std::string::npos);
+    EXPECT_EQ(out("new.png", {"--albedo", "8", "--exposure", "-3"}).find("suits"),
+              std::string::npos);
     EXPECT_EQ(out("new.png", {}).find("suits"), std::string::npos);
     EXPECT_EQ(out("new.npy", {"--albedo", "8"}).find("suits"), std::string::npos);
 }
@@ -160,8 +162,8 @@ TEST_F(Relight, PictureHasTheSizeAskedFor) {
         const Size got = png_size(read("lit.png"));
         EXPECT_EQ(std::to_string(got.width) + "x" + std::to_string(got.height), size);
     }
-    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--size", "20x10", "--eye", "3,1,2",
-             "--target", "0,0,0", "--fov", "60"});
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "lit.exr", "--size", "20x10", "--eye",
+             "3,1,2", "--target", "0,0,0", "--fov", "60"});
     EXPECT_EQ(exr_size(read("lit.exr")), (Size{20, 10}));
 }
 
@@ -170,7 +172,8 @@ TEST_F(Relight, BadOptionsAreRefused) {
         refuse({"--size", size}, 2);
     for (const char* size : {"0x0", "0x5", "16385x1", "99999x99999"})
         refuse({"--size", size}, 1);
-    for (const char* vector : {"1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "1,2,", ","}) {
+    for (const char* vector :
+         {"1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "1,2,", ","}) {
         refuse({"--eye", vector}, 2);
         refuse({"--target", vector}, 2);
     }
@@ -191,7 +194,8 @@ TEST_F(Relight, BadOptionsAreRefused) {
 TEST_F(Relight, NumbersThatCannotBeMeantAreRefused) {
     const auto refused = [&](const std::string& option, const std::string& value) {
         const std::vector<std::string> before = files();
-        const Result result = relumine({"relight", "scene.prt", "white.hdr", "-o", "new.npy", option, value});
+        const Result result =
+            relumine({"relight", "scene.prt", "white.hdr", "-o", "new.npy", option, value});
         EXPECT_TRUE(result.exit_code == 1 || result.exit_code == 2) << option << value << '\n'
                                                                     << result.described();
         EXPECT_NE(result.err.find(option.substr(2)), std::string::npos) << result.described();
@@ -207,16 +211,20 @@ TEST_F(Relight, NumbersThatCannotBeMeantAreRefused) {
 }
 
 TEST_F(Relight, UnknownKindsOfOutputAreRefused) {
-    for (const char* name : {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", ".npy", "sub/new.npy/"})
+    for (const char* name :
+         {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", ".npy", "sub/new.npy/"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, {"expected"});
 }
 
 TEST_F(Relight, OutputsThatCannotBeWrittenAreFoundOutAndNothingIsLost) {
-    fail({"relight", "scene.prt", "white.hdr", "-o", "missing/new.npy"}, {"missing/new.npy", "cannot write"});
+    fail({"relight", "scene.prt", "white.hdr", "-o", "missing/new.npy"},
+         {"missing/new.npy", "cannot write"});
     fail({"relight", "scene.prt", "white.hdr", "-o", "scene.prt/new.npy"},
          {"scene.prt/new.npy", "cannot write"});
-    fail({"relight", "scene.prt", "white.hdr", "-o", "/proc/new.npy"}, {"/proc/new.npy", "cannot write"});
-    fail({"relight", "scene.prt", "white.hdr", "-o", std::string(300, 'a') + ".npy"}, {"cannot write"});
+    fail({"relight", "scene.prt", "white.hdr", "-o", "/proc/new.npy"},
+         {"/proc/new.npy", "cannot write"});
+    fail({"relight", "scene.prt", "white.hdr", "-o", std::string(300, 'a') + ".npy"},
+         {"cannot write"});
     fs::create_directory(folder() / "folder.npy");
     fail({"relight", "scene.prt", "white.hdr", "-o", "folder.npy"}, {"folder.npy", "cannot write"});
 }
@@ -224,7 +232,8 @@ TEST_F(Relight, OutputsThatCannotBeWrittenAreFoundOutAndNothingIsLost) {
 TEST_F(Relight, AFullDiskLeavesTheOldFile) {
     for (const char* name : {"old.npy", "old.png", "old.exr", "old.ply", "old.glb"}) {
         write(name, "precious");
-        fail({"relight", "scene.prt", "white.hdr", "-o", name, "--size", "64x64"}, {name, "cannot write"},
+        fail({"relight", "scene.prt", "white.hdr", "-o", name, "--size", "64x64"},
+             {name, "cannot write"},
              {.max_file_bytes = 150}); // room for the message, which is a file here
     }
 }
@@ -248,14 +257,18 @@ TEST_F(Relight, InputsThatCannotBeReadAreNamed) {
     fail({"relight", "scene.prt", "missing.hdr", "-o", "new.npy"}, {"missing.hdr", "cannot read"});
     fail({"relight", ".", "white.hdr", "-o", "new.npy"}, {"cannot read"});
     fail({"relight", "scene.prt", ".", "-o", "new.npy"}, {"cannot read"});
-    fail({"relight", "scene.prt", "/dev/zero", "-o", "new.npy"}, {"/dev/zero", "not a regular file"});
+    fail({"relight", "scene.prt", "/dev/zero", "-o", "new.npy"},
+         {"/dev/zero", "not a regular file"});
     ASSERT_EQ(::mkfifo((folder() / "pipe.hdr").c_str(), 0600), 0);
-    EXPECT_LT(fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"}).seconds, 5.0);
+    EXPECT_LT(fail({"relight", "scene.prt", "pipe.hdr", "-o", "new.npy"}, {"pipe.hdr"}).seconds,
+              5.0);
 }
 
 TEST_F(Relight, AnotherKindOfFileIsToldApart) {
-    fail({"relight", "mesh.obj", "white.hdr", "-o", "new.npy"}, {"mesh.obj", "expected a scene file"});
-    fail({"relight", "white.hdr", "scene.prt", "-o", "new.npy"}, {"white.hdr", "expected a .prt scene"});
+    fail({"relight", "mesh.obj", "white.hdr", "-o", "new.npy"},
+         {"mesh.obj", "expected a scene file"});
+    fail({"relight", "white.hdr", "scene.prt", "-o", "new.npy"},
+         {"white.hdr", "expected a .prt scene"});
     fail({"relight", "scene.prt", "mesh.obj", "-o", "new.npy"}, {"mesh.obj", "expected"});
     fail({"relight", "scene.prt", "scene.prt", "-o", "new.npy"}, {"scene.prt", "expected"});
 }

@@ -17,13 +17,14 @@ class Resume : public AppTest {
 protected:
     /// Options of a run that leaves a checkpoint whenever it can.
     [[nodiscard]] static std::vector<std::string> run(const std::vector<std::string>& more = {}) {
-        std::vector<std::string> words = {"precompute",           "knot.ply", "-o", "scene.prt", "-q",
-                                          "--checkpoint-seconds", "0.001"};
+        std::vector<std::string> words = {
+            "precompute", "knot.ply", "-o", "scene.prt", "-q", "--checkpoint-seconds", "0.001"};
         words.insert(words.end(), more.begin(), more.end());
         return words;
     }
     /// Runs the command and kills it after `seconds`. Whether it was still running.
-    [[nodiscard]] bool killed_after(const std::vector<std::string>& arguments, double seconds) const {
+    [[nodiscard]] bool killed_after(const std::vector<std::string>& arguments,
+                                    double seconds) const {
         Process process(folder(), arguments);
         std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
         const bool was_running = process.is_running();
@@ -52,7 +53,8 @@ TEST_F(Resume, KilledAtTwentyMomentsTheFileIsTheSame) {
     int num_taken_up = 0;
     for (int i = 0; i < 20; ++i) {
         fs::remove(folder() / "scene.prt");
-        // The first dozen runs are killed once, the rest again and again until one of them is through.
+        // The first dozen runs are killed once, the rest again and again until one of them is
+        // through.
         std::uniform_real_distribution<double> moment(0.0, i < 12 ? seconds : 0.7 * seconds);
         bool killed = killed_after(run(scene), moment(random));
         num_killed += killed ? 1 : 0;
@@ -85,7 +87,8 @@ TEST_F(Resume, KilledWithACheckpointItIsTakenUp) {
         static_cast<void>(process.wait());
     }
     ASSERT_TRUE(fs::exists(state));
-    std::vector<std::string> again = {"precompute", "knot.ply", "-o", "scene.prt", "-v", "--resume"};
+    std::vector<std::string> again = {"precompute", "knot.ply", "-o",
+                                      "scene.prt",  "-v",       "--resume"};
     again.insert(again.end(), scene.begin(), scene.end());
     EXPECT_NE(succeed(again).out.find("going on from scene.prt.checkpoint"), std::string::npos);
     EXPECT_EQ(read("scene.prt"), expected);
@@ -118,19 +121,21 @@ TEST_F(Resume, StoppedByASignalItSaysHowToGoOn) {
     process.send(SIGTERM);
     const Result result = process.wait();
     EXPECT_EQ(result.exit_code, 1) << result.described();
-    EXPECT_EQ(result.err,
-              "relumine: cancelled; the same command with --resume goes on from scene.prt.checkpoint\n");
+    EXPECT_EQ(
+        result.err,
+        "relumine: cancelled; the same command with --resume goes on from scene.prt.checkpoint\n");
     EXPECT_FALSE(fs::exists(folder() / "scene.prt"));
     // Other work than that is refused, and says why.
-    fail(run({"--tolerance", "0.1", "--resume"}), {"scene.prt.checkpoint: expected a checkpoint of this run "
-                                                   "(tolerance 0.1), got another's (tolerance 0)"});
+    fail(run({"--tolerance", "0.1", "--resume"}),
+         {"scene.prt.checkpoint: expected a checkpoint of this run "
+          "(tolerance 0.1), got another's (tolerance 0)"});
     fail(run({"--tolerance", "0", "--floor", "--resume"}),
          {"scene.prt.checkpoint: expected a checkpoint of this run"});
     fs::resize_file(state, 100);
-    EXPECT_EQ(
-        relumine(run({"--tolerance", "0", "--resume"})).err,
-        "relumine: scene.prt.checkpoint/clusters.state: expected a checkpoint, got damaged data; without "
-        "--resume the work begins anew\n");
+    EXPECT_EQ(relumine(run({"--tolerance", "0", "--resume"})).err,
+              "relumine: scene.prt.checkpoint/clusters.state: expected a checkpoint, got damaged "
+              "data; without "
+              "--resume the work begins anew\n");
     // Without --resume it is done from the start, and the old checkpoint goes with the new.
     succeed(run({"--tolerance", "0.3"}));
     expect_no_leftovers({"knot.ply", "scene.prt"});
@@ -149,8 +154,9 @@ TEST_F(Resume, AFullDiskAtTheEndLosesNothing) {
     // The scene is larger than any of the checkpoint's files here.
     const Result result = relumine(run(scene), {.max_file_bytes = expected.size() - 1});
     EXPECT_EQ(result.exit_code, 1) << result.described();
-    const std::string needed = "scene.prt: cannot write: File too large: " + std::to_string(expected.size()) +
-                               " bytes needed, " + std::to_string(expected.size() - 1) + " allowed";
+    const std::string needed =
+        "scene.prt: cannot write: File too large: " + std::to_string(expected.size()) +
+        " bytes needed, " + std::to_string(expected.size() - 1) + " allowed";
     EXPECT_NE(result.err.find(needed), std::string::npos) << result.described();
     EXPECT_FALSE(fs::exists(folder() / "scene.prt"));
     succeed(run({"--tolerance", "0.02", "--resume"}));

@@ -21,7 +21,8 @@ protected:
     const std::vector<std::string> Endless = {"precompute",  "knot.ply", "-o", "scene.prt",
                                               "--tolerance", "0",        "-q"};
 
-    /// Sends the signals `delay` after the program takes them, with a millisecond between them, and expects the end within a second or so.
+    /// Sends the signals `delay` after the program takes them, with a millisecond between them, and
+    /// expects the end within a second or so.
     void interrupt(const std::vector<std::string>& arguments, const std::vector<int>& signals,
                    std::chrono::milliseconds delay) const {
         const std::vector<std::string> before = files();
@@ -72,8 +73,9 @@ TEST_F(Signals, VerifyStopsAtOnce) {
     succeed({"generate", "blob", "-o", ".", "--vertices", "20000", "-q"});
     write("white.hdr", white_hdr());
     succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.05", "-q"});
-    interrupt({"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
-              {SIGINT}, std::chrono::milliseconds(1500));
+    interrupt(
+        {"verify", "scene.prt", "white.hdr", "--samples", "0", "--face-resolution", "512", "-q"},
+        {SIGINT}, std::chrono::milliseconds(1500));
 }
 
 TEST_F(Signals, ProgressIsPlainLinesWithTheTimeLeft) {
@@ -118,7 +120,8 @@ TEST_F(FullDisk, LeavesTheOldFile) {
     succeed({"precompute", "blob.ply", "-o", "scene.prt", "--face-resolution", "16"});
     for (const char* name : {"disk/lit.npy", "disk/lit.ply", "disk/lit.glb"})
         fail({"relight", "scene.prt", "white.hdr", "-o", name}, no_space);
-    fail({"precompute", "blob.ply", "-o", "disk/scene.prt", "--face-resolution", "16", "-q"}, no_space);
+    fail({"precompute", "blob.ply", "-o", "disk/scene.prt", "--face-resolution", "16", "-q"},
+         no_space);
     succeed({"info", "disk/scene.prt"});
 }
 

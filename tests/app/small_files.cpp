@@ -32,7 +32,8 @@ std::string octahedron_obj() {
 }
 
 std::string hdr_file(std::uint32_t width, std::uint32_t height, const Painter& painter) {
-    std::string bytes = fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", height, width);
+    std::string bytes =
+        fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", height, width);
     for (std::uint32_t y = 0; y < height; ++y)
         for (std::uint32_t x = 0; x < width; ++x) {
             const Rgb color = painter(x, y);
@@ -40,9 +41,9 @@ std::string hdr_file(std::uint32_t width, std::uint32_t height, const Painter& p
             const float largest = std::max({color[0], color[1], color[2]});
             std::frexp(largest, &exponent);
             for (const float value : color)
-                bytes += largest > 0.0f
-                             ? static_cast<char>(static_cast<unsigned char>(std::ldexp(value, 8 - exponent)))
-                             : '\0';
+                bytes += largest > 0.0f ? static_cast<char>(static_cast<unsigned char>(
+                                              std::ldexp(value, 8 - exponent)))
+                                        : '\0';
             bytes += largest > 0.0f ? static_cast<char>(exponent + 128) : '\0';
         }
     return bytes;
@@ -99,7 +100,8 @@ std::string white_hdr() {
 
 std::string lamp_hdr(std::uint32_t column) {
     return hdr_file(128, 64, [column](std::uint32_t x, std::uint32_t y) {
-        const float radiance = (y == 31 || y == 32) && (x == column || x + 1 == column) ? 512.0f : 0.0f;
+        const float radiance =
+            (y == 31 || y == 32) && (x == column || x + 1 == column) ? 512.0f : 0.0f;
         return Rgb{radiance, radiance, radiance};
     });
 }

@@ -30,7 +30,8 @@ TEST_F(Verify, AllKeysOfTheReport) {
 
 TEST_F(Verify, SamplesAreChosenBySeed) {
     const auto worst = [&](const std::string& seed) {
-        return succeed({"verify", "scene.prt", "white.hdr", "--samples", "1", "--seed", seed, "--json"})
+        return succeed(
+                   {"verify", "scene.prt", "white.hdr", "--samples", "1", "--seed", seed, "--json"})
             .json();
     };
     EXPECT_EQ(worst("1")["samples"], 1);
@@ -40,7 +41,9 @@ TEST_F(Verify, SamplesAreChosenBySeed) {
         ++seen.at(worst(std::to_string(seed))["worst_vertex"].get<std::size_t>());
     for (const int count : seen)
         EXPECT_LT(count, 30) << "another seed never chose another receiver";
-    EXPECT_EQ(succeed({"verify", "scene.prt", "white.hdr", "--samples", "0", "--json"}).json()["samples"], 6);
+    EXPECT_EQ(
+        succeed({"verify", "scene.prt", "white.hdr", "--samples", "0", "--json"}).json()["samples"],
+        6);
 }
 
 TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
@@ -48,9 +51,10 @@ TEST_F(Verify, ItIsTheSceneFileThatIsTested) {
     succeed({"generate", "colonnade", "-o", ".", "--vertices", "1000", "-q"});
     write("lamp.hdr", lamp_hdr(40));
     const auto error = [&](const std::string& tolerance) {
-        succeed({"precompute", "colonnade.ply", "-o", "c.prt", "--tolerance", tolerance, "--min-depth", "1",
-                 "--face-resolution", "64"});
-        return succeed({"verify", "c.prt", "lamp.hdr", "--samples", "200", "--clusters-only", "--json"})
+        succeed({"precompute", "colonnade.ply", "-o", "c.prt", "--tolerance", tolerance,
+                 "--min-depth", "1", "--face-resolution", "64"});
+        return succeed(
+                   {"verify", "c.prt", "lamp.hdr", "--samples", "200", "--clusters-only", "--json"})
             .json()["relative_l2"]
             .get<double>();
     };

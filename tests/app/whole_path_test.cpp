@@ -21,16 +21,17 @@ protected:
                         "--face-resolution", "64", "--json"})
             .json();
     }
-    void generate(const std::string& environment, int resolution, const std::string& where = ".") const {
-        succeed(
-            {"generate", environment, "-o", where, "--face-resolution", std::to_string(resolution), "-q"});
+    void generate(const std::string& environment, int resolution,
+                  const std::string& where = ".") const {
+        succeed({"generate", environment, "-o", where, "--face-resolution",
+                 std::to_string(resolution), "-q"});
     }
 };
 
 TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     const nlohmann::json made = precompute("knot", 2000);
-    for (const char* key :
-         {"vertices", "triangles", "clusters", "samples", "rays", "seconds", "peak_bytes", "file_bytes"}) {
+    for (const char* key : {"vertices", "triangles", "clusters", "samples", "rays", "seconds",
+                            "peak_bytes", "file_bytes"}) {
         ASSERT_TRUE(made.contains(key)) << key;
         EXPECT_GT(made[key], 0) << key;
     }
@@ -50,10 +51,11 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     const auto vertices = made["vertices"].get<std::size_t>();
     const auto triangles = made["triangles"].get<std::size_t>();
     for (const char* name : {"lit.png", "lit.exr", "lit.ply", "lit.glb", "lit.npy"}) {
-        const nlohmann::json lit =
-            succeed({"relight", "scene.prt", "soft_boxes.exr", "-o", name, "--size", "40x30", "--json"})
-                .json();
-        for (const char* key : {"seconds_load", "seconds_resample", "seconds_bin", "seconds_relight"}) {
+        const nlohmann::json lit = succeed({"relight", "scene.prt", "soft_boxes.exr", "-o", name,
+                                            "--size", "40x30", "--json"})
+                                       .json();
+        for (const char* key :
+             {"seconds_load", "seconds_resample", "seconds_bin", "seconds_relight"}) {
             ASSERT_TRUE(lit.contains(key)) << key;
             EXPECT_GE(lit[key], 0.0) << key;
             EXPECT_LT(lit[key], 10.0) << key;
@@ -65,9 +67,11 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     EXPECT_EQ(ply_element(read("lit.ply"), "face"), triangles);
     const nlohmann::json gltf = glb_json(read("lit.glb"));
     const nlohmann::json& primitive = gltf["meshes"][0]["primitives"][0];
-    EXPECT_EQ(gltf["accessors"][primitive["attributes"]["COLOR_0"].get<std::size_t>()]["count"], vertices);
-    EXPECT_EQ(gltf["accessors"][primitive["attributes"]["COLOR_0"].get<std::size_t>()]["componentType"],
-              5126);
+    EXPECT_EQ(gltf["accessors"][primitive["attributes"]["COLOR_0"].get<std::size_t>()]["count"],
+              vertices);
+    EXPECT_EQ(
+        gltf["accessors"][primitive["attributes"]["COLOR_0"].get<std::size_t>()]["componentType"],
+        5126);
     EXPECT_EQ(gltf["accessors"][primitive["indices"].get<std::size_t>()]["count"], 3 * triangles);
     const auto lit = npy_values(read("lit.npy"));
     EXPECT_EQ(lit.size(), vertices);
@@ -78,8 +82,8 @@ TEST_F(WholePath, GeneratePrecomputeInfoRelightEditVerify) {
     EXPECT_EQ(ply["colors"], true);
 
     const nlohmann::json edit =
-        succeed({"edit", "scene.prt", "soft_boxes.exr", "-o", "edited.npy", "--disc", "0,1,0", "--radius",
-                 "20", "--gain", "3", "--save-env", "edited.exr", "--json"})
+        succeed({"edit", "scene.prt", "soft_boxes.exr", "-o", "edited.npy", "--disc", "0,1,0",
+                 "--radius", "20", "--gain", "3", "--save-env", "edited.exr", "--json"})
             .json();
     EXPECT_GT(edit["clusters_touched"], 0);
     EXPECT_LT(edit["clusters_touched"], edit["clusters"]);
@@ -101,9 +105,10 @@ TEST_F(WholePath, ErrorIsSmallUnderEveryGeneratedEnvironment) {
     for (const char* name : {"sun_sky", "soft_boxes", "small_light", "constant"}) {
         generate(name, 64);
         for (const char* file : {"", "_latlong"}) {
-            const nlohmann::json error = succeed({"verify", "scene.prt", fmt::format("{}{}.exr", name, file),
-                                                  "--samples", "250", "--json"})
-                                             .json();
+            const nlohmann::json error =
+                succeed({"verify", "scene.prt", fmt::format("{}{}.exr", name, file), "--samples",
+                         "250", "--json"})
+                    .json();
             EXPECT_LT(error["relative_l2"], 0.02) << name << file;
             EXPECT_GT(error["mean_radiance"], 0.0) << name << file;
         }
@@ -129,7 +134,8 @@ TEST_F(WholePath, TheSunKeepsItsLightAtEveryResolution) {
         succeed({"relight", "scene.prt", fmt::format("{}/sun_sky_latlong.exr", name), "-o",
                  fmt::format("{}.npy", name)});
     }
-    // A sun of half a degree is spread over a texel of 1.4 degrees at R = 64: shadow edges move, the light stays.
+    // A sun of half a degree is spread over a texel of 1.4 degrees at R = 64: shadow edges move,
+    // the light stays.
     const auto mean = [&](const std::string& name) {
         double sum = 0.0;
         const auto values = npy_values(read(name));

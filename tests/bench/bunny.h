@@ -14,8 +14,10 @@
 
 namespace relumine::bench {
 
-/// The Stanford bunny on a floor: from a .prt file where one is named, otherwise precomputed from the data folder's mesh.
-inline prt::Scene bunny(const std::filesystem::path& scene_file, const std::filesystem::path& data) {
+/// The Stanford bunny on a floor: from a .prt file where one is named, otherwise precomputed from
+/// the data folder's mesh.
+inline prt::Scene bunny(const std::filesystem::path& scene_file,
+                        const std::filesystem::path& data) {
     if (!scene_file.empty())
         return prt::load_scene(scene_file);
     fmt::print(stderr, "precompute; name a finished one with --scene to save the time\n");
@@ -25,12 +27,15 @@ inline prt::Scene bunny(const std::filesystem::path& scene_file, const std::file
     const prt::RayScene rays(scene.mesh);
     scene.settings.bias = prt::automatic_bias(scene.mesh);
     scene.settings.tolerance = prt::PrecomputeOptions{}.tolerance;
-    scene.transfer = prt::precompute(prt::vertex_receivers(scene.mesh), rays, {.bias = scene.settings.bias});
+    scene.transfer =
+        prt::precompute(prt::vertex_receivers(scene.mesh), rays, {.bias = scene.settings.bias});
     return scene;
 }
 
-/// The disc of the editing experiments; its radius is a part of the map's width. A face, a quarter of the map's width around, spans 90 degrees.
-inline cubemap::LightLayer disc(const glm::dvec3& direction, double part_of_face, double intensity) {
+/// The disc of the editing experiments; its radius is a part of the map's width. A face, a quarter
+/// of the map's width around, spans 90 degrees.
+inline cubemap::LightLayer disc(const glm::dvec3& direction, double part_of_face,
+                                double intensity) {
     cubemap::LightLayer layer;
     layer.name = "disc";
     layer.region = cubemap::Disc{.direction = direction, .radius_degrees = 90.0 * part_of_face};

@@ -21,7 +21,8 @@ namespace relumine::bench::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 /// sums: [3][16]
-void sum_block(const std::uint8_t* values, const glm::vec3* light, std::size_t num_clusters, float* sums) {
+void sum_block(const std::uint8_t* values, const glm::vec3* light, std::size_t num_clusters,
+               float* sums) {
     const hn::CappedTag<float, prt::BlockSize> d;
     const hn::Rebind<std::uint8_t, decltype(d)> bytes;
     const hn::Rebind<std::int32_t, decltype(d)> integers;
@@ -29,7 +30,8 @@ void sum_block(const std::uint8_t* values, const glm::vec3* light, std::size_t n
         auto red = hn::Zero(d), green = red, blue = red;
         for (std::size_t cluster = 0; cluster < num_clusters; ++cluster) {
             const auto t = hn::ConvertTo(
-                d, hn::PromoteTo(integers, hn::LoadU(bytes, values + cluster * prt::BlockSize + lane)));
+                d, hn::PromoteTo(integers,
+                                 hn::LoadU(bytes, values + cluster * prt::BlockSize + lane)));
             red = hn::MulAdd(t, hn::Set(d, light[cluster].r), red);
             green = hn::MulAdd(t, hn::Set(d, light[cluster].g), green);
             blue = hn::MulAdd(t, hn::Set(d, light[cluster].b), blue);
@@ -55,36 +57,40 @@ DenseTable dense_table(const prt::Transfer& transfer) {
     table.scale = static_cast<float>(1.0 / (255.0 * std::numbers::pi));
     std::vector<glm::vec3> directions;
     for (const prt::Cell& cell : transfer.quadtree.leaves())
-        directions.emplace_back(
-            cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(), (cell.y + 0.5) * cell.size()));
+        directions.emplace_back(cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(),
+                                                   (cell.y + 0.5) * cell.size()));
     tbb::parallel_for(std::size_t{0}, table.num_blocks, [&](std::size_t block) {
         const std::size_t begin = block * prt::BlockSize;
         const std::size_t end = std::min(begin + prt::BlockSize, transfer.num_receivers());
         std::uint8_t* value = table.values.data() + block * table.num_clusters * prt::BlockSize;
-        for (std::size_t cluster = 0; cluster < table.num_clusters; ++cluster, value += prt::BlockSize)
+        for (std::size_t cluster = 0; cluster < table.num_clusters;
+             ++cluster, value += prt::BlockSize)
             for (std::size_t place = begin; place < end; ++place) {
                 const float cosine =
                     std::clamp(glm::dot(transfer.normals[place], directions[cluster]), 0.0f, 1.0f);
-                value[place - begin] = static_cast<std::uint8_t>(
-                    std::lround(255.0f / 16.0f * cosine * static_cast<float>(counts.count(place, cluster))));
+                value[place - begin] = static_cast<std::uint8_t>(std::lround(
+                    255.0f / 16.0f * cosine * static_cast<float>(counts.count(place, cluster))));
             }
     });
     return table;
 }
 
-void relight(const DenseTable& table, std::span<const glm::vec3> light, std::vector<glm::vec3>& radiance) {
+void relight(const DenseTable& table, std::span<const glm::vec3> light,
+             std::vector<glm::vec3>& radiance) {
     radiance.resize(table.num_blocks * prt::BlockSize);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, table.num_blocks, 16), [&](const auto& blocks) {
-        for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
-            std::array<float, 3 * prt::BlockSize> sums;
-            HWY_DYNAMIC_DISPATCH(sum_block)
-            (table.values.data() + block * table.num_clusters * prt::BlockSize, light.data(),
-             table.num_clusters, sums.data());
-            for (std::size_t i = 0; i < prt::BlockSize; ++i)
-                radiance[block * prt::BlockSize + i] =
-                    table.scale * glm::vec3(sums[i], sums[prt::BlockSize + i], sums[2 * prt::BlockSize + i]);
-        }
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, table.num_blocks, 16),
+                      [&](const auto& blocks) {
+                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
+                              std::array<float, 3 * prt::BlockSize> sums;
+                              HWY_DYNAMIC_DISPATCH(sum_block)
+                              (table.values.data() + block * table.num_clusters * prt::BlockSize,
+                               light.data(), table.num_clusters, sums.data());
+                              for (std::size_t i = 0; i < prt::BlockSize; ++i)
+                                  radiance[block * prt::BlockSize + i] =
+                                      table.scale * glm::vec3(sums[i], sums[prt::BlockSize + i],
+                                                              sums[2 * prt::BlockSize + i]);
+                          }
+                      });
 }
 
 } // namespace relumine::bench

@@ -1,5 +1,6 @@
-// The editing experiment of Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", Section 6: the bunny under the beach,
-// two discs of 5 % and 10 % of the map's width in front of it and at its side grow brighter over 60 steps, then move over 60.
+// The editing experiment of Johan and Nishita, "Efficient Relighting by Clustering Environment
+// Lights", Section 6: the bunny under the beach, two discs of 5 % and 10 % of the map's width in
+// front of it and at its side grow brighter over 60 steps, then move over 60.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -29,7 +30,8 @@ constexpr double PaperSeconds = 0.06; // average, Pentium 4
 
 struct Settings {
     fs::path data = RELUMINE_DATA_DIR;
-    fs::path scene; ///< a bunny.prt that is there already
+    /// A bunny.prt that is there already
+    fs::path scene;
     fs::path json = "edit.json";
     std::uint32_t resolution = 1024;
 };
@@ -43,9 +45,11 @@ Figures steps(relight::LightEditor& editor, const LayersAt& layers_at) {
     Figures figures;
     for (int step = 1; step <= NumSteps; ++step) {
         const auto layers = layers_at(static_cast<double>(step) / NumSteps);
-        for (std::size_t i = 0; i < layers.size(); ++i) { // one disc is one edit, as an artist would drag it
+        for (std::size_t i = 0; i < layers.size();
+             ++i) { // one disc is one edit, as an artist would drag it
             relight::UpdateReport report;
-            const double seconds = bench::seconds_of([&] { report = editor.set_layer(i, layers[i]); });
+            const double seconds =
+                bench::seconds_of([&] { report = editor.set_layer(i, layers[i]); });
             figures.average += seconds / (2 * NumSteps);
             figures.worst = std::max(figures.worst, seconds);
             figures.clusters += static_cast<double>(report.num_clusters) / (2 * NumSteps);
@@ -63,7 +67,8 @@ void print_row(const char* name, const Figures& figures, double full) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures Johan and Nishita's editing experiment; Markdown on stdout, JSON in a file"};
+    CLI::App program{
+        "Measures Johan and Nishita's editing experiment; Markdown on stdout, JSON in a file"};
     program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
         ->capture_default_str();
     program.add_option("--scene", settings.scene, "the bunny's .prt, where it is there");
@@ -93,27 +98,34 @@ int main(int argc, char** argv) {
         const glm::dvec3 side(1.0, 0.35, 0.15);
         editor.set_layers({bench::disc(front, 0.05, 0.0), bench::disc(side, 0.10, 0.0)});
         const Figures rising = steps(editor, [&](double t) {
-            return std::vector{bench::disc(front, 0.05, 10.0 * t), bench::disc(side, 0.10, 5.0 * t)};
+            return std::vector{bench::disc(front, 0.05, 10.0 * t),
+                               bench::disc(side, 0.10, 5.0 * t)};
         });
         const Figures moving = steps(editor, [&](double t) {
             const glm::dvec3 shift(0.0, 0.8 * t, -0.5 * t);
-            return std::vector{bench::disc(front + shift, 0.05, 10.0), bench::disc(side + shift, 0.10, 5.0)};
+            return std::vector{bench::disc(front + shift, 0.05, 10.0),
+                               bench::disc(side + shift, 0.10, 5.0)};
         });
         const double full_seconds = bench::median(full);
-        fmt::print("Bunny, {} vertices, {} clusters, beach at R = {}; a full relight of the binned map and "
+        fmt::print("Bunny, {} vertices, {} clusters, beach at R = {}; a full relight of the binned "
+                   "map and "
                    "its binning: {:.1f} ms\n\n",
                    scene.mesh.num_vertices(), scene.transfer.num_clusters(), settings.resolution,
                    1e3 * full_seconds);
-        fmt::print("| edit | average | worst | clusters | faster than full |\n|---|---|---|---|---|\n");
+        fmt::print(
+            "| edit | average | worst | clusters | faster than full |\n|---|---|---|---|---|\n");
         fmt::print("| paper, average | {:.0f} ms | - | - | about 100 x |\n", 1e3 * PaperSeconds);
         print_row("60 steps of rising intensity", rising, full_seconds);
         print_row("60 steps of moving", moving, full_seconds);
         const nlohmann::json result = {
             {"clusters", scene.transfer.num_clusters()},
             {"seconds_full", full_seconds},
-            {"rising", {{"average", rising.average}, {"worst", rising.worst}, {"clusters", rising.clusters}}},
+            {"rising",
+             {{"average", rising.average}, {"worst", rising.worst}, {"clusters", rising.clusters}}},
             {"moving",
-             {{"average", moving.average}, {"worst", moving.worst}, {"clusters", moving.clusters}}}};
+             {{"average", moving.average},
+              {"worst", moving.worst},
+              {"clusters", moving.clusters}}}};
         std::ofstream(settings.json) << result.dump(2) << '\n';
     } catch (const std::exception& error) {
         fmt::print(stderr, "edit: {}\n", error.what());

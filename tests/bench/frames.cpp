@@ -1,5 +1,5 @@
-// Frames of a sequence, binned already: how long relighting takes from one to the next, and from how many changed clusters on summing all of
-// them is less work than updating.
+// Frames of a sequence, binned already: how long relighting takes from one to the next, and from
+// how many changed clusters on summing all of them is less work than updating.
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
@@ -37,14 +37,15 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-void measure_sequence(const data_gen::Sequence& sequence, const Settings& settings, const prt::Scene& scene,
-                      const relight::ShadowRays& rays) {
+void measure_sequence(const data_gen::Sequence& sequence, const Settings& settings,
+                      const prt::Scene& scene, const relight::ShadowRays& rays) {
     data_gen::SequenceOptions options{.num_frames = settings.num_frames,
                                       .face_resolution = settings.resolution};
     if (sequence.needs_probe) {
         if (settings.probe.empty())
             return;
-        options.probe = cubemap::resample(cubemap::load_environment(settings.probe), settings.resolution);
+        options.probe =
+            cubemap::resample(cubemap::load_environment(settings.probe), settings.resolution);
     }
     const data_gen::FrameMaker make = sequence.make(options);
     relight::EnvironmentBinner binner(scene.transfer, rays.tolerance);
@@ -74,10 +75,10 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
         }
     const auto count = static_cast<double>(relight.size());
     const double least = *std::min_element(relight.begin(), relight.end());
-    fmt::print("| {} | {:.0f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} |\n", sequence.name,
-               static_cast<double>(num_clusters) / count, 100.0 * static_cast<double>(num_resummed) / count,
-               bench::median(bin), least, bench::median(relight), bench::median(trace),
-               1e3 / bench::median(relight));
+    fmt::print("| {} | {:.0f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} |\n",
+               sequence.name, static_cast<double>(num_clusters) / count,
+               100.0 * static_cast<double>(num_resummed) / count, bench::median(bin), least,
+               bench::median(relight), bench::median(trace), 1e3 / bench::median(relight));
     std::fflush(stdout);
 }
 
@@ -121,7 +122,8 @@ void measure_shares(const Settings& settings, const prt::Scene& scene) {
 int main(int argc, char** argv) {
     CLI::App program{"Times of relighting the frames of sequences that are binned already."};
     Settings settings;
-    program.add_option("SCENE", settings.scene, "scene file from `relumine precompute`")->required();
+    program.add_option("SCENE", settings.scene, "scene file from `relumine precompute`")
+        ->required();
     program.add_option("--env", settings.probe, "environment for the sequence `turn`");
     program.add_option("--face-resolution", settings.resolution)->capture_default_str();
     program.add_option("--num-frames", settings.num_frames)->capture_default_str();
@@ -133,10 +135,11 @@ int main(int argc, char** argv) {
                                    .positions = scene.mesh.positions,
                                    .bias = scene.settings.bias,
                                    .tolerance = scene.settings.tolerance};
-    fmt::print(
-        "{} receivers, {} clusters, R = {}, milliseconds\n\n| sequence | clusters changed | all summed | bin "
-        "| relight, least | median | of it shadow rays | frames/s |\n|---|---|---|---|---|---|---|---|\n",
-        scene.transfer.num_receivers(), scene.transfer.num_clusters(), settings.resolution);
+    fmt::print("{} receivers, {} clusters, R = {}, milliseconds\n\n| sequence | clusters changed | "
+               "all summed | bin "
+               "| relight, least | median | of it shadow rays | frames/s "
+               "|\n|---|---|---|---|---|---|---|---|\n",
+               scene.transfer.num_receivers(), scene.transfer.num_clusters(), settings.resolution);
     for (const data_gen::Sequence& sequence : data_gen::sequences())
         measure_sequence(sequence, settings, scene, rays);
     measure_shares(settings, scene);

@@ -1,4 +1,5 @@
-// Glossy surfaces seen from one side: size, speed and error against exact integration for several roughnesses and environments.
+// Glossy surfaces seen from one side: size, speed and error against exact integration for several
+// roughnesses and environments.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -42,7 +43,8 @@ struct Settings {
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
     std::uint32_t resolution = 256;
     std::size_t num_samples = 500;
-    bool pixels = false; ///< of a view of 512 x 512, in place of vertices
+    /// Of a view of 512 x 512, in place of vertices
+    bool pixels = false;
 };
 
 struct Environment {
@@ -67,9 +69,9 @@ std::vector<Environment> environments(const Settings& settings) {
     std::vector<Environment> result;
     for (const auto& [name, file] :
          {std::pair("grace", "grace_cross.hdr"), std::pair("uffizi", "uffizi_latlong_1200.hdr")})
-        result.push_back(
-            {name, cubemap::resample(cubemap::load_environment(settings.data / "envs/debevec" / file),
-                                     settings.resolution)});
+        result.push_back({name, cubemap::resample(cubemap::load_environment(settings.data /
+                                                                            "envs/debevec" / file),
+                                                  settings.resolution)});
     result.push_back({"small light", small_light(settings.resolution)});
     return result;
 }
@@ -78,13 +80,15 @@ prt::Receivers seen_receivers(const Settings& settings, const mesh::TriangleMesh
                               const prt::RayScene& rays) {
     const relight::Camera camera = relight::automatic_camera(mesh, {.width = 512, .height = 512});
     if (settings.pixels)
-        return prt::pixel_receivers(mesh, rays, {.camera = camera, .width = 512, .height = 512}).receivers;
+        return prt::pixel_receivers(mesh, rays, {.camera = camera, .width = 512, .height = 512})
+            .receivers;
     prt::Receivers receivers = prt::vertex_receivers(mesh);
     prt::look_from(receivers, camera.eye);
     return receivers;
 }
 
-/// Seconds that the lobes' sums alone take, and the bytes of transfer they read: all of them, in a relighting as in an edit.
+/// Seconds that the lobes' sums alone take, and the bytes of transfer they read: all of them, in a
+/// relighting as in an edit.
 std::pair<double, double> lobes_alone(const prt::Transfer& transfer, const cubemap::CubeMap& map) {
     relight::LightPyramid pyramid(transfer.glossy->deepest_level());
     pyramid.set(map, relight::LightBinning(map.resolution), {});
@@ -115,16 +119,21 @@ void run(const Settings& settings) {
     prt::PrecomputeStatistics diffuse;
     prt::Transfer transfer = prt::precompute(
         receivers, beams,
-        {.tolerance = settings.tolerance, .face_resolution = settings.resolution, .bias = bias}, &diffuse);
-    fmt::print("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB of counts\n\n", settings.mesh,
-               receivers.size(), diffuse.num_clusters, diffuse.seconds,
-               static_cast<double>(transfer.counts.counts.size() + 24 * transfer.counts.mixed.size()) * 1e-6);
+        {.tolerance = settings.tolerance, .face_resolution = settings.resolution, .bias = bias},
+        &diffuse);
+    fmt::print(
+        "{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB of counts\n\n", settings.mesh,
+        receivers.size(), diffuse.num_clusters, diffuse.seconds,
+        static_cast<double>(transfer.counts.counts.size() + 24 * transfer.counts.mixed.size()) *
+            1e-6);
 
     const double bandwidth = bench::memory_bandwidth();
     fmt::print("Memory is read at {:.1f} GB/s.\n\n", 1e-9 * bandwidth);
     const std::vector<Environment> maps = environments(settings);
-    const std::vector<std::uint32_t> sample = relight::random_receivers(transfer, settings.num_samples, 1);
-    fmt::print("| roughness | cells per block | MB | precompute | rays | relight | frame under grace | lobes "
+    const std::vector<std::uint32_t> sample =
+        relight::random_receivers(transfer, settings.num_samples, 1);
+    fmt::print("| roughness | cells per block | MB | precompute | rays | relight | frame under "
+               "grace | lobes "
                "alone |");
     for (const Environment& environment : maps)
         fmt::print(" {} |", environment.name);
@@ -135,32 +144,36 @@ void run(const Settings& settings) {
                                                      .highlight = prt::Highlight::Ggx,
                                                      .shape = roughness});
         prt::GlossyStatistics statistics;
-        transfer.glossy = prt::precompute_glossy(
-            receivers, rays, transfer,
-            {.tolerance = settings.glossy_tolerance, .face_resolution = settings.resolution, .bias = bias},
-            &statistics);
+        transfer.glossy = prt::precompute_glossy(receivers, rays, transfer,
+                                                 {.tolerance = settings.glossy_tolerance,
+                                                  .face_resolution = settings.resolution,
+                                                  .bias = bias},
+                                                 &statistics);
         prt::set_surfaces(transfer, receivers);
         relight::Relighter relighter(transfer, {.blockers = &rays,
                                                 .positions = receivers.positions,
                                                 .bias = bias,
                                                 .tolerance = settings.tolerance});
         std::vector<double> seconds;
-        std::vector<double> seconds_frame; // all of it: binning, tracing of sharp lights, relighting
+        std::vector<double>
+            seconds_frame; // all of it: binning, tracing of sharp lights, relighting
         std::string errors;
         for (const Environment& environment : maps) {
             for (int i = 0; i < 3; ++i) {
                 const relight::RelightTimes times = relighter.set_environment(environment.map);
                 seconds.push_back(times.seconds_relight);
                 if (&environment == &maps.front())
-                    seconds_frame.push_back(times.seconds_bin + times.seconds_trace + times.seconds_relight);
+                    seconds_frame.push_back(times.seconds_bin + times.seconds_trace +
+                                            times.seconds_relight);
             }
             const std::vector<glm::dvec3> exact =
                 relight::exact_radiance(receivers, sample, rays, environment.map, {.bias = bias});
-            errors +=
-                fmt::format(" {:.4f} |", relight::compare(sample, exact, relighter.radiance()).relative_l2);
+            errors += fmt::format(
+                " {:.4f} |", relight::compare(sample, exact, relighter.radiance()).relative_l2);
         }
         const auto [lobe_seconds, lobe_bytes] = lobes_alone(transfer, maps.front().map);
-        fmt::print("| {} | {:.0f} + {:.0f} + {:.0f} | {:.0f} | {:.1f} s | {:.0f} M | {:.1f} ms | {:.1f} ms | "
+        fmt::print("| {} | {:.0f} + {:.0f} + {:.0f} | {:.0f} | {:.1f} s | {:.0f} M | {:.1f} ms | "
+                   "{:.1f} ms | "
                    "{:.1f} ms, {:.1f} GB/s ({:.2f}) |{}\n",
                    roughness,
                    static_cast<double>(transfer.glossy->lobes[0].num_entries()) /
@@ -171,8 +184,8 @@ void run(const Settings& settings) {
                        static_cast<double>(transfer.counts.num_blocks()),
                    static_cast<double>(transfer.glossy->num_bytes()) * 1e-6, statistics.seconds,
                    static_cast<double>(statistics.num_rays) * 1e-6, 1e3 * bench::median(seconds),
-                   1e3 * bench::median(seconds_frame), 1e3 * lobe_seconds, 1e-9 * lobe_bytes / lobe_seconds,
-                   lobe_bytes / lobe_seconds / bandwidth, errors);
+                   1e3 * bench::median(seconds_frame), 1e3 * lobe_seconds,
+                   1e-9 * lobe_bytes / lobe_seconds, lobe_bytes / lobe_seconds / bandwidth, errors);
         std::fflush(stdout);
     }
 }
@@ -186,15 +199,19 @@ int main(int argc, char** argv) {
     program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
         ->capture_default_str();
     program.add_option("--mesh", settings.mesh, "file of meshes/stanford")->capture_default_str();
-    program.add_option("--floor", settings.floor, "N x N vertices, 0 for none")->capture_default_str();
+    program.add_option("--floor", settings.floor, "N x N vertices, 0 for none")
+        ->capture_default_str();
     program.add_option("--roughness", settings.roughness, "glTF's")->capture_default_str();
-    program.add_option("--tolerance", settings.tolerance, "of the diffuse part")->capture_default_str();
+    program.add_option("--tolerance", settings.tolerance, "of the diffuse part")
+        ->capture_default_str();
     program.add_option("--glossy-tolerance", settings.glossy_tolerance, "of the lobes")
         ->capture_default_str();
-    program.add_option("--resolution", settings.resolution, "R of the environments")->capture_default_str();
+    program.add_option("--resolution", settings.resolution, "R of the environments")
+        ->capture_default_str();
     program.add_flag("--pixels", settings.pixels,
                      "512 x 512 pixels of the automatic view, in place of vertices");
-    program.add_option("--samples", settings.num_samples, "receivers to verify")->capture_default_str();
+    program.add_option("--samples", settings.num_samples, "receivers to verify")
+        ->capture_default_str();
     CLI11_PARSE(program, argc, argv);
     try {
         run(settings);

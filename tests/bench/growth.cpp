@@ -1,4 +1,5 @@
-// How cost grows with vertices, clusters and blockers: measured, plotted, and a power law fitted. See `./dev bench growth --help`.
+// How cost grows with vertices, clusters and blockers: measured, plotted, and a power law fitted.
+// See `./dev bench growth --help`.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -32,17 +33,24 @@ constexpr std::size_t TriangleSteps[] = {10'000, 50'000, 250'000, 1'000'000, 5'0
 constexpr std::size_t MeshSteps[] = {100'000, 500'000, 2'000'000};
 constexpr float ToleranceSteps[] = {0.1f, 0.056f, 0.032f, 0.018f, 0.01f};
 
-constexpr float GrowthTolerance = 0.05f;     ///< where vertices or blockers grow
-constexpr std::size_t BlobVertices = 50'000; ///< where clusters grow
-constexpr std::uint32_t FloorVertices = 142; ///< of a side: 20,164 receivers where blockers grow
+/// Where vertices or blockers grow
+constexpr float GrowthTolerance = 0.05f;
+/// Where clusters grow
+constexpr std::size_t BlobVertices = 50'000;
+/// Of a side: 20,164 receivers where blockers grow
+constexpr std::uint32_t FloorVertices = 142;
 constexpr std::uint32_t EnvironmentResolution = 256;
 
 struct Cost {
-    double x = 0.0; ///< what grows
+    /// What grows
+    double x = 0.0;
     std::size_t num_receivers = 0, num_triangles = 0, num_clusters = 0;
-    double build = 0.0;      ///< seconds to sort the blockers
-    double precompute = 0.0; ///< processor seconds, all threads
-    double relight = 0.0;    ///< seconds, the median of many
+    /// Seconds to sort the blockers
+    double build = 0.0;
+    /// Processor seconds, all threads
+    double precompute = 0.0;
+    /// Seconds, the median of many
+    double relight = 0.0;
     double peak_megabytes = 0.0;
 };
 
@@ -53,8 +61,8 @@ Cost measure(const mesh::TriangleMesh& blockers, const prt::Receivers& receivers
     const prt::BeamScene beams(blockers, rays);
     cost.build = bench::cpu_seconds() - before;
     before = bench::cpu_seconds();
-    const prt::Transfer transfer =
-        prt::precompute(receivers, beams, {.tolerance = tolerance, .bias = prt::automatic_bias(blockers)});
+    const prt::Transfer transfer = prt::precompute(
+        receivers, beams, {.tolerance = tolerance, .bias = prt::automatic_bias(blockers)});
     cost.precompute = bench::cpu_seconds() - before;
     cost.num_clusters = transfer.num_clusters();
     relight::Relighter relighter(transfer);
@@ -81,7 +89,8 @@ double exponent(const std::vector<Cost>& costs, double Cost::*y) {
     return xy / xx;
 }
 
-relight::Plot::Series series(const std::string& name, const std::vector<Cost>& costs, double Cost::*y) {
+relight::Plot::Series series(const std::string& name, const std::vector<Cost>& costs,
+                             double Cost::*y) {
     relight::Plot::Series result;
     result.name = fmt::format("{}, exponent {:.2f}", name, exponent(costs, y));
     for (const Cost& cost : costs) {
@@ -92,16 +101,18 @@ relight::Plot::Series series(const std::string& name, const std::vector<Cost>& c
 }
 
 /// A table on stdout and a plot in the folder.
-nlohmann::json report(const std::string& what, const std::vector<Cost>& costs, const fs::path& folder) {
-    fmt::print("Against {}: precompute grows with exponent {:.2f}, relighting with {:.2f}.\n\n", what,
-               exponent(costs, &Cost::precompute), exponent(costs, &Cost::relight));
-    fmt::print("| receivers | triangles | clusters | sorting the blockers | precompute, processor seconds | "
+nlohmann::json report(const std::string& what, const std::vector<Cost>& costs,
+                      const fs::path& folder) {
+    fmt::print("Against {}: precompute grows with exponent {:.2f}, relighting with {:.2f}.\n\n",
+               what, exponent(costs, &Cost::precompute), exponent(costs, &Cost::relight));
+    fmt::print("| receivers | triangles | clusters | sorting the blockers | precompute, processor "
+               "seconds | "
                "relight | peak so far |\n|---|---|---|---|---|---|---|\n");
     nlohmann::json rows = nlohmann::json::array();
     for (const Cost& cost : costs) {
-        fmt::print("| {} | {} | {} | {:.2f} s | {:.2f} | {:.2f} ms | {:.0f} MB |\n", cost.num_receivers,
-                   cost.num_triangles, cost.num_clusters, cost.build, cost.precompute, 1e3 * cost.relight,
-                   cost.peak_megabytes);
+        fmt::print("| {} | {} | {} | {:.2f} s | {:.2f} | {:.2f} ms | {:.0f} MB |\n",
+                   cost.num_receivers, cost.num_triangles, cost.num_clusters, cost.build,
+                   cost.precompute, 1e3 * cost.relight, cost.peak_megabytes);
         rows.push_back({{"receivers", cost.num_receivers},
                         {"triangles", cost.num_triangles},
                         {"clusters", cost.num_clusters},
@@ -134,14 +145,16 @@ std::vector<Cost> against_vertices(std::size_t most) {
     return costs;
 }
 
-/// The same knot in more and more vertices, as finely clustered as users ask for who ask for nothing.
+/// The same knot in more and more vertices, as finely clustered as users ask for who ask for
+/// nothing.
 std::vector<Cost> against_mesh_size(std::size_t most) {
     std::vector<Cost> costs;
     for (const std::size_t num_vertices : MeshSteps) {
         if (num_vertices > most)
             break;
         const mesh::TriangleMesh mesh = data_gen::knot(num_vertices);
-        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), prt::PrecomputeOptions{}.tolerance));
+        costs.push_back(
+            measure(mesh, prt::vertex_receivers(mesh), prt::PrecomputeOptions{}.tolerance));
         costs.back().x = static_cast<double>(mesh.num_vertices());
     }
     return costs;
@@ -185,7 +198,8 @@ std::vector<Cost> against_blockers(std::size_t most) {
 
 int main(int argc, char** argv) {
     CLI::App program{
-        "Measures how precompute and relighting grow with vertices, the size of a mesh at the default "
+        "Measures how precompute and relighting grow with vertices, the size of a mesh at the "
+        "default "
         "tolerance, clusters and blockers; Markdown on stdout, plots and JSON in a folder"};
     fs::path folder = ".";
     std::size_t most_vertices = 2'000'000;

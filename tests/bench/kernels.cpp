@@ -1,4 +1,5 @@
-// Times of the steps that run when an environment changes, on a generated scene. See `./dev bench kernels --help`.
+// Times of the steps that run when an environment changes, on a generated scene. See `./dev bench
+// kernels --help`.
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -25,8 +26,8 @@ using namespace relumine;
 struct Fixture {
     mesh::TriangleMesh mesh = data_gen::blob(20000);
     prt::RayScene rays{mesh};
-    prt::Transfer transfer = prt::precompute(prt::vertex_receivers(mesh), rays,
-                                             {.tolerance = 0.02f, .bias = prt::automatic_bias(mesh)});
+    prt::Transfer transfer = prt::precompute(
+        prt::vertex_receivers(mesh), rays, {.tolerance = 0.02f, .bias = prt::automatic_bias(mesh)});
 
     static const Fixture& instance() {
         static const Fixture Instance;
@@ -71,8 +72,8 @@ void BM_CubeFromLatLong(benchmark::State& state) {
     image.height = 2048;
     image.pixels.assign(std::size_t{image.width} * image.height, glm::vec3(1.0f));
     for (auto _ : state)
-        benchmark::DoNotOptimize(
-            cubemap::convert(image, {cubemap::Layout::Cube, cubemap::Sampling::TexelCentres, 1024, 6144}));
+        benchmark::DoNotOptimize(cubemap::convert(
+            image, {cubemap::Layout::Cube, cubemap::Sampling::TexelCentres, 1024, 6144}));
 }
 BENCHMARK(BM_CubeFromLatLong)->Unit(benchmark::kMillisecond)->UseRealTime();
 
@@ -125,7 +126,8 @@ template<cubemap::Region (*Shape)(double)>
 void BM_Composite(benchmark::State& state) {
     const cubemap::CubeMap base(static_cast<std::uint32_t>(state.range(0)), glm::vec3(1.0f));
     const cubemap::LightLayer layer = painted(Shape(0.0));
-    const std::vector<cubemap::TexelRectangle> touched = cubemap::touched_texels(layer, base.resolution);
+    const std::vector<cubemap::TexelRectangle> touched =
+        cubemap::touched_texels(layer, base.resolution);
     cubemap::CubeMap target = base;
     for (auto _ : state)
         cubemap::composite(base, {&layer, 1}, touched, target);

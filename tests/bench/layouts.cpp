@@ -1,5 +1,6 @@
-// What a conversion of an environment to another layout and back costs: the sky at natural resolution 16 (a lat-long of 64 x 32) with a sun that
-// fills a part of one pixel, from each layout to each other, through the size that `env convert` chooses and through an equal one.
+// What a conversion of an environment to another layout and back costs: the sky at natural
+// resolution 16 (a lat-long of 64 x 32) with a sun that fills a part of one pixel, from each layout
+// to each other, through the size that `env convert` chooses and through an equal one.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +47,8 @@ CubeMap sky(std::size_t first_sun) {
     for (int channel = 0; channel < 3; ++channel) {
         glm::vec3 color(0.0f);
         color[channel] = 1.0f;
-        add_sun(map, glm::normalize(Suns[first_sun + static_cast<std::size_t>(channel)].direction), color);
+        add_sun(map, glm::normalize(Suns[first_sun + static_cast<std::size_t>(channel)].direction),
+                color);
     }
     return map;
 }
@@ -63,10 +65,12 @@ std::vector<glm::dvec3> measured(const EnvironmentImage& image) {
 /// Largest errors, relative.
 struct Errors {
     double power = 0.0;
-    double own =
-        0.0; ///< irradiance, relative to the same normal's where that is not much darker than the brightest
-    double largest = 0.0; ///< irradiance, relative to the largest
-    std::size_t sun = 0;  ///< where `own` occurred
+    /// Irradiance, relative to the same normal's where that is not much darker than the brightest
+    double own = 0.0;
+    /// Irradiance, relative to the largest
+    double largest = 0.0;
+    /// Where `own` occurred
+    std::size_t sun = 0;
 
     void add(const std::vector<glm::dvec3>& before, const std::vector<glm::dvec3>& after,
              std::size_t first_sun, double darkest) {
@@ -88,9 +92,11 @@ struct Errors {
 };
 
 struct Settings {
-    std::uint32_t resolution = 0; ///< on the way; 0: what conversion_size() says
+    /// On the way; 0: what conversion_size() says
+    std::uint32_t resolution = 0;
     double darkest = 0.01;
-    std::string from, through; ///< one layout only
+    /// One layout only
+    std::string from, through;
 };
 
 ImageShape shape_of(Layout layout, const ImageSize& size) {
@@ -118,14 +124,15 @@ std::string percent(double value) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures what environments lose on the way to another layout and back: Markdown on "
-                     "stdout, in some minutes"};
+    CLI::App program{
+        "Measures what environments lose on the way to another layout and back: Markdown on "
+        "stdout, in some minutes"};
     program.add_option("--face-resolution", settings.resolution,
                        "natural resolution on the way (what `env convert` chooses)");
     program
-        .add_option(
-            "--darkest", settings.darkest,
-            "normals with less than this part of the largest irradiance count only against the largest")
+        .add_option("--darkest", settings.darkest,
+                    "normals with less than this part of the largest irradiance count only against "
+                    "the largest")
         ->capture_default_str();
     program.add_option("--from", settings.from, "this layout only, as the table names it");
     program.add_option("--through", settings.through, "this layout on the way only");
@@ -134,15 +141,18 @@ int main(int argc, char** argv) {
         fmt::print("{} places of the sun:\n\n", NumSuns);
         for (const Sun& sun : Suns)
             fmt::print("- {}\n", sun.place);
-        fmt::print("\n| from | through | power | own | largest | worst sun | equal size: own | largest |\n"
-                   "|---|---|---|---|---|---|---|---|\n");
+        fmt::print(
+            "\n| from | through | power | own | largest | worst sun | equal size: own | largest |\n"
+            "|---|---|---|---|---|---|---|---|\n");
         for (const Layout layout : Layouts) {
             for (const Layout other : Layouts) {
                 if (layout == other || (!settings.from.empty() && settings.from != name(layout)) ||
                     (!settings.through.empty() && settings.through != name(other)))
                     continue;
-                const Errors roomy = there_and_back(layout, other, settings.resolution, settings.darkest);
-                const Errors equal = there_and_back(layout, other, SourceResolution, settings.darkest);
+                const Errors roomy =
+                    there_and_back(layout, other, settings.resolution, settings.darkest);
+                const Errors equal =
+                    there_and_back(layout, other, SourceResolution, settings.darkest);
                 fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", name(layout), name(other),
                            percent(roomy.power), percent(roomy.own), percent(roomy.largest),
                            Suns.at(roomy.sun).place, percent(equal.own), percent(equal.largest));

@@ -1,4 +1,5 @@
-// What streaming from memory can reach on this machine, measured in the run that it is compared with.
+// What streaming from memory can reach on this machine, measured in the run that it is compared
+// with.
 #pragma once
 
 #include <atomic>
@@ -13,7 +14,8 @@
 
 namespace relumine::bench {
 
-/// Bytes per second that all threads read together from memory, from 1 GiB: four times the largest cache known.
+/// Bytes per second that all threads read together from memory, from 1 GiB: four times the largest
+/// cache known.
 inline double memory_bandwidth() {
     constexpr std::size_t NumWords = std::size_t{1} << 27;
     constexpr std::size_t NumParts = 64;

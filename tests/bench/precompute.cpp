@@ -1,4 +1,5 @@
-// How fast the preprocessor is: beams and rays with Embree against the plain way, threads, memory, cancelling. See `./dev bench precompute --help`.
+// How fast the preprocessor is: beams and rays with Embree against the plain way, threads, memory,
+// cancelling. See `./dev bench precompute --help`.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -36,8 +37,9 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The paper's algorithm as one would write it down: cell by cell, each of the nine samples a vector of floats, every ray on its own, nothing
-/// shared between cells. Returns the number of clusters.
+/// The paper's algorithm as one would write it down: cell by cell, each of the nine samples a
+/// vector of floats, every ray on its own, nothing shared between cells. Returns the number of
+/// clusters.
 class PlainClustering {
 public:
     PlainClustering(const prt::Receivers& receivers, const prt::RayScene& rays,
@@ -70,10 +72,12 @@ private:
         }
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             const glm::vec3& normal = receivers_.normals[i];
-            const glm::vec3 origin = prt::ray_origin(receivers_.positions[i], normal, options_.bias);
+            const glm::vec3 origin =
+                prt::ray_origin(receivers_.positions[i], normal, options_.bias);
             for (std::size_t l = 0; l < prt::SamplesPerCell; ++l) {
                 const float cosine = glm::dot(normal, directions[l]);
-                transfer[l][i] = cosine > 0.0f && !rays_.occluded(origin, directions[l]) ? cosine : 0.0f;
+                transfer[l][i] =
+                    cosine > 0.0f && !rays_.occluded(origin, directions[l]) ? cosine : 0.0f;
             }
         });
         std::array<double, prt::SamplesPerCell> distances{};
@@ -82,10 +86,11 @@ private:
             for (std::size_t l = 0; l < prt::SamplesPerCell; ++l)
                 mean += static_cast<float>(prt::SampleWeights[l]) / prt::FullCount * transfer[l][i];
             for (std::size_t l = 0; l < prt::SamplesPerCell; ++l)
-                distances[l] += static_cast<double>((transfer[l][i] - mean) * (transfer[l][i] - mean));
+                distances[l] +=
+                    static_cast<double>((transfer[l][i] - mean) * (transfer[l][i] - mean));
         }
-        const double allowed =
-            static_cast<double>(options_.tolerance) * std::sqrt(static_cast<double>(n)) * std::numbers::pi;
+        const double allowed = static_cast<double>(options_.tolerance) *
+                               std::sqrt(static_cast<double>(n)) * std::numbers::pi;
         return std::all_of(distances.begin(), distances.end(),
                            [&](double d) { return d < allowed * allowed; });
     }
@@ -113,11 +118,12 @@ private:
 };
 
 void print(const std::string& name, double seconds, double cpu, std::size_t num_clusters) {
-    fmt::print("{:<22} {:8.2f} s  {:8.2f} s of processors  {:6} clusters", name, seconds, cpu, num_clusters);
+    fmt::print("{:<22} {:8.2f} s  {:8.2f} s of processors  {:6} clusters", name, seconds, cpu,
+               num_clusters);
 }
 
-void measure(const std::string& name, const prt::Receivers& receivers, const prt::Blockers& blockers,
-             prt::PrecomputeOptions options) {
+void measure(const std::string& name, const prt::Receivers& receivers,
+             const prt::Blockers& blockers, prt::PrecomputeOptions options) {
     LongestGap gap;
     options.on_progress = [&](double) {
         gap.call();
@@ -127,7 +133,8 @@ void measure(const std::string& name, const prt::Receivers& receivers, const prt
     const prt::Transfer transfer = prt::precompute(receivers, blockers, options, &statistics);
     print(name, statistics.seconds, bench::cpu_seconds() - before, transfer.num_clusters());
     fmt::print("  {:.0f} M rays  longest without progress {:.0f} ms  peak {:.0f} MB\n",
-               static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3, bench::peak_megabytes());
+               static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3,
+               bench::peak_megabytes());
 }
 
 /// Time from the wish to stop to the end of the work, at moments spread over it.
@@ -185,8 +192,8 @@ int main(int argc, char** argv) {
     }
     const prt::Receivers receivers = prt::vertex_receivers(mesh);
     const prt::PrecomputeOptions options{.tolerance = tolerance, .bias = prt::automatic_bias(mesh)};
-    fmt::print("{} vertices, {} triangles, tolerance {}\n", mesh.num_vertices(), mesh.num_triangles(),
-               tolerance);
+    fmt::print("{} vertices, {} triangles, tolerance {}\n", mesh.num_vertices(),
+               mesh.num_triangles(), tolerance);
 
     const prt::RayScene rays(mesh);
     const Clock::time_point start = Clock::now();

@@ -1,5 +1,6 @@
-// How fast a precomputed scene is relit and edited, beside the plain ways: a dense table of bytes, and a full relighting for every edit. All
-// in one run, so that the ratios hold on a busy machine. See `./dev bench relight --help`.
+// How fast a precomputed scene is relit and edited, beside the plain ways: a dense table of bytes,
+// and a full relighting for every edit. All in one run, so that the ratios hold on a busy machine.
+// See `./dev bench relight --help`.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -29,10 +30,12 @@ namespace {
 
 struct Settings {
     fs::path data = RELUMINE_DATA_DIR;
-    fs::path scene; ///< a bunny.prt that is there already
+    /// A bunny.prt that is there already
+    fs::path scene;
     fs::path json = "relight.json";
     std::uint32_t resolution = 1024;
-    std::size_t num_samples = 2000; ///< receivers to verify
+    /// Receivers to verify
+    std::size_t num_samples = 2000;
 };
 
 class Report {
@@ -56,8 +59,8 @@ double edit_seconds(relight::LightEditor& editor, double part_of_face) {
     constexpr int NumEdits = 200;
     std::vector<double> seconds;
     for (int i = 1; i <= NumEdits; ++i)
-        seconds.push_back(
-            bench::seconds_of([&] { editor.set_layer(0, bench::disc(direction, part_of_face, 0.05 * i)); }));
+        seconds.push_back(bench::seconds_of(
+            [&] { editor.set_layer(0, bench::disc(direction, part_of_face, 0.05 * i)); }));
     return bench::median(seconds);
 }
 
@@ -65,8 +68,9 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
                         const relight::ShadowRays& shadow_rays, Report& report) {
     const double bandwidth = bench::memory_bandwidth();
     report.add_value("memory_bandwidth", bandwidth);
-    const cubemap::CubeMap beach = cubemap::resample(
-        cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr"), settings.resolution);
+    const cubemap::CubeMap beach =
+        cubemap::resample(cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr"),
+                          settings.resolution);
     relight::LightEditor editor(scene.transfer, shadow_rays);
     editor.set_base(beach);
 
@@ -83,7 +87,8 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
          relight::LightBinning(beach.resolution).sums(beach, scene.transfer.quadtree.leaves()))
         light.emplace_back(glm::length(sum.red), glm::length(sum.green), glm::length(sum.blue));
     std::vector<glm::vec3> dense_radiance;
-    const double dense = bench::median_seconds([&] { bench::relight(table, light, dense_radiance); });
+    const double dense =
+        bench::median_seconds([&] { bench::relight(table, light, dense_radiance); });
     double difference = 0.0, norm = 0.0;
     for (std::size_t place = 0; place < scene.transfer.num_receivers(); ++place) {
         const glm::dvec3 ours(relighter.radiance()[scene.transfer.order[place]]);
@@ -92,12 +97,14 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
         norm += glm::dot(ours, ours);
     }
 
-    fmt::print("Memory is read at {:.1f} GB/s. Bunny, {} vertices, {} clusters; beach at R = {}.\n\n",
-               1e-9 * bandwidth, scene.mesh.num_vertices(), scene.transfer.num_clusters(),
-               settings.resolution);
+    fmt::print(
+        "Memory is read at {:.1f} GB/s. Bunny, {} vertices, {} clusters; beach at R = {}.\n\n",
+        1e-9 * bandwidth, scene.mesh.num_vertices(), scene.transfer.num_clusters(),
+        settings.resolution);
     fmt::print("| step | median | remark |\n|---|---|---|\n");
     report.add("full_relight", "full relight of a binned map", 1e3 * full,
-               fmt::format("{:.0f} MB, {:.1f} times as fast as the dense table", 1e-6 * bytes, dense / full));
+               fmt::format("{:.0f} MB, {:.1f} times as fast as the dense table", 1e-6 * bytes,
+                           dense / full));
     report.add("dense_relight", "the same with a dense table of bytes", 1e3 * dense,
                fmt::format("{:.0f} MB at {:.1f} GB/s; radiance differs by {:.4f} (relative L2)",
                            1e-6 * static_cast<double>(table.values.size()),
@@ -109,13 +116,13 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
     const double bin = bench::median_seconds(
         [&] { static_cast<void>(binning.sums(beach, scene.transfer.quadtree.leaves())); });
     report.add("bin", "binning", 1e3 * bin,
-               fmt::format("{:.0f} MB at {:.1f} GB/s, {:.2f} of what memory gives", 1e-6 * map_bytes,
-                           1e-9 * map_bytes / bin, map_bytes / bin / bandwidth));
+               fmt::format("{:.0f} MB at {:.1f} GB/s, {:.2f} of what memory gives",
+                           1e-6 * map_bytes, 1e-9 * map_bytes / bin, map_bytes / bin / bandwidth));
     for (const double part : {0.05, 0.10}) {
         const double edit = edit_seconds(editor, part);
         report.add(fmt::format("edit_{:.0f}", 100 * part),
-                   fmt::format("an edit, disc of {:.0f} % of the map's width", 100 * part), 1e3 * edit,
-                   fmt::format("{:.0f} times as fast as a full relight", full / edit));
+                   fmt::format("an edit, disc of {:.0f} % of the map's width", 100 * part),
+                   1e3 * edit, fmt::format("{:.0f} times as fast as a full relight", full / edit));
     }
 }
 
@@ -129,8 +136,8 @@ void measure_files(const prt::Scene& scene, Report& report) {
     fs::remove(path);
 }
 
-void measure_errors(const Settings& settings, const prt::Scene& scene, const relight::ShadowRays& shadow_rays,
-                    Report& report) {
+void measure_errors(const Settings& settings, const prt::Scene& scene,
+                    const relight::ShadowRays& shadow_rays, Report& report) {
     constexpr std::uint32_t Resolution = 256;
     const std::vector<std::uint32_t> sample =
         relight::random_receivers(scene.transfer, settings.num_samples, 1);
@@ -138,7 +145,8 @@ void measure_errors(const Settings& settings, const prt::Scene& scene, const rel
     std::string errors;
     for (const std::string name : {"grace", "stpeters", "galileo", "kitchen", "beach"}) {
         const cubemap::CubeMap map = cubemap::resample(
-            cubemap::load_environment(settings.data / "envs/debevec" / (name + "_cross.hdr")), Resolution);
+            cubemap::load_environment(settings.data / "envs/debevec" / (name + "_cross.hdr")),
+            Resolution);
         const std::vector<glm::vec3> relit = relight::relight(scene.transfer, map, shadow_rays);
         std::vector<glm::dvec3> exact;
         seconds.push_back(bench::seconds_of([&] {
@@ -149,7 +157,8 @@ void measure_errors(const Settings& settings, const prt::Scene& scene, const rel
         errors += fmt::format(" {} {:.5f}", name, error);
         report.add_value("error_" + name, error);
     }
-    report.add("verify", fmt::format("exact radiance of {} receivers, R = {}", sample.size(), Resolution),
+    report.add("verify",
+               fmt::format("exact radiance of {} receivers, R = {}", sample.size(), Resolution),
                1e3 * bench::median(seconds), "relative L2 of relighting:" + errors);
 }
 
@@ -171,14 +180,16 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures relighting and editing of the bunny against the plain ways; Markdown on "
-                     "stdout, JSON in a file"};
+    CLI::App program{
+        "Measures relighting and editing of the bunny against the plain ways; Markdown on "
+        "stdout, JSON in a file"};
     program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
         ->capture_default_str();
     program.add_option("--scene", settings.scene, "the bunny's .prt, where it is there");
     program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
     program.add_option("--face-resolution", settings.resolution, "R")->capture_default_str();
-    program.add_option("--samples", settings.num_samples, "receivers to verify")->capture_default_str();
+    program.add_option("--samples", settings.num_samples, "receivers to verify")
+        ->capture_default_str();
     CLI11_PARSE(program, argc, argv);
     try {
         run(settings);

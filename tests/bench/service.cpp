@@ -1,5 +1,6 @@
-// A day of a lighting service in minutes: many edits and many environments in one process. Says whether its memory stays flat, whether
-// radiance drifts, and how long the slowest edits take. See `./dev bench service --help`.
+// A day of a lighting service in minutes: many edits and many environments in one process. Says
+// whether its memory stays flat, whether radiance drifts, and how long the slowest edits take. See
+// `./dev bench service --help`.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -42,7 +43,8 @@ double resident_megabytes() {
     return resident * static_cast<double>(sysconf(_SC_PAGESIZE)) * 1e-6;
 }
 
-/// Layers as artists move them: discs, hard and soft, and brush strokes, each somewhere else and of another strength, and now and then a sun.
+/// Layers as artists move them: discs, hard and soft, and brush strokes, each somewhere else and of
+/// another strength, and now and then a sun.
 class RandomLayers {
 public:
     [[nodiscard]] cubemap::LightLayer next() {
@@ -59,8 +61,9 @@ public:
             layer.region = cubemap::Disc{.direction = at, .radius_degrees = uniform(1.0, 20.0)};
             break;
         case 1:
-            layer.region = cubemap::Disc{
-                .direction = at, .radius_degrees = uniform(2.0, 15.0), .softness = uniform(0.0, 1.0)};
+            layer.region = cubemap::Disc{.direction = at,
+                                         .radius_degrees = uniform(2.0, 15.0),
+                                         .softness = uniform(0.0, 1.0)};
             break;
         default:
             layer.region = cubemap::Stroke{.points = {at, glm::normalize(at + 0.3 * direction())},
@@ -87,15 +90,16 @@ double difference(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
     double most = 0.0, largest = 0.0;
     for (std::size_t i = 0; i < a.size(); ++i)
         for (int channel = 0; channel < 3; ++channel) {
-            most = std::max(
-                most, std::abs(static_cast<double>(a[i][channel]) - static_cast<double>(b[i][channel])));
+            most = std::max(most, std::abs(static_cast<double>(a[i][channel]) -
+                                           static_cast<double>(b[i][channel])));
             largest = std::max(largest, static_cast<double>(b[i][channel]));
         }
     return most / largest;
 }
 
 struct Times {
-    double median = 0.0, percentile_999 = 0.0, worst = 0.0; ///< seconds
+    /// seconds
+    double median = 0.0, percentile_999 = 0.0, worst = 0.0;
 };
 
 Times times_of(std::vector<double> seconds) {
@@ -111,8 +115,10 @@ void run(const Settings& settings) {
     const float bias = prt::automatic_bias(mesh);
     const prt::PrecomputeOptions options{.tolerance = 0.02f, .bias = bias};
     const prt::Transfer transfer = prt::precompute(prt::vertex_receivers(mesh), rays, options);
-    const relight::ShadowRays shadow_rays{
-        .blockers = &rays, .positions = mesh.positions, .bias = bias, .tolerance = options.tolerance};
+    const relight::ShadowRays shadow_rays{.blockers = &rays,
+                                          .positions = mesh.positions,
+                                          .bias = bias,
+                                          .tolerance = options.tolerance};
     relight::LightEditor editor(transfer, shadow_rays);
     const cubemap::CubeMap base = data_gen::two_soft_boxes(settings.resolution);
     editor.set_base(base);
@@ -130,8 +136,9 @@ void run(const Settings& settings) {
         editor.set_base(std::move(next));
     };
     const auto drift_now = [&] {
-        return difference(editor.relighter().radiance(),
-                          relight::relight(transfer, editor.relighter().environment(), shadow_rays));
+        return difference(
+            editor.relighter().radiance(),
+            relight::relight(transfer, editor.relighter().environment(), shadow_rays));
     };
     // A tenth of the work first: caches and pools have their size then.
     for (std::size_t i = 0; i < settings.num_environments / 10; ++i)
@@ -155,15 +162,16 @@ void run(const Settings& settings) {
 
     const Times of_edits = times_of(edits);
     const Times of_environments = times_of(environments);
-    fmt::print("{} receivers, {} clusters, R = {}\n\n", transfer.num_receivers(), transfer.num_clusters(),
-               settings.resolution);
+    fmt::print("{} receivers, {} clusters, R = {}\n\n", transfer.num_receivers(),
+               transfer.num_clusters(), settings.resolution);
     fmt::print("| | median | 99.9 % | worst |\n|---|---|---|---|\n");
-    fmt::print("| {} edits | {:.3f} ms | {:.3f} ms | {:.3f} ms |\n", edits.size(), 1e3 * of_edits.median,
-               1e3 * of_edits.percentile_999, 1e3 * of_edits.worst);
+    fmt::print("| {} edits | {:.3f} ms | {:.3f} ms | {:.3f} ms |\n", edits.size(),
+               1e3 * of_edits.median, 1e3 * of_edits.percentile_999, 1e3 * of_edits.worst);
     fmt::print("| {} environments | {:.3f} ms | {:.3f} ms | {:.3f} ms |\n\n", environments.size(),
                1e3 * of_environments.median, 1e3 * of_environments.percentile_999,
                1e3 * of_environments.worst);
-    fmt::print("Memory: {:.1f} MB after a tenth of the work, {:.1f} MB at the end ({:+.2f} %). Radiance is "
+    fmt::print("Memory: {:.1f} MB after a tenth of the work, {:.1f} MB at the end ({:+.2f} %). "
+               "Radiance is "
                "at most {:.1e} of its largest value off a fresh relighting.\n",
                before, after, 100.0 * (after / before - 1.0), drift);
     const nlohmann::json result = {{"megabytes_before", before},
@@ -180,9 +188,12 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures memory, drift and times over many edits and environments; Markdown on "
-                     "stdout, JSON in a file"};
-    program.add_option("--edits", settings.num_edits)->capture_default_str()->check(CLI::PositiveNumber);
+    CLI::App program{
+        "Measures memory, drift and times over many edits and environments; Markdown on "
+        "stdout, JSON in a file"};
+    program.add_option("--edits", settings.num_edits)
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
     program.add_option("--environments", settings.num_environments)
         ->capture_default_str()
         ->check(CLI::PositiveNumber);

@@ -1,5 +1,6 @@
-// Table 1 of Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", measured here beside the paper's row: the
-// diffuse scenes at the paper's own epsilon and resolution, with the error against exact integration that the paper shows as a picture.
+// Table 1 of Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", measured
+// here beside the paper's row: the diffuse scenes at the paper's own epsilon and resolution, with
+// the error against exact integration that the paper shows as a picture.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -47,7 +48,8 @@ struct PaperRow {
 constexpr std::array<PaperRow, 2> Paper = {
     {{"Bunny", "bun_zipper.ply", 73196, 9831, 405, 50.0, 6.5},
      {"Dragon", "dragon_vrip_res2.ply", 137499, 5337, 326, 35.0, 8.0}}};
-/// Specular, from a fixed view. The paper does not say what its specular BRDF was: ours is Roughness below.
+/// Specular, from a fixed view. The paper does not say what its specular BRDF was: ours is
+/// Roughness below.
 constexpr PaperRow PaperBuddha = {"Buddha", "happy_vrip_res3.ply", 69577, 4701, 623, 8.0, 3.5};
 constexpr float Roughness = 0.3f;
 
@@ -56,7 +58,8 @@ struct Settings {
     fs::path json = "table1.json";
     std::size_t num_samples = 1000;
     bool with_4096 = true;
-    std::string only; ///< empty: all rows
+    /// Empty: all rows
+    std::string only;
 };
 
 prt::Scene precomputed(const fs::path& mesh, std::uint32_t face_resolution,
@@ -70,14 +73,17 @@ prt::Scene precomputed(const fs::path& mesh, std::uint32_t face_resolution,
     scene.settings.epsilon = Epsilon;
     scene.transfer = prt::precompute(
         prt::vertex_receivers(scene.mesh), rays,
-        {.epsilon = Epsilon, .face_resolution = face_resolution, .bias = scene.settings.bias}, &statistics);
+        {.epsilon = Epsilon, .face_resolution = face_resolution, .bias = scene.settings.bias},
+        &statistics);
     return scene;
 }
 
-/// The experiment of Section 6: a disc added to the beach map, its intensity rising over 60 steps. `radius` is a part of the map's width.
+/// The experiment of Section 6: a disc added to the beach map, its intensity rising over 60 steps.
+/// `radius` is a part of the map's width.
 double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, double radius) {
     const std::uint32_t r = relighter.environment().resolution;
-    const double min_cosine = std::cos(radius * std::numbers::pi / 2.0); // a face is a right angle wide
+    const double min_cosine =
+        std::cos(radius * std::numbers::pi / 2.0); // a face is a right angle wide
     const cubemap::FacePoint centre = cubemap::face_point(axis);
     relight::TexelRectangle box{.face = centre.face, .x0 = r, .y0 = r};
     for (std::uint32_t y = 0; y < r; ++y)
@@ -93,7 +99,8 @@ double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, d
         std::vector<glm::vec3> radiance;
         for (std::uint32_t y = box.y0; y < box.y1; ++y)
             for (std::uint32_t x = box.x0; x < box.x1; ++x) {
-                const bool inside = glm::dot(cubemap::texel_direction(box.face, x, y, r), axis) >= min_cosine;
+                const bool inside =
+                    glm::dot(cubemap::texel_direction(box.face, x, y, r), axis) >= min_cosine;
                 radiance.push_back(inside ? glm::vec3(0.2f * static_cast<float>(step + 1))
                                           : relighter.environment().at(box.face, x, y));
             }
@@ -112,8 +119,10 @@ std::uint64_t saved_bytes(const prt::Scene& scene, const char* name) {
 
 /// A scene under the crosses.
 struct UnderCrosses {
-    std::vector<relight::RelightTimes> times; ///< five of each cross
-    nlohmann::json errors;                    ///< relative L2 against exact integration, by cross
+    /// Five of each cross
+    std::vector<relight::RelightTimes> times;
+    /// Relative L2 against exact integration, by cross
+    nlohmann::json errors;
     std::size_t num_samples = 0;
 };
 
@@ -127,10 +136,10 @@ UnderCrosses under_crosses(relight::Relighter& relighter, const prt::Receivers& 
     result.num_samples = sample.size();
     for (const char* name : Crosses) {
         fmt::print(stderr, "exact integration under {}\n", name);
-        const cubemap::EnvironmentImage image =
-            cubemap::load_environment(settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name));
-        const cubemap::CubeMap map =
-            cubemap::resample(image, resolution != 0 ? resolution : cubemap::natural_resolution(image));
+        const cubemap::EnvironmentImage image = cubemap::load_environment(
+            settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name));
+        const cubemap::CubeMap map = cubemap::resample(
+            image, resolution != 0 ? resolution : cubemap::natural_resolution(image));
         for (int i = 0; i < 5; ++i)
             result.times.push_back(relighter.set_environment(map));
         const std::vector<glm::dvec3> exact =
@@ -143,16 +152,19 @@ UnderCrosses under_crosses(relight::Relighter& relighter, const prt::Receivers& 
 nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
     prt::PrecomputeStatistics statistics;
     fmt::print(stderr, "{}: precompute at R = 1024\n", paper.name);
-    const prt::Scene scene = precomputed(settings.data / "meshes/stanford" / paper.mesh, 1024, statistics);
+    const prt::Scene scene =
+        precomputed(settings.data / "meshes/stanford" / paper.mesh, 1024, statistics);
     const std::uint64_t file_bytes = saved_bytes(scene, paper.name);
 
     const prt::RayScene rays(scene.mesh);
     const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
-    const relight::ShadowRays shadow_rays{
-        .blockers = &rays, .positions = scene.mesh.positions, .bias = scene.settings.bias, .tolerance = rms};
+    const relight::ShadowRays shadow_rays{.blockers = &rays,
+                                          .positions = scene.mesh.positions,
+                                          .bias = scene.settings.bias,
+                                          .tolerance = rms};
     relight::Relighter relighter(scene.transfer, shadow_rays);
-    const UnderCrosses verified =
-        under_crosses(relighter, prt::vertex_receivers(scene.mesh), rays, scene.settings.bias, settings);
+    const UnderCrosses verified = under_crosses(relighter, prt::vertex_receivers(scene.mesh), rays,
+                                                scene.settings.bias, settings);
     std::vector<double> relight_seconds;
     for (const relight::RelightTimes& times : verified.times)
         relight_seconds.push_back(times.seconds_trace + times.seconds_relight);
@@ -161,8 +173,10 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
     const cubemap::EnvironmentImage beach =
         cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr");
     relighter.set_environment(cubemap::resample(beach, 1024));
-    const double edit_front = seconds_per_edit(relighter, glm::normalize(glm::dvec3(0.15, 0.35, 1.0)), 0.05);
-    const double edit_side = seconds_per_edit(relighter, glm::normalize(glm::dvec3(1.0, 0.35, 0.15)), 0.10);
+    const double edit_front =
+        seconds_per_edit(relighter, glm::normalize(glm::dvec3(0.15, 0.35, 1.0)), 0.05);
+    const double edit_side =
+        seconds_per_edit(relighter, glm::normalize(glm::dvec3(1.0, 0.35, 0.15)), 0.10);
 
     nlohmann::json row = {{"scene", paper.name},
                           {"vertices", scene.mesh.num_vertices()},
@@ -176,7 +190,8 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
                           {"relative_l2", verified.errors}};
     if (settings.with_4096 && paper.name == std::string("Bunny")) { // as the paper has it
         fmt::print(stderr, "{}: precompute at R = 4096\n", paper.name);
-        static_cast<void>(precomputed(settings.data / "meshes/stanford" / paper.mesh, 4096, statistics));
+        static_cast<void>(
+            precomputed(settings.data / "meshes/stanford" / paper.mesh, 4096, statistics));
         row["clusters_4096"] = statistics.num_clusters;
     }
     return row;
@@ -200,14 +215,16 @@ nlohmann::json measure_buddha(const Settings& settings) {
     const auto start = std::chrono::steady_clock::now();
     const prt::RayScene exact_rays(scene.mesh);
     const prt::BeamScene rays(scene.mesh, exact_rays);
-    scene.transfer = prt::precompute(
-        scene.receivers, rays, {.epsilon = Epsilon, .face_resolution = 256, .bias = scene.settings.bias});
+    scene.transfer =
+        prt::precompute(scene.receivers, rays,
+                        {.epsilon = Epsilon, .face_resolution = 256, .bias = scene.settings.bias});
     prt::GlossyStatistics glossy;
     scene.transfer.glossy =
         prt::precompute_glossy(scene.receivers, rays, scene.transfer,
                                {.face_resolution = 256, .bias = scene.settings.bias}, &glossy);
     prt::set_surfaces(scene.transfer, scene.receivers);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);
 
     const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
@@ -234,15 +251,18 @@ nlohmann::json measure_buddha(const Settings& settings) {
 }
 
 void print_buddha(const nlohmann::json& row) {
-    fmt::print("\n| specular | vertices | clusters | MB | precompute | relight |\n|---|---|---|---|---|---|\n"
+    fmt::print("\n| specular | vertices | clusters | MB | precompute | relight "
+               "|\n|---|---|---|---|---|---|\n"
                "| Buddha, paper | {} | {} | {} | {:.0f} min | {:.1f} s |\n",
                PaperBuddha.vertices, PaperBuddha.clusters, PaperBuddha.megabytes,
                PaperBuddha.precompute_minutes, PaperBuddha.relight_seconds);
-    fmt::print("| Buddha, Relumine | {} | {} + {:.0f} cells per block | {:.1f} | {:.1f} s ({:.1f} s of it "
-               "highlights) | {:.1f} ms |\n",
-               row["vertices"].get<int>(), row["clusters"].get<int>(), row["cells_per_block"].get<double>(),
-               row["file_bytes"].get<double>() * 1e-6, row["seconds_precompute"].get<double>(),
-               row["seconds_glossy"].get<double>(), 1e3 * row["seconds_relight"].get<double>());
+    fmt::print(
+        "| Buddha, Relumine | {} | {} + {:.0f} cells per block | {:.1f} | {:.1f} s ({:.1f} s of it "
+        "highlights) | {:.1f} ms |\n",
+        row["vertices"].get<int>(), row["clusters"].get<int>(),
+        row["cells_per_block"].get<double>(), row["file_bytes"].get<double>() * 1e-6,
+        row["seconds_precompute"].get<double>(), row["seconds_glossy"].get<double>(),
+        1e3 * row["seconds_relight"].get<double>());
     fmt::print("\nrelative L2 error:");
     for (const char* name : Crosses)
         fmt::print(" {} {:.4f}", name, row["relative_l2"][name].get<double>());
@@ -254,17 +274,18 @@ void print_markdown(const nlohmann::json& rows) {
                "|\n|---|---|---|---|---|---|---|\n");
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const nlohmann::json& row = rows[i];
-        const PaperRow& paper = *std::find_if(Paper.begin(), Paper.end(),
-                                              [&](const PaperRow& p) { return row["scene"] == p.name; });
-        fmt::print("| {}, paper | {} | {} | {} | {:.0f} min | {:.1f} s | {} |\n", paper.name, paper.vertices,
-                   paper.clusters, paper.megabytes, paper.precompute_minutes, paper.relight_seconds,
-                   paper.name == std::string("Bunny") ? "0.06 s" : "-");
-        fmt::print("| {}, Relumine | {} | {} | {:.1f} | {:.1f} s | {:.1f} ms | {:.2f} / {:.2f} ms |\n",
-                   paper.name, row["vertices"].get<int>(), row["clusters"].get<int>(),
-                   row["file_bytes"].get<double>() * 1e-6, row["seconds_precompute"].get<double>(),
-                   1e3 * row["seconds_relight"].get<double>(),
-                   1e3 * row["seconds_edit_5_percent"].get<double>(),
-                   1e3 * row["seconds_edit_10_percent"].get<double>());
+        const PaperRow& paper = *std::find_if(
+            Paper.begin(), Paper.end(), [&](const PaperRow& p) { return row["scene"] == p.name; });
+        fmt::print("| {}, paper | {} | {} | {} | {:.0f} min | {:.1f} s | {} |\n", paper.name,
+                   paper.vertices, paper.clusters, paper.megabytes, paper.precompute_minutes,
+                   paper.relight_seconds, paper.name == std::string("Bunny") ? "0.06 s" : "-");
+        fmt::print(
+            "| {}, Relumine | {} | {} | {:.1f} | {:.1f} s | {:.1f} ms | {:.2f} / {:.2f} ms |\n",
+            paper.name, row["vertices"].get<int>(), row["clusters"].get<int>(),
+            row["file_bytes"].get<double>() * 1e-6, row["seconds_precompute"].get<double>(),
+            1e3 * row["seconds_relight"].get<double>(),
+            1e3 * row["seconds_edit_5_percent"].get<double>(),
+            1e3 * row["seconds_edit_10_percent"].get<double>());
     }
     fmt::print("\n| relative L2 error |");
     for (const char* name : Crosses)
@@ -274,8 +295,9 @@ void print_markdown(const nlohmann::json& rows) {
         fmt::print("| {} |", row["scene"].get<std::string>());
         for (const char* name : Crosses)
             fmt::print(" {:.4f} |", row["relative_l2"][name].get<double>());
-        fmt::print(" {} |\n",
-                   row.contains("clusters_4096") ? std::to_string(row["clusters_4096"].get<int>()) : "-");
+        fmt::print(" {} |\n", row.contains("clusters_4096")
+                                  ? std::to_string(row["clusters_4096"].get<int>())
+                                  : "-");
     }
 }
 
@@ -287,7 +309,8 @@ int main(int argc, char** argv) {
     program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
         ->capture_default_str();
     program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
-    program.add_option("--samples", settings.num_samples, "receivers to verify")->capture_default_str();
+    program.add_option("--samples", settings.num_samples, "receivers to verify")
+        ->capture_default_str();
     program.add_flag("!--skip-4096", settings.with_4096, "leave out the Bunny at R = 4096");
     program.add_option("--only", settings.only, "one row: Bunny, Dragon or Buddha");
     CLI11_PARSE(program, argc, argv);
@@ -305,7 +328,8 @@ int main(int argc, char** argv) {
             if (fs::exists(mesh))
                 rows.push_back(measure(paper, settings));
             else
-                fmt::print("{}: skipped, no {}; name the folder with --data\n", paper.name, mesh.string());
+                fmt::print("{}: skipped, no {}; name the folder with --data\n", paper.name,
+                           mesh.string());
         }
         if (wanted(PaperBuddha) && fs::exists(settings.data / "meshes/stanford" / PaperBuddha.mesh))
             buddha = measure_buddha(settings);

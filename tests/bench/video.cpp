@@ -1,5 +1,7 @@
-// The experiment of Staton et al., "Light clustering for Dynamic Image Based Lighting", Section 4: how much an animation flickers that is lit by
-// clustered lights, by importance sampling of every frame, and by Relumine's own transfer. On a sun that moves through the sky and a probe that turns.
+// The experiment of Staton et al., "Light clustering for Dynamic Image Based Lighting", Section 4:
+// how much an animation flickers that is lit by clustered lights, by importance sampling of every
+// frame, and by Relumine's own transfer. On a sun that moves through the sky and a probe that
+// turns.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -35,14 +37,16 @@ constexpr double PaperClusters = 0.00125;
 constexpr const char* Importance = "importance";
 constexpr const char* EvenClusters = "clusters, even [S, Eq. 8]";
 constexpr const char* FollowedClusters = "clusters, followed";
-constexpr double MeanLuminance =
-    0.25; ///< frames are exposed so that the ground truth's mean luminance is this
+/// Frames are exposed so that the ground truth's mean luminance is this
+constexpr double MeanLuminance = 0.25;
 
 struct Settings {
     fs::path data = RELUMINE_DATA_DIR;
-    fs::path scene; ///< a bunny.prt that is there already
+    /// A bunny.prt that is there already
+    fs::path scene;
     fs::path json = "video.json";
-    fs::path plots; ///< folder, or none
+    /// Folder, or none
+    fs::path plots;
     std::size_t num_frames = 100;
     std::size_t num_receivers = 300;
     std::uint32_t resolution = 128;
@@ -73,7 +77,8 @@ std::vector<Sequence> sequences(const Settings& settings) {
         if (sequence.name == "sun") {
             result.push_back({"sun", sequence.make(options)});
         } else if (sequence.name == "turn" && fs::exists(grace)) {
-            options.probe = cubemap::resample(cubemap::load_environment(grace), settings.resolution);
+            options.probe =
+                cubemap::resample(cubemap::load_environment(grace), settings.resolution);
             result.push_back({"turn, grace", sequence.make(options)});
         } else if (sequence.name == "turn") {
             fmt::print("turn: skipped, no {}; name the folder with --data\n", grace.string());
@@ -85,10 +90,13 @@ std::vector<Sequence> sequences(const Settings& settings) {
 /// One method's figures on one sequence.
 struct Row {
     std::string method;
-    double lights = 0.0; ///< a frame, mean
+    /// A frame, mean
+    double lights = 0.0;
     relight::FlickerReport report;
-    double seconds_prepare = 0.0; ///< a frame: sampling and clustering
-    double seconds_light = 0.0;   ///< a frame: all vertices
+    /// A frame: sampling and clustering
+    double seconds_prepare = 0.0;
+    /// A frame: all vertices
+    double seconds_light = 0.0;
 };
 
 class Experiment {
@@ -121,10 +129,11 @@ public:
                 start = Clock::now();
                 return image;
             };
-            lights::FrameSamples samples = lights::sample_frames(timed, settings_.num_frames,
-                                                                 {.samples_per_frame = settings_.num_samples,
-                                                                  .seed = settings_.seed,
-                                                                  .seed_per_frame = seed_per_frame});
+            lights::FrameSamples samples =
+                lights::sample_frames(timed, settings_.num_frames,
+                                      {.samples_per_frame = settings_.num_samples,
+                                       .seed = settings_.seed,
+                                       .seed_per_frame = seed_per_frame});
             seconds += seconds_since(start);
             return samples;
         };
@@ -134,7 +143,8 @@ public:
         const auto num_lights = static_cast<std::size_t>(std::lround(clusters.mean_live()));
         const double per_frame = 1.0 / static_cast<double>(settings_.num_frames);
 
-        const double seconds_importance = seconds_sample * per_frame * static_cast<double>(num_lights) /
+        const double seconds_importance = seconds_sample * per_frame *
+                                          static_cast<double>(num_lights) /
                                           static_cast<double>(settings_.num_samples);
         lights::FrameSamplesOptions baseline{
             .seed = settings_.seed, .seed_per_frame = true, .stratified = false};
@@ -153,9 +163,11 @@ public:
             seconds_clusters);
         clusters_ = lights::frame_lights(clusters);
         add(FollowedClusters, clusters_, seconds_clusters);
-        add("clusters, followed, fade 2", lights::frame_lights(clusters, {.fade = 2}), seconds_clusters);
+        add("clusters, followed, fade 2", lights::frame_lights(clusters, {.fade = 2}),
+            seconds_clusters);
         if (settings_.variants) {
-            for (const lights::Strength strength : {lights::Strength::Even, lights::Strength::Followed})
+            for (const lights::Strength strength :
+                 {lights::Strength::Even, lights::Strength::Followed})
                 for (const std::size_t fade : {1, 4, 8})
                     add(fmt::format("clusters, {}, fade {}",
                                     strength == lights::Strength::Even ? "even" : "followed", fade),
@@ -163,7 +175,8 @@ public:
                         seconds_clusters);
             double seconds_fresh = 0.0;
             const lights::LightClusters other = cluster(sampled(true, seconds_fresh));
-            for (const lights::Strength strength : {lights::Strength::Even, lights::Strength::Followed}) {
+            for (const lights::Strength strength :
+                 {lights::Strength::Even, lights::Strength::Followed}) {
                 const char* name = strength == lights::Strength::Even ? "even" : "followed";
                 add(fmt::format("clusters, {}, a seed per frame", name),
                     lights::frame_lights(other, {.strength = strength}),
@@ -185,11 +198,11 @@ private:
         std::vector<double> seconds;
         double luminance = 0.0;
         for (std::size_t frame = 0; frame < settings_.num_frames; ++frame) {
-            fmt::print(stderr, "\r{}: exact integration of frame {} of {} ", sequence.name, frame + 1,
-                       settings_.num_frames);
+            fmt::print(stderr, "\r{}: exact integration of frame {} of {} ", sequence.name,
+                       frame + 1, settings_.num_frames);
             const cubemap::CubeMap map = sequence.map(frame);
-            exact_.push_back(
-                relight::exact_radiance(receivers_, sample_, rays_, map, {.bias = scene_.settings.bias}));
+            exact_.push_back(relight::exact_radiance(receivers_, sample_, rays_, map,
+                                                     {.bias = scene_.settings.bias}));
             images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
                 luminance += lights::luminance(value);
@@ -213,11 +226,12 @@ private:
         lights::LightClusters result = lights::cluster_lights(samples, options);
         const lights::KMeans& k = result.k_means;
         fmt::print(stderr,
-                   "{} samples into {} clusters: {} iterations{}, {:.2f} s, objective {:.4g} -> {:.4g}, {} "
+                   "{} samples into {} clusters: {} iterations{}, {:.2f} s, objective {:.4g} -> "
+                   "{:.4g}, {} "
                    "reseeded, {} empty, {:.1f} % searched, {:.1f} lights live\n",
                    samples.samples.size(), result.clusters.size(), k.objective.size(),
-                   k.converged ? "" : " (not converged)", k.seconds, k.objective.front(), k.objective.back(),
-                   k.num_reseeded, k.num_empty,
+                   k.converged ? "" : " (not converged)", k.seconds, k.objective.front(),
+                   k.objective.back(), k.num_reseeded, k.num_empty,
                    100.0 * static_cast<double>(k.num_searches) /
                        static_cast<double>(samples.samples.size() * k.objective.size()),
                    result.mean_live());
@@ -228,11 +242,11 @@ private:
         relight::FlickerMeter meter(exposure_);
         Row row{.method = method, .report = {}, .seconds_prepare = seconds_prepare};
         for (std::size_t frame = 0; frame < frames.num_frames(); ++frame) {
-            meter.add_frame(
-                relight::radiance_under(frames.at(frame), receivers_.normals, sample_, shadow_rays_),
-                exact_[frame]);
-            row.lights +=
-                static_cast<double>(frames.at(frame).size()) / static_cast<double>(frames.num_frames());
+            meter.add_frame(relight::radiance_under(frames.at(frame), receivers_.normals, sample_,
+                                                    shadow_rays_),
+                            exact_[frame]);
+            row.lights += static_cast<double>(frames.at(frame).size()) /
+                          static_cast<double>(frames.num_frames());
         }
         row.report = meter.report();
         if (settings_.variants) { // light alone
@@ -257,8 +271,10 @@ private:
     relight::ShadowRays shadow_rays_;
     relight::Relighter relighter_;
 
-    std::vector<cubemap::EnvironmentImage> images_; ///< [frames] as lat-longs
-    std::vector<std::vector<glm::dvec3>> exact_;    ///< [frames][receivers]
+    /// [frames] as lat-longs
+    std::vector<cubemap::EnvironmentImage> images_;
+    /// [frames][receivers]
+    std::vector<std::vector<glm::dvec3>> exact_;
     double exposure_ = 1.0;
     Row prt_;
     lights::FrameLights clusters_;
@@ -266,7 +282,8 @@ private:
 };
 
 void print_rows(const Sequence& sequence, const std::vector<Row>& rows) {
-    fmt::print("\n### {}\n\n| method | lights | inconsistency | of importance | relative L2 | prepare, ms a "
+    fmt::print("\n### {}\n\n| method | lights | inconsistency | of importance | relative L2 | "
+               "prepare, ms a "
                "frame | light, ms a frame |\n|---|---|---|---|---|---|---|\n",
                sequence.name);
     fmt::print("| importance, paper | 200 | {:.5f} | 1 | - | - | - |\n", PaperImportance);
@@ -275,9 +292,11 @@ void print_rows(const Sequence& sequence, const std::vector<Row>& rows) {
     const double importance = rows.front().report.mean_inconsistency;
     for (const Row& row : rows)
         fmt::print("| {} | {} | {:.6f} | {:.4f} | {:.4f} | {} | {} |\n", row.method,
-                   row.lights > 0.0 ? fmt::format("{:.0f}", row.lights) : "-", row.report.mean_inconsistency,
-                   row.report.mean_inconsistency / importance, row.report.mean_relative_l2,
-                   row.seconds_prepare > 0.0 ? fmt::format("{:.1f}", 1e3 * row.seconds_prepare) : "-",
+                   row.lights > 0.0 ? fmt::format("{:.0f}", row.lights) : "-",
+                   row.report.mean_inconsistency, row.report.mean_inconsistency / importance,
+                   row.report.mean_relative_l2,
+                   row.seconds_prepare > 0.0 ? fmt::format("{:.1f}", 1e3 * row.seconds_prepare)
+                                             : "-",
                    row.seconds_light > 0.0 ? fmt::format("{:.0f}", 1e3 * row.seconds_light) : "-");
 }
 
@@ -303,25 +322,30 @@ void write_plots(const Settings& settings, std::size_t index, const Sequence& se
     };
     std::vector<relight::NamedReport> reports;
     for (const Row& row : rows)
-        if (row.method == Importance || row.method == EvenClusters || row.method == FollowedClusters ||
-            row.method == "prt")
+        if (row.method == Importance || row.method == EvenClusters ||
+            row.method == FollowedClusters || row.method == "prt")
             reports.push_back({row.method, row.report});
     write("inconsistency", relight::inconsistency_plot(reports, sequence.name));
-    write("clusters", relight::light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
-                                                    fmt::format("{}: clusters", sequence.name)));
+    write("clusters",
+          relight::light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
+                                        fmt::format("{}: clusters", sequence.name)));
     const lights::FrameLights jumping = lights::importance_lights(
-        [&](std::size_t frame) { return lights::lat_long_of(sequence.map(settings.num_frames / 2 + frame)); },
-        std::min<std::size_t>(5, settings.num_frames / 2), static_cast<std::size_t>(rows.front().lights),
+        [&](std::size_t frame) {
+            return lights::lat_long_of(sequence.map(settings.num_frames / 2 + frame));
+        },
+        std::min<std::size_t>(5, settings.num_frames / 2),
+        static_cast<std::size_t>(rows.front().lights),
         {.seed = settings.seed, .seed_per_frame = true});
-    write("importance", relight::light_positions_plot(jumping, 0, 5,
-                                                      fmt::format("{}: importance sampling", sequence.name)));
+    write("importance", relight::light_positions_plot(
+                            jumping, 0, 5, fmt::format("{}: importance sampling", sequence.name)));
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures Staton et al.'s flicker experiment; Markdown on stdout, JSON in a file"};
+    CLI::App program{
+        "Measures Staton et al.'s flicker experiment; Markdown on stdout, JSON in a file"};
     program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
         ->capture_default_str();
     program.add_option("--scene", settings.scene, "the bunny's .prt, where it is there");
@@ -330,7 +354,8 @@ int main(int argc, char** argv) {
     program.add_option("--frames", settings.num_frames, "of each sequence")
         ->check(CLI::Range(2, 100000))
         ->capture_default_str();
-    program.add_option("--receivers", settings.num_receivers, "vertices that are integrated exactly")
+    program
+        .add_option("--receivers", settings.num_receivers, "vertices that are integrated exactly")
         ->capture_default_str();
     program.add_option("--face-resolution", settings.resolution, "R")->capture_default_str();
     program.add_option("--samples", settings.num_samples, "of each frame")->capture_default_str();
@@ -339,16 +364,18 @@ int main(int argc, char** argv) {
     program.add_flag("--variants", settings.variants, "also other fades, and a seed per frame");
     CLI11_PARSE(program, argc, argv);
     if (settings.scene.empty() && !fs::exists(settings.data / "meshes/stanford/bun_zipper.ply")) {
-        fmt::print("skipped, no bunny in {}; name the folder with --data\n", settings.data.string());
+        fmt::print("skipped, no bunny in {}; name the folder with --data\n",
+                   settings.data.string());
         return 0;
     }
     try {
         const prt::Scene scene = bench::bunny(settings.scene, settings.data);
         Experiment experiment(settings, scene);
-        fmt::print("Bunny, {} vertices; {} frames at R = {}; ground truth by exact integration for {} "
-                   "vertices; {} clusters from {} samples a frame\n",
-                   scene.mesh.num_vertices(), settings.num_frames, settings.resolution,
-                   experiment.num_receivers(), settings.num_clusters, settings.num_samples);
+        fmt::print(
+            "Bunny, {} vertices; {} frames at R = {}; ground truth by exact integration for {} "
+            "vertices; {} clusters from {} samples a frame\n",
+            scene.mesh.num_vertices(), settings.num_frames, settings.resolution,
+            experiment.num_receivers(), settings.num_clusters, settings.num_samples);
         nlohmann::json result = nlohmann::json::array();
         const std::vector<Sequence> all = sequences(settings);
         for (std::size_t i = 0; i < all.size(); ++i) {

@@ -25,7 +25,8 @@ TEST(CubeMap, TexelSolidAnglesAreThoseOfTheFace) {
         const double n = resolution;
         for (std::uint32_t y = 0; y < resolution; ++y) {
             for (std::uint32_t x = 0; x < resolution; ++x)
-                ASSERT_NEAR(angles[y * resolution + x] / solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n),
+                ASSERT_NEAR(angles[y * resolution + x] /
+                                solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n),
                             1.0, 1e-12);
         }
     }
@@ -66,7 +67,8 @@ TEST(CubeMap, SampleIsContinuousOverEdgesAndCorners) {
                 for (const double side : {0.0, 1.0}) {
                     const double inwards = side == 0.0 ? 1e-5 : -1e-5;
                     const auto jump = [&](glm::dvec3 inside, glm::dvec3 outside) {
-                        return glm::distance(sample(map, glm::vec3(inside)), sample(map, glm::vec3(outside)));
+                        return glm::distance(sample(map, glm::vec3(inside)),
+                                             sample(map, glm::vec3(outside)));
                     };
                     EXPECT_LT(jump(cube_point(face, side + inwards, i / 40.0),
                                    cube_point(face, side - inwards, i / 40.0)),

@@ -71,8 +71,9 @@ TEST(Face, DirectionsOfEdgesAndCornersComeBackToTheSameDirection) {
                 EXPECT_LE(point.face, face) << "a tie goes to the first face";
                 EXPECT_GE(point.s, 0.0);
                 EXPECT_LE(point.t, 1.0);
-                EXPECT_NEAR(glm::distance(direction(point.face, point.s, point.t), direction(face, s, t)),
-                            0.0, 1e-15);
+                EXPECT_NEAR(
+                    glm::distance(direction(point.face, point.s, point.t), direction(face, s, t)),
+                    0.0, 1e-15);
             }
         }
     }

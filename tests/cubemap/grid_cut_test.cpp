@@ -17,9 +17,10 @@ std::map<std::pair<std::size_t, std::size_t>, double> areas_of(Polygon polygon, 
     GridLines columns(Lines, periodic), rows(Lines, false);
     GridCutter cutter;
     std::map<std::pair<std::size_t, std::size_t>, double> areas;
-    cutter.cut(polygon, columns, rows, [&](std::size_t column, std::size_t row, const Polygon& piece) {
-        areas[{column, row}] += area(piece);
-    });
+    cutter.cut(polygon, columns, rows,
+               [&](std::size_t column, std::size_t row, const Polygon& piece) {
+                   areas[{column, row}] += area(piece);
+               });
     return areas;
 }
 
@@ -49,7 +50,8 @@ TEST(GridCut, PiecesOfAnyPolygonSumToIt) {
 TEST(GridCut, PeriodicColumnsGoOnAfterTheLastAndBeforeTheFirst) {
     for (const double shift : {-3.0, -1.0, 0.0, 2.0}) {
         const auto areas = areas_of(
-            {{shift + 0.95, 0.0}, {shift + 1.3, 0.0}, {shift + 1.3, 0.1}, {shift + 0.95, 0.1}}, true);
+            {{shift + 0.95, 0.0}, {shift + 1.3, 0.0}, {shift + 1.3, 0.1}, {shift + 0.95, 0.1}},
+            true);
         EXPECT_NEAR(areas.at({4, 0}), 0.05 * 0.1, 1e-15);
         EXPECT_NEAR(areas.at({0, 0}), 0.10 * 0.1, 1e-15);
         EXPECT_NEAR(areas.at({1, 0}), 0.20 * 0.1, 1e-15);
@@ -69,7 +71,8 @@ TEST(SphericalOverlap, WholeFacesAndOctantsHaveTheirSolidAngles) {
         });
         EXPECT_NEAR(face_sum / (4.0 * std::numbers::pi / 6.0), 1.0, 1e-6) << resolution;
         const std::array<glm::dvec3, 3> octant = {glm::dvec3(1, 0, 0), {0, 1, 0}, {0, 0, 1}};
-        overlaps.find(octant, [&](Face, std::uint32_t, std::uint32_t, double part) { octant_sum += part; });
+        overlaps.find(octant,
+                      [&](Face, std::uint32_t, std::uint32_t, double part) { octant_sum += part; });
         EXPECT_NEAR(std::abs(octant_sum) / (4.0 * std::numbers::pi / 8.0), 1.0, 1e-6) << resolution;
     }
 }

@@ -1,4 +1,5 @@
-// The light of every region against closed forms: in many places, at many resolutions, from far below a texel to half the sphere.
+// The light of every region against closed forms: in many places, at many resolutions, from far
+// below a texel to half the sphere.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -21,7 +22,8 @@ CubeMap lit(std::uint32_t resolution, const Region& region) {
     return composite(CubeMap(resolution), std::span(&layer, 1));
 }
 
-/// Calls check(resolution, place) for resolutions from 8 to 1024 in all places (the largest in a few).
+/// Calls check(resolution, place) for resolutions from 8 to 1024 in all places (the largest in a
+/// few).
 void everywhere(const std::function<void(std::uint32_t, const glm::dvec3&)>& check) {
     for (const std::uint32_t resolution : {8u, 33u, 128u}) {
         for (const glm::dvec3& place : Places)
@@ -42,7 +44,8 @@ void expect_power(const Region& region, std::uint32_t resolution, double expecte
 void expect_irradiance(const Region& region, std::uint32_t resolution, const glm::dvec3& normal,
                        double expected) {
     if (resolution >= 128) {
-        EXPECT_NEAR(irradiance(lit(resolution, region), glm::normalize(normal)).x / expected, 1.0, Tolerance);
+        EXPECT_NEAR(irradiance(lit(resolution, region), glm::normalize(normal)).x / expected, 1.0,
+                    Tolerance);
     }
 }
 
@@ -73,8 +76,9 @@ TEST(LayerEnergy, OfASoftDisc) {
 }
 
 TEST(LayerEnergy, OfARectangle) {
-    for (const auto& [width, height] : {std::array{0.002, 0.003}, std::array{0.5, 4.0}, std::array{20.0, 2.0},
-                                        std::array{90.0, 60.0}, std::array{175.0, 170.0}}) {
+    for (const auto& [width, height] :
+         {std::array{0.002, 0.003}, std::array{0.5, 4.0}, std::array{20.0, 2.0},
+          std::array{90.0, 60.0}, std::array{175.0, 170.0}}) {
         const double x = std::tan(radians(0.5 * width)), y = std::tan(radians(0.5 * height));
         const double solid_angle = 4.0 * std::atan(x * y / std::sqrt(1.0 + x * x + y * y));
         const double nx = std::sqrt(1.0 + x * x), ny = std::sqrt(1.0 + y * y);
@@ -115,7 +119,8 @@ TEST(LayerEnergy, OfASoftRectangle) {
     }
 }
 
-/// Solid angle of a polygon: its angles' sum less that of a flat one. Irradiance: Lambert's sum over its edges.
+/// Solid angle of a polygon: its angles' sum less that of a flat one. Irradiance: Lambert's sum
+/// over its edges.
 struct PolygonLight {
     explicit PolygonLight(const Lasso& lasso, const glm::dvec3& normal) {
         const std::size_t n = lasso.points.size();
@@ -155,13 +160,15 @@ TEST(LayerEnergy, OfALasso) {
 }
 
 TEST(LayerEnergy, OfASoftLassoIsThatOfAShrunkOne) {
-    // Of a square with soft sides of b: the profile's mean distance from the side is b / 2, and corners round nothing off inside.
+    // Of a square with soft sides of b: the profile's mean distance from the side is b / 2, and
+    // corners round nothing off inside.
     constexpr double Half = 0.02, Band = 0.004; // small, so nearly flat
     double expected = 0.0;
     constexpr int N = 1000;
     for (int j = 0; j < N; ++j) {
         for (int i = 0; i < N; ++i) {
-            const double x = Half * ((2.0 * i + 1.0) / N - 1.0), y = Half * ((2.0 * j + 1.0) / N - 1.0);
+            const double x = Half * ((2.0 * i + 1.0) / N - 1.0),
+                         y = Half * ((2.0 * j + 1.0) / N - 1.0);
             const double t = std::min(1.0, (Half - std::max(std::abs(x), std::abs(y))) / Band);
             expected += t * t * (3.0 - 2.0 * t) * 4.0 * Half * Half / N / N;
         }
@@ -182,10 +189,11 @@ TEST(LayerEnergy, OfAStroke) {
                 const Frame frame(place);
                 Stroke stroke{{frame.at(0.0, 1.0)}, radius, 0.0};
                 if (length > 0.0) // a straight line in three parts
-                    stroke.points.insert(
-                        stroke.points.end(),
-                        {frame.at(0.2 * length, 1.0), frame.at(0.5 * length, 1.0), frame.at(length, 1.0)});
-                expect_power(stroke, resolution, 2.0 * Pi * (1.0 - std::cos(a)) + 2.0 * length * std::sin(a));
+                    stroke.points.insert(stroke.points.end(),
+                                         {frame.at(0.2 * length, 1.0), frame.at(0.5 * length, 1.0),
+                                          frame.at(length, 1.0)});
+                expect_power(stroke, resolution,
+                             2.0 * Pi * (1.0 - std::cos(a)) + 2.0 * length * std::sin(a));
             });
         }
     }

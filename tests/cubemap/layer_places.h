@@ -21,13 +21,15 @@ inline double radians(double degrees) {
 
 /// Middles, edges and corners of faces, just beside them, and anywhere.
 inline const std::vector<glm::dvec3> Places = {
-    {0, 0, 1},   {-1, 0, 0},     {0, -1, 0},    {1, 1, 0},        {0, -1, 1},         {1, 1, 1},
-    {-1, 1, -1}, {1, 0.9999, 0}, {1, 1, 0.998}, {0.3, 0.8, -0.4}, {-0.77, 0.1, 0.61}, {0.01, -1, 0.02}};
+    {0, 0, 1},     {-1, 0, 0},       {0, -1, 0},         {1, 1, 0},
+    {0, -1, 1},    {1, 1, 1},        {-1, 1, -1},        {1, 0.9999, 0},
+    {1, 1, 0.998}, {0.3, 0.8, -0.4}, {-0.77, 0.1, 0.61}, {0.01, -1, 0.02}};
 
 /// A place's direction with two across it.
 struct Frame {
     explicit Frame(const glm::dvec3& direction)
-        : forward(glm::normalize(direction)), right(glm::normalize(glm::cross(forward, {0.31, 0.52, 0.17}))),
+        : forward(glm::normalize(direction)),
+          right(glm::normalize(glm::cross(forward, {0.31, 0.52, 0.17}))),
           up(glm::cross(forward, right)) {}
     /// The direction at an angle from the middle, at a position angle around it.
     [[nodiscard]] glm::dvec3 at(double angle, double around) const {
@@ -57,7 +59,8 @@ inline LightLayer random_layer(std::mt19937& generator) {
     };
     glm::dvec3 direction = Places[static_cast<std::size_t>(uniform(0.0, 11.99))];
     if (uniform(0.0, 1.0) < 0.5)
-        direction = glm::dvec3(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)) + glm::dvec3(1e-3);
+        direction = glm::dvec3(uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)) +
+                    glm::dvec3(1e-3);
     const double size = std::exp(uniform(std::log(0.01), std::log(80.0)));
     const double softness = uniform(0.0, 1.0) < 0.4 ? 0.0 : uniform(0.0, 1.0);
     LightLayer layer{.name = "random", .gain_ev = uniform(-2.0, 2.0)};
@@ -66,8 +69,8 @@ inline LightLayer random_layer(std::mt19937& generator) {
         layer.region = Disc{direction, size, softness};
         break;
     case 1:
-        layer.region =
-            Rectangle{direction, 2.0 * size, uniform(0.01, 2.0) * size, uniform(0.0, 360.0), softness};
+        layer.region = Rectangle{direction, 2.0 * size, uniform(0.01, 2.0) * size,
+                                 uniform(0.0, 360.0), softness};
         break;
     case 2: {
         std::vector<double> angles(static_cast<std::size_t>(uniform(3.0, 12.0)));

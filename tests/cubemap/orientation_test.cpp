@@ -1,4 +1,5 @@
-// Where things are: every layout on a picture with known lights, OpenEXR's own converter, and real pictures of one place.
+// Where things are: every layout on a picture with known lights, OpenEXR's own converter, and real
+// pictures of one place.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -22,7 +23,8 @@ struct Light {
     glm::vec3 colour;
 };
 
-/// A coloured light on each axis and a white mark that no mirror image or turn of the sphere leaves in place.
+/// A coloured light on each axis and a white mark that no mirror image or turn of the sphere leaves
+/// in place.
 const std::array<Light, 7> Lights = {Light{{1, 0, 0}, {1, 0, 0}},   {{-1, 0, 0}, {0, 1, 1}},
                                      {{0, 1, 0}, {0, 1, 0}},        {{0, -1, 0}, {1, 0, 1}},
                                      {{0, 0, 1}, {0, 0, 1}},        {{0, 0, -1}, {1, 1, 0}},
@@ -35,7 +37,8 @@ glm::vec3 radiance(const glm::dvec3& w) {
     return glm::vec3(sum);
 }
 
-/// What texels of these sizes may smooth away of the lights; a light in the wrong place makes a difference of 1.
+/// What texels of these sizes may smooth away of the lights; a light in the wrong place makes a
+/// difference of 1.
 constexpr float Blur = 0.06f;
 
 double largest_error(const CubeMap& map) {
@@ -54,12 +57,14 @@ double largest_error(const CubeMap& map) {
 TEST(Orientation, EveryLayoutAndSamplingShowsTheLightsWhereTheyAre) {
     for (const Layout layout : {Layout::LatLong, Layout::Cube, Layout::VerticalCross}) {
         for (const Sampling sampling : {Sampling::TexelCentres, Sampling::Borders}) {
-            EnvironmentImage image = black_image(layout, sampling, layout == Layout::LatLong ? 128 : 64);
+            EnvironmentImage image =
+                black_image(layout, sampling, layout == Layout::LatLong ? 128 : 64);
             paint(image, radiance);
             EXPECT_LT(largest_error(resample(image, 32)), Blur) << name(layout);
 
             const CubeMap map = resample(image, 64);
-            const EnvironmentImage back = to_image(map, layout, image.width, image.height, sampling);
+            const EnvironmentImage back =
+                to_image(map, layout, image.width, image.height, sampling);
             for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace&) {
                 ASSERT_LT(glm::distance(back.pixels[index], image.pixels[index]), Blur)
                     << name(layout) << " " << index;
@@ -73,7 +78,8 @@ TEST(Orientation, SeenThroughSample) {
     paint(image, radiance);
     const CubeMap map = resample(image, 128);
     for (const Light& light : Lights)
-        EXPECT_LT(glm::distance(sample(map, glm::vec3(light.direction)), radiance(light.direction)), 0.01f);
+        EXPECT_LT(glm::distance(sample(map, glm::vec3(light.direction)), radiance(light.direction)),
+                  0.01f);
 }
 
 /// Debian's package `openexr` has the program.
@@ -86,8 +92,8 @@ protected:
     TemporaryFolder folder_;
     [[nodiscard]] EnvironmentImage converted(const std::string& options) const {
         const std::string command =
-            fmt::format("exrenvmap {} '{}' '{}' >/dev/null 2>&1", options, (folder_ / "in.exr").string(),
-                        (folder_ / "out.exr").string());
+            fmt::format("exrenvmap {} '{}' '{}' >/dev/null 2>&1", options,
+                        (folder_ / "in.exr").string(), (folder_ / "out.exr").string());
         EXPECT_EQ(std::system(command.c_str()), 0) << command;
         return load_environment(folder_ / "out.exr");
     }
@@ -214,7 +220,8 @@ TEST(OrientationData, DebevecsCrossesAreUprightAndSeamless) {
                 };
                 constexpr double In = 0.5 / 256.0, Over = -1e-9;
                 across += step(In, along, Over, along) + step(along, In, along, Over);
-                across += step(1.0 - In, along, 1.0 - Over, along) + step(along, 1.0 - In, along, 1.0 - Over);
+                across += step(1.0 - In, along, 1.0 - Over, along) +
+                          step(along, 1.0 - In, along, 1.0 - Over);
                 within += step(In, along, 3.0 * In, along) + step(along, In, along, 3.0 * In);
                 within += step(1.0 - In, along, 1.0 - 3.0 * In, along) +
                           step(along, 1.0 - In, along, 1.0 - 3.0 * In);

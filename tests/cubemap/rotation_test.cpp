@@ -85,8 +85,8 @@ TEST(Rotation, IrradianceTurnsWithTheLight) {
         for (std::uint32_t y = 0; y < 96; ++y) {
             for (std::uint32_t x = 0; x < 96; ++x) {
                 const glm::dvec3 w = texel_direction(face, x, y, 96);
-                map.at(face, x, y) =
-                    glm::vec3(glm::dvec3(std::exp(8.0 * (glm::dot(w, glm::dvec3(0.6, 0.0, 0.8)) - 1.0))));
+                map.at(face, x, y) = glm::vec3(
+                    glm::dvec3(std::exp(8.0 * (glm::dot(w, glm::dvec3(0.6, 0.0, 0.8)) - 1.0))));
             }
         }
     }

@@ -25,8 +25,10 @@ inline CubeMap smooth_sky() {
     return map;
 }
 
-/// Adds the power of a sun of 0.53 degrees and radiance 1e5 to one texel, times `color`. `direction` is of unit length.
-inline void add_sun(CubeMap& map, const glm::dvec3& direction, const glm::vec3& color = glm::vec3(1.0f)) {
+/// Adds the power of a sun of 0.53 degrees and radiance 1e5 to one texel, times `color`.
+/// `direction` is of unit length.
+inline void add_sun(CubeMap& map, const glm::dvec3& direction,
+                    const glm::vec3& color = glm::vec3(1.0f)) {
     constexpr double Radius = 0.265 * std::numbers::pi / 180.0;
     constexpr double Radiance = 1e5;
     const double sun = 2.0 * std::numbers::pi * (1.0 - std::cos(Radius));

@@ -28,7 +28,8 @@ inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint3
     return image;
 }
 
-/// An image of the layout whose height is `size` (LatLong), whose faces are `size`, or whose side is (squares).
+/// An image of the layout whose height is `size` (LatLong), whose faces are `size`, or whose side
+/// is (squares).
 inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint32_t size) {
     if (layout == Layout::LatLong)
         return black_image(layout, sampling, 2 * size, size);
@@ -43,7 +44,8 @@ inline ImageShape shape_of(const EnvironmentImage& image) {
 }
 
 /// Sets every pixel from the direction it stands for.
-inline void paint(EnvironmentImage& image, const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
+inline void paint(EnvironmentImage& image,
+                  const std::function<glm::vec3(const glm::dvec3&)>& radiance) {
     for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
         image.pixels[index] = radiance(place.direction);
     });
@@ -70,18 +72,21 @@ public:
     TemporaryFolder()
         : path_(std::filesystem::path(testing::TempDir()) /
                 ("cubemap_" +
-                 std::string(testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) + "_" +
-                 testing::UnitTest::GetInstance()->current_test_info()->name())) {
+                 std::string(
+                     testing::UnitTest::GetInstance()->current_test_info()->test_suite_name()) +
+                 "_" + testing::UnitTest::GetInstance()->current_test_info()->name())) {
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
     ~TemporaryFolder() { std::filesystem::remove_all(path_); }
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+    [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+        return path_ / name;
+    }
     [[nodiscard]] std::size_t num_files() const {
-        return static_cast<std::size_t>(
-            std::distance(std::filesystem::directory_iterator(path_), std::filesystem::directory_iterator()));
+        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path_),
+                                                      std::filesystem::directory_iterator()));
     }
 
 private:

@@ -44,8 +44,9 @@ TEST(DaylightTest, AnglesRunFromZTowardsXAndUp) {
     expect_near(direction_from_angles(0.0, 0.0), {0.0, 0.0, 1.0});
     expect_near(direction_from_angles(0.0, 90.0), {1.0, 0.0, 0.0});
     expect_near(direction_from_angles(90.0, 123.0), {0.0, 1.0, 0.0});
-    expect_near(Daylight({.sun_elevation_degrees = 30.0, .sun_azimuth_degrees = -90.0}).sun_direction(),
-                {-std::sqrt(0.75), 0.5, 0.0});
+    expect_near(
+        Daylight({.sun_elevation_degrees = 30.0, .sun_azimuth_degrees = -90.0}).sun_direction(),
+        {-std::sqrt(0.75), 0.5, 0.0});
 }
 
 TEST(DaylightTest, LuminanceIsThePapers) {
@@ -53,14 +54,19 @@ TEST(DaylightTest, LuminanceIsThePapers) {
         for (const double elevation : {10.0, 35.0, 70.0}) {
             const Daylight daylight({.turbidity = T, .sun_elevation_degrees = elevation});
             const double theta_sun = (90.0 - elevation) * Pi / 180.0;
-            // Away from the sun's side too, where colours are inside Rec. 709 and nothing is clamped.
+            // Away from the sun's side too, where colours are inside Rec. 709 and nothing is
+            // clamped.
             for (const double theta_degrees : {0.0, 20.0, 50.0, 80.0, 88.0}) {
                 for (const double azimuth_degrees : {-60.0, 0.0, 45.0, 120.0}) {
-                    const glm::dvec3 w = direction_from_angles(90.0 - theta_degrees, azimuth_degrees);
-                    const double gamma = std::acos(std::min(1.0, glm::dot(w, daylight.sun_direction())));
-                    const double expected = paper_luminance(T, theta_sun, theta_degrees * Pi / 180.0, gamma);
+                    const glm::dvec3 w =
+                        direction_from_angles(90.0 - theta_degrees, azimuth_degrees);
+                    const double gamma =
+                        std::acos(std::min(1.0, glm::dot(w, daylight.sun_direction())));
+                    const double expected =
+                        paper_luminance(T, theta_sun, theta_degrees * Pi / 180.0, gamma);
                     EXPECT_NEAR(luminance(daylight.sky(w)) / expected, 1.0, 2e-3)
-                        << "turbidity " << T << " elevation " << elevation << " theta " << theta_degrees;
+                        << "turbidity " << T << " elevation " << elevation << " theta "
+                        << theta_degrees;
                 }
             }
         }
@@ -76,7 +82,8 @@ TEST(DaylightTest, ZenithChromaticityIsThePapers) {
     const double y = T * T * (0.00275 * t * t * t - 0.00610 * t * t + 0.00317 * t) +
                      T * (-0.04214 * t * t * t + 0.08970 * t * t - 0.04153 * t + 0.00516) +
                      (0.15346 * t * t * t - 0.26756 * t * t + 0.06670 * t + 0.26688);
-    const glm::dvec3 c = Daylight({.turbidity = T, .sun_elevation_degrees = 35.0}).sky({0.0, 1.0, 0.0});
+    const glm::dvec3 c =
+        Daylight({.turbidity = T, .sun_elevation_degrees = 35.0}).sky({0.0, 1.0, 0.0});
     const double X = 0.4124 * c.x + 0.3576 * c.y + 0.1805 * c.z;
     const double Y = 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
     const double Z = 0.0193 * c.x + 0.1192 * c.y + 0.9505 * c.z;
@@ -88,10 +95,12 @@ TEST(DaylightTest, ZenithChromaticityIsThePapers) {
 TEST(DaylightTest, SunIsAsBrightAsTheRealOne) {
     const double sine = std::sin(Daylight::SunRadiusDegrees * Pi / 180.0);
     const auto normal_klx = [&](double turbidity, double elevation) {
-        return luminance(Daylight({.turbidity = turbidity, .sun_elevation_degrees = elevation}).sun()) * Pi *
-               sine * sine;
+        return luminance(
+                   Daylight({.turbidity = turbidity, .sun_elevation_degrees = elevation}).sun()) *
+               Pi * sine * sine;
     };
-    // Above the atmosphere it is 128 klx; a clear day's high sun is known to give 90 to 110, haze and low sun take it away.
+    // Above the atmosphere it is 128 klx; a clear day's high sun is known to give 90 to 110, haze
+    // and low sun take it away.
     EXPECT_GT(normal_klx(2.0, 60.0), 90.0);
     EXPECT_LT(normal_klx(2.0, 60.0), 110.0);
     EXPECT_LT(normal_klx(5.0, 60.0), normal_klx(2.0, 60.0));
@@ -106,7 +115,8 @@ TEST(DaylightTest, GroundReflectsSkyAndSun) {
     const glm::dvec3 irradiance = cubemap::irradiance(sun_and_sky(128, options), {0.0, 1.0, 0.0});
     const glm::dvec3 ground = Daylight(options).ground();
     for (int channel = 0; channel < 3; ++channel) {
-        EXPECT_NEAR(ground[channel] * Pi / (options.ground_albedo[channel] * irradiance[channel]), 1.0, 2e-3);
+        EXPECT_NEAR(ground[channel] * Pi / (options.ground_albedo[channel] * irradiance[channel]),
+                    1.0, 2e-3);
     }
 }
 
@@ -126,7 +136,8 @@ TEST(DaylightTest, StaysPositiveOverTheWholeRange) {
             for (int theta = 0; theta <= 90; theta += 6) {
                 for (int azimuth = 0; azimuth < 360; azimuth += 30) {
                     const glm::dvec3 c = daylight.sky(direction_from_angles(90.0 - theta, azimuth));
-                    ASSERT_GT(luminance(c), 0.0) << T << " " << elevation << " " << theta << " " << azimuth;
+                    ASSERT_GT(luminance(c), 0.0)
+                        << T << " " << elevation << " " << theta << " " << azimuth;
                     ASSERT_TRUE(c.x >= 0.0 && c.y >= 0.0 && c.z >= 0.0);
                 }
             }

@@ -30,9 +30,10 @@ TEST(ConstantTest, HasClosedForms) {
 }
 
 // Along faces' middles, edges and corners, just beside them, and anywhere.
-const std::vector<glm::dvec3> Directions = {
-    {0, 0, 1},   {-1, 0, 0},     {0, -1, 0},    {1, 1, 0},        {0, -1, 1},         {1, 1, 1},
-    {-1, 1, -1}, {1, 0.9999, 0}, {1, 1, 0.998}, {0.3, 0.8, -0.4}, {-0.77, 0.1, 0.61}, {0.01, -1, 0.02}};
+const std::vector<glm::dvec3> Directions = {{0, 0, 1},        {-1, 0, 0},         {0, -1, 0},
+                                            {1, 1, 0},        {0, -1, 1},         {1, 1, 1},
+                                            {-1, 1, -1},      {1, 0.9999, 0},     {1, 1, 0.998},
+                                            {0.3, 0.8, -0.4}, {-0.77, 0.1, 0.61}, {0.01, -1, 0.02}};
 
 TEST(DiscLightTest, EnergyDependsNeitherOnPlaceNorResolution) {
     for (const double degrees : {0.001, 0.05, 0.2665, 1.0, 7.0, 30.0, 60.0, 90.0}) {
@@ -42,8 +43,8 @@ TEST(DiscLightTest, EnergyDependsNeitherOnPlaceNorResolution) {
                 const cubemap::CubeMap map =
                     disc_light(resolution, direction, degrees, glm::vec3(0.0f, 3.0f, 0.0f));
                 EXPECT_NEAR(cubemap::total_power(map).y / expected, 1.0, 5e-4)
-                    << degrees << " degrees, R = " << resolution << ", direction " << direction.x << " "
-                    << direction.y;
+                    << degrees << " degrees, R = " << resolution << ", direction " << direction.x
+                    << " " << direction.y;
             }
         }
     }
@@ -68,7 +69,8 @@ TEST(DiscLightTest, LightComesFromItsDirection) {
             cubemap::irradiance(map, {0, 1, 0}).x - cubemap::irradiance(map, {0, -1, 0}).x,
             cubemap::irradiance(map, {0, 0, 1}).x - cubemap::irradiance(map, {0, 0, -1}).x};
         // A tenth of a texel.
-        EXPECT_LT(glm::distance(glm::normalize(along), glm::normalize(direction)), 0.1 * 2.0 / 256.0);
+        EXPECT_LT(glm::distance(glm::normalize(along), glm::normalize(direction)),
+                  0.1 * 2.0 / 256.0);
     }
 }
 
@@ -81,8 +83,8 @@ TEST(DiscLightTest, TexelsInsideAreFullAndOutsideDark) {
         for (std::uint32_t y = 0; y < resolution; ++y) {
             for (std::uint32_t x = 0; x < resolution; ++x) {
                 const float value = map.at(face, x, y).x;
-                const double angle =
-                    std::acos(glm::dot(cubemap::texel_direction(face, x, y, resolution), direction));
+                const double angle = std::acos(
+                    glm::dot(cubemap::texel_direction(face, x, y, resolution), direction));
                 if (angle < radians(10.0) - margin) {
                     ASSERT_EQ(value, 2.0f);
                 } else if (angle > radians(10.0) + margin) {
@@ -157,8 +159,8 @@ TEST_P(SunAndSkyTest, KeepsTheSunsEnergyAndPlace) {
                     const glm::dvec3 radiance(map.at(face, x, y));
                     if (glm::distance(w, daylight.sun_direction()) <
                         radians(Daylight::SunRadiusDegrees) + texel) {
-                        sun_power +=
-                            (radiance - daylight.sky(w)) * solid_angles[std::size_t{y} * resolution + x];
+                        sun_power += (radiance - daylight.sky(w)) *
+                                     solid_angles[std::size_t{y} * resolution + x];
                     }
                     if (map.at(face, x, y).y > brightest) {
                         brightest = map.at(face, x, y).y;
@@ -167,9 +169,11 @@ TEST_P(SunAndSkyTest, KeepsTheSunsEnergyAndPlace) {
                 }
             }
         }
-        const double sun_solid_angle = 2.0 * Pi * (1.0 - std::cos(radians(Daylight::SunRadiusDegrees)));
+        const double sun_solid_angle =
+            2.0 * Pi * (1.0 - std::cos(radians(Daylight::SunRadiusDegrees)));
         for (int channel = 0; channel < 3; ++channel) {
-            EXPECT_NEAR(sun_power[channel] / (daylight.sun()[channel] * sun_solid_angle), 1.0, 5e-3);
+            EXPECT_NEAR(sun_power[channel] / (daylight.sun()[channel] * sun_solid_angle), 1.0,
+                        5e-3);
         }
         EXPECT_LT(glm::distance(brightest_direction, daylight.sun_direction()), texel);
     }
@@ -180,7 +184,9 @@ TEST_P(SunAndSkyTest, GroundLiesBelowTheHorizon) {
     const Daylight daylight;
     const cubemap::CubeMap map = sun_and_sky(resolution);
     const glm::vec3 ground(daylight.ground());
-    EXPECT_LT(glm::distance(map.at(cubemap::Face::NegativeY, resolution / 3, resolution / 2), ground), 1e-5f);
+    EXPECT_LT(
+        glm::distance(map.at(cubemap::Face::NegativeY, resolution / 3, resolution / 2), ground),
+        1e-5f);
     const auto& above = map.at(cubemap::Face::NegativeZ, resolution / 2, resolution / 2 - 1);
     const auto& below = map.at(cubemap::Face::NegativeZ, resolution / 2, resolution / 2 + 1);
     EXPECT_GT(above.y, ground.y);
@@ -211,7 +217,8 @@ TEST(EnvironmentsTest, AllAreFiniteLightAndNotNegative) {
             ASSERT_EQ(map.texels.size(), std::size_t{6} * resolution * resolution);
             for (const glm::vec3& texel : map.texels) {
                 for (int channel = 0; channel < 3; ++channel) {
-                    ASSERT_TRUE(std::isfinite(texel[channel]) && texel[channel] >= 0.0f) << environment.name;
+                    ASSERT_TRUE(std::isfinite(texel[channel]) && texel[channel] >= 0.0f)
+                        << environment.name;
                 }
             }
         }

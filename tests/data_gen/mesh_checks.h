@@ -29,7 +29,8 @@ inline std::vector<std::uint32_t> welded(const mesh::TriangleMesh& mesh) {
     std::vector<std::uint32_t> weld;
     for (const glm::vec3& p : mesh.positions) {
         weld.push_back(
-            first_at.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(weld.size())).first->second);
+            first_at.try_emplace({p.x, p.y, p.z}, static_cast<std::uint32_t>(weld.size()))
+                .first->second);
     }
     return weld;
 }
@@ -45,11 +46,13 @@ inline std::size_t num_open_edges(const mesh::TriangleMesh& mesh) {
             ++(from < to ? uses[{from, to}].first : uses[{to, from}].second);
         }
     }
-    return static_cast<std::size_t>(std::count_if(
-        uses.begin(), uses.end(), [](const auto& edge) { return edge.second != std::pair<int, int>(1, 1); }));
+    return static_cast<std::size_t>(std::count_if(uses.begin(), uses.end(), [](const auto& edge) {
+        return edge.second != std::pair<int, int>(1, 1);
+    }));
 }
 
-/// Signed volumes of the parts that hang together after welding; positive where triangles face outwards.
+/// Signed volumes of the parts that hang together after welding; positive where triangles face
+/// outwards.
 inline std::vector<double> volumes(const mesh::TriangleMesh& mesh) {
     std::vector<std::uint32_t> parent = welded(mesh);
     const auto root = [&](std::uint32_t v) {

@@ -41,8 +41,8 @@ INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scenes().begin(), sce
                          [](const auto& scene) { return std::string(scene.param.name); });
 
 TEST_P(SceneTest, MeetsTheVertexCount) {
-    for (const std::size_t wish : {1'000u, 1'234u, 2'000u, 3'500u, 7'999u, 8'000u, 15'000u, 20'000u, 33'333u,
-                                   79'999u, 80'000u, 100'000u, 250'000u}) {
+    for (const std::size_t wish : {1'000u, 1'234u, 2'000u, 3'500u, 7'999u, 8'000u, 15'000u, 20'000u,
+                                   33'333u, 79'999u, 80'000u, 100'000u, 250'000u}) {
         const auto count = static_cast<double>(GetParam().make(wish).num_vertices());
         const double allowed = wish < 20'000 ? 0.04 : 0.01;
         EXPECT_NEAR(count / static_cast<double>(wish), 1.0, allowed) << wish;
@@ -101,7 +101,8 @@ TEST_P(SceneTest, StandsOnAFloorOfAboutHalfTheVertices) {
             floor.insert(triangle.begin(), triangle.end());
         }
     }
-    EXPECT_NEAR(static_cast<double>(floor.size()) / static_cast<double>(mesh.num_vertices()), 0.5, 0.1);
+    EXPECT_NEAR(static_cast<double>(floor.size()) / static_cast<double>(mesh.num_vertices()), 0.5,
+                0.1);
     for (const std::uint32_t index : floor) {
         ASSERT_NEAR(mesh.normals[index].y, 1.0f, 1e-6f);
     }
@@ -145,7 +146,8 @@ TEST(SphereTest, IsASphereWhereTheHeaderSays) {
 }
 
 TEST(KnotTest, StrandsKeepApart) {
-    // Neighbours on one strand look nearly the same way; two strands that met would have close vertices that do not.
+    // Neighbours on one strand look nearly the same way; two strands that met would have close
+    // vertices that do not.
     const mesh::TriangleMesh mesh = knot(8'000);
     std::size_t num_tube = 0;
     while (mesh.positions[num_tube].y > 0.0f) {

@@ -46,7 +46,8 @@ TEST(Sequences, TheSunIsWhereItIsSaidToBe) {
     EXPECT_DOUBLE_EQ(sun_angles(0, NumFrames).azimuth_degrees, 100.0);
     EXPECT_DOUBLE_EQ(sun_angles(4, NumFrames).azimuth_degrees, -100.0);
     EXPECT_NEAR(sun_angles(2, NumFrames).elevation_degrees, 62.0, 1e-9);
-    EXPECT_NEAR(sun_angles(1, NumFrames).elevation_degrees, sun_angles(3, NumFrames).elevation_degrees, 1e-9);
+    EXPECT_NEAR(sun_angles(1, NumFrames).elevation_degrees,
+                sun_angles(3, NumFrames).elevation_degrees, 1e-9);
 }
 
 TEST(Sequences, TurnIsTheProbeRotated) {
@@ -82,7 +83,8 @@ TEST(Sequences, CloudsMoveWithTheWind) {
         for (double z = -3.0; z <= 3.0; z += 0.31) {
             const glm::dvec3 above(x, 1.0, z);
             const double cover = cloud_cover(glm::normalize(above), 0.0);
-            // What is here now is 10 frames of wind further in 10 frames; near the zenith nothing fades.
+            // What is here now is 10 frames of wind further in 10 frames; near the zenith nothing
+            // fades.
             const glm::dvec3 later = glm::normalize(above + 10.0 * CloudWind);
             EXPECT_NEAR(cloud_cover(later, 10.0), cover, 1e-9);
             least = std::min(least, cover);
@@ -103,13 +105,15 @@ TEST(Sequences, CloudsDimTheSunAsTheySay) {
     std::size_t clear = 0;
     std::size_t hidden = 0;
     for (std::size_t frame = 0; frame < 100; ++frame) {
-        if (cloud_transmission(static_cast<double>(frame)) > cloud_transmission(static_cast<double>(clear)))
+        if (cloud_transmission(static_cast<double>(frame)) >
+            cloud_transmission(static_cast<double>(clear)))
             clear = frame;
-        if (cloud_transmission(static_cast<double>(frame)) < cloud_transmission(static_cast<double>(hidden)))
+        if (cloud_transmission(static_cast<double>(frame)) <
+            cloud_transmission(static_cast<double>(hidden)))
             hidden = frame;
     }
-    const double difference =
-        cloud_transmission(static_cast<double>(clear)) - cloud_transmission(static_cast<double>(hidden));
+    const double difference = cloud_transmission(static_cast<double>(clear)) -
+                              cloud_transmission(static_cast<double>(hidden));
     ASSERT_GT(difference, 0.5) << "the sun comes and goes within 100 frames";
     const auto brightest = [](const cubemap::CubeMap& map) {
         float value = 0.0f;
@@ -119,7 +123,8 @@ TEST(Sequences, CloudsDimTheSunAsTheySay) {
     };
     EXPECT_GT(brightest(make(clear)), 10.0f * brightest(make(hidden)));
     for (const glm::vec3& texel : make(hidden).texels)
-        ASSERT_TRUE(texel.r >= 0.0f && texel.g >= 0.0f && texel.b >= 0.0f && std::isfinite(texel.r));
+        ASSERT_TRUE(texel.r >= 0.0f && texel.g >= 0.0f && texel.b >= 0.0f &&
+                    std::isfinite(texel.r));
 }
 
 TEST(Sequences, TheTunnelHasThePowerOfItsLampsAndRepeats) {
@@ -129,10 +134,12 @@ TEST(Sequences, TheTunnelHasThePowerOfItsLampsAndRepeats) {
     for (const std::size_t frame : {0u, 7u, 12u, 23u}) {
         double expected = 4.0 * std::numbers::pi * static_cast<double>(TunnelWalls);
         for (const TunnelLamp& lamp : tunnel_lamps(frame))
-            expected += static_cast<double>(lamp.radiance.r) * disc_solid_angle(lamp.radius_degrees);
+            expected +=
+                static_cast<double>(lamp.radiance.r) * disc_solid_angle(lamp.radius_degrees);
         EXPECT_NEAR(cubemap::total_power(make(frame)).r, expected, 2e-3 * expected) << frame;
     }
-    // One period takes every lamp to the place of the one behind it: nothing jumps between the last frame and the next first.
+    // One period takes every lamp to the place of the one behind it: nothing jumps between the last
+    // frame and the next first.
     const double last = cubemap::total_power(make(TunnelPeriod - 1)).r;
     EXPECT_NEAR(last, cubemap::total_power(make(TunnelPeriod)).r, 0.05 * last);
 }
@@ -143,8 +150,9 @@ TEST(Sequences, BadOptionsAreRefused) {
         EXPECT_THROW(sequence.make({.num_frames = 0, .face_resolution = 4, .probe = probe}),
                      std::invalid_argument);
         for (const std::uint32_t resolution : {0u, 16385u})
-            EXPECT_THROW(sequence.make({.num_frames = 2, .face_resolution = resolution, .probe = probe}),
-                         std::invalid_argument);
+            EXPECT_THROW(
+                sequence.make({.num_frames = 2, .face_resolution = resolution, .probe = probe}),
+                std::invalid_argument);
     }
 }
 

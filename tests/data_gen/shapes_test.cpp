@@ -27,7 +27,8 @@ TEST(IcosphereTest, IsClosedAndEven) {
         double longest = 0.0;
         for (const mesh::Triangle& t : sphere.triangles) {
             for (std::size_t k = 0; k < 3; ++k) {
-                const double length = glm::distance(sphere.positions[t[k]], sphere.positions[t[(k + 1) % 3]]);
+                const double length =
+                    glm::distance(sphere.positions[t[k]], sphere.positions[t[(k + 1) % 3]]);
                 shortest = std::min(shortest, length);
                 longest = std::max(longest, length);
             }
@@ -92,8 +93,9 @@ TEST(LatheTest, FlutesTakeTheirVolume) {
 }
 
 TEST(LatheTest, ArcsEndWhereTheyShould) {
-    const Curve quarter =
-        arc({.center = {2.0, 1.0}, .radii = {0.5, 0.25}, .begin_degrees = -90.0, .end_degrees = 0.0}, 0.1);
+    const Curve quarter = arc(
+        {.center = {2.0, 1.0}, .radii = {0.5, 0.25}, .begin_degrees = -90.0, .end_degrees = 0.0},
+        0.1);
     EXPECT_NEAR(quarter.front().x, 2.0, 1e-12);
     EXPECT_NEAR(quarter.front().y, 0.75, 1e-12);
     EXPECT_NEAR(quarter.back().x, 2.5, 1e-12);
@@ -106,9 +108,11 @@ TEST(DiscTest, AnnulusFitsAroundADisc) {
     append_disc(mesh, {.radius = 1.0, .num_around = 60, .fill = Fill::Even});
     const std::size_t num_inside = mesh.num_vertices();
     EXPECT_EQ(num_inside, 1u + 3u * 10u * 11u);
-    append_disc(
-        mesh,
-        {.radius = 3.0, .num_around = 180, .fill = Fill::Even, .inner_radius = 1.0, .inner_num_around = 60});
+    append_disc(mesh, {.radius = 3.0,
+                       .num_around = 180,
+                       .fill = Fill::Even,
+                       .inner_radius = 1.0,
+                       .inner_num_around = 60});
     EXPECT_EQ(num_open_edges(mesh), 180u) << "only the outer rim is open";
     EXPECT_NEAR(area(mesh), Pi * 9.0, 0.02);
     for (const mesh::Triangle& triangle : mesh.triangles) {

@@ -33,9 +33,9 @@ protected:
             log.append(record(i));
         EXPECT_EQ(log.size(), size(path_));
     }
-    fs::path path_ =
-        fs::path(testing::TempDir()) /
-        (std::string("append_log_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::path path_ = fs::path(testing::TempDir()) /
+                     (std::string("append_log_") +
+                      testing::UnitTest::GetInstance()->current_test_info()->name());
 };
 
 TEST_F(AppendLogTest, GivesBackWholeRecordsAcrossRuns) {
@@ -47,7 +47,8 @@ TEST_F(AppendLogTest, GivesBackWholeRecordsAcrossRuns) {
 TEST_F(AppendLogTest, ATornRecordEndsTheListAndIsWrittenOver) {
     append(0, 4);
     const auto whole = fs::file_size(path_);
-    for (const std::uint64_t missing : {1u, 299u, 300u, 301u, 323u}) { // in the last record and its head
+    for (const std::uint64_t missing :
+         {1u, 299u, 300u, 301u, 323u}) { // in the last record and its head
         fs::resize_file(path_, whole - missing);
         append(3, 4);
         EXPECT_EQ(fs::file_size(path_), whole);

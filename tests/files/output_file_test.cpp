@@ -29,9 +29,9 @@ protected:
         return static_cast<std::size_t>(
             std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
     }
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        ("output_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       ("output_file_" +
+                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
 std::vector<std::byte> bytes_of(const std::string& text) {
@@ -84,7 +84,8 @@ TEST_F(OutputFileTest, NamesTheTargetWhenItCannotBeWritten) {
 
 /// Writes in a process of its own, which `prepare` sets up; returns its message.
 template<class Prepare>
-std::string written_elsewhere(const fs::path& target, std::size_t num_bytes, const Prepare& prepare) {
+std::string written_elsewhere(const fs::path& target, std::size_t num_bytes,
+                              const Prepare& prepare) {
     std::array<int, 2> pipe{};
     EXPECT_EQ(::pipe(pipe.data()), 0);
     const pid_t child = ::fork();
@@ -103,7 +104,8 @@ std::string written_elsewhere(const fs::path& target, std::size_t num_bytes, con
     }
     ::close(pipe[1]);
     std::string message(1000, ' ');
-    message.resize(static_cast<std::size_t>(std::max<ssize_t>(0, ::read(pipe[0], message.data(), 1000))));
+    message.resize(
+        static_cast<std::size_t>(std::max<ssize_t>(0, ::read(pipe[0], message.data(), 1000))));
     ::close(pipe[0]);
     ::waitpid(child, nullptr, 0);
     return message;
@@ -119,13 +121,13 @@ std::string written_under_a_limit(const fs::path& target, std::size_t num_bytes,
 }
 
 TEST_F(OutputFileTest, SaysWhereThereAreNoRights) {
-    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
-                                 fs::perms::others_exec);
+    fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec |
+                                 fs::perms::others_read | fs::perms::others_exec);
     constexpr uid_t Nobody = 65534; // root has all rights
     const fs::path target = folder_ / "out.txt";
-    EXPECT_EQ(
-        written_elsewhere(target, 10, [] { static_cast<void>(::geteuid() == 0 ? ::seteuid(Nobody) : 0); }),
-        target.string() + ": cannot write: Permission denied");
+    EXPECT_EQ(written_elsewhere(
+                  target, 10, [] { static_cast<void>(::geteuid() == 0 ? ::seteuid(Nobody) : 0); }),
+              target.string() + ": cannot write: Permission denied");
     fs::permissions(folder_, fs::perms::owner_all);
     EXPECT_EQ(num_files(), 0u);
 }

@@ -1,5 +1,6 @@
-// The command line, one argument per line of the input. The commands run as far as they come in an empty folder: none of their
-// files exist. `generate`, which needs none, and `view`, which opens a window, are parsed only.
+// The command line, one argument per line of the input. The commands run as far as they come in an
+// empty folder: none of their files exist. `generate`, which needs none, and `view`, which opens a
+// window, are parsed only.
 #include <memory>
 #include <vector>
 
@@ -56,7 +57,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }();
     const std::string_view text(reinterpret_cast<const char*>(data), size);
     // Arguments hold no zeros. A slash would lead out of the folder.
-    if (!is_inside || text.find('\0') != std::string_view::npos || text.find('/') != std::string_view::npos)
+    if (!is_inside || text.find('\0') != std::string_view::npos ||
+        text.find('/') != std::string_view::npos)
         return 0;
     CLI::App program("", "relumine");
     app::add_commands(program, fresh_session());

@@ -1,5 +1,5 @@
-// All inputs of the corpus through the fuzz targets: what was found once stays mended. A crash or a broken promise ends the
-// program, and names the file.
+// All inputs of the corpus through the fuzz targets: what was found once stays mended. A crash or a
+// broken promise ends the program, and names the file.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -13,11 +13,13 @@
 #include "tests/fuzz/fuzz.h"
 
 // As CMakeLists.txt lists them; each is compiled with an entry point of its own name.
-#define RELUMINE_FUZZ_TARGETS(X)                                                                             \
-    X(command_line)                                                                                          \
-    X(exr) X(gltf) X(hdr) X(layers) X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture)
+#define RELUMINE_FUZZ_TARGETS(X)                                                                   \
+    X(command_line)                                                                                \
+    X(exr)                                                                                         \
+    X(gltf)                                                                                        \
+    X(hdr) X(layers) X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture)
 
-#define RELUMINE_DECLARE(name)                                                                               \
+#define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);
 RELUMINE_FUZZ_TARGETS(RELUMINE_DECLARE)
 
@@ -48,7 +50,8 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 class Corpus : public testing::TestWithParam<Target> {};
 
 TEST_P(Corpus, IsReadOrRefused) {
-    const std::vector<fs::path> files = files_below(fs::path(RELUMINE_FUZZ_CORPUS) / GetParam().name);
+    const std::vector<fs::path> files =
+        files_below(fs::path(RELUMINE_FUZZ_CORPUS) / GetParam().name);
     ASSERT_FALSE(files.empty());
     num_accepted = 0;
     for (const fs::path& path : files) {
@@ -56,7 +59,9 @@ TEST_P(Corpus, IsReadOrRefused) {
         const std::vector<char> content(std::istreambuf_iterator<char>(stream), {});
         const std::size_t before = num_accepted;
         std::fprintf(stderr, "%s", path.c_str()); // the last one is the culprit
-        EXPECT_EQ(GetParam().run(reinterpret_cast<const std::uint8_t*>(content.data()), content.size()), 0);
+        EXPECT_EQ(
+            GetParam().run(reinterpret_cast<const std::uint8_t*>(content.data()), content.size()),
+            0);
         std::fprintf(stderr, ": %s\n", num_accepted > before ? "read" : "refused");
     }
     // Otherwise the seeds are of an old format, and fuzzing would begin at nothing.

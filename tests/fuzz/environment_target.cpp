@@ -12,14 +12,16 @@ namespace relumine::fuzz {
 
 void read_environment(std::span<const std::byte> content) {
     const std::filesystem::path path = file("environment", content);
-    const auto image = accepted([&] { return cubemap::load_environment(path, {.fix_bad_pixels = true}); });
+    const auto image =
+        accepted([&] { return cubemap::load_environment(path, {.fix_bad_pixels = true}); });
     const auto size = accepted([&] { return cubemap::read_image_size(path); });
     // Pictures of light layers have other shapes and may not have bad pixels.
     const auto picture = accepted([&] { return cubemap::load_picture(path); });
     require(!picture || !(*picture)->levels().empty(), "a picture has pixels");
     if (!image)
         return;
-    require(image->pixels.size() == std::size_t{image->width} * image->height, "an image has all its pixels");
+    require(image->pixels.size() == std::size_t{image->width} * image->height,
+            "an image has all its pixels");
     require(size && *size == cubemap::ImageSize{image->width, image->height},
             "header and image have one size");
     if (image->pixels.size() > 65536)

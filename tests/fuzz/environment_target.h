@@ -5,7 +5,8 @@
 
 namespace relumine::fuzz {
 
-/// Reads an environment as the program does, size, picture and all, and resamples it if it is small.
+/// Reads an environment as the program does, size, picture and all, and resamples it if it is
+/// small.
 void read_environment(std::span<const std::byte> content);
 
 } // namespace relumine::fuzz

@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// One thread: libFuzzer counts the code that an input reaches, which must not depend on who is faster.
+/// One thread: libFuzzer counts the code that an input reaches, which must not depend on who is
+/// faster.
 const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
 
 void write(const fs::path& path, std::string_view content) {
@@ -38,8 +39,9 @@ public:
         write(path / "pixel.exr", app::exr_file(2, 1, [](auto x, auto) {
                   return app::Rgb{1.0f, 0.5f, static_cast<float>(x)};
               }));
-        write(path / "mesh.mtl",
-              "newmtl red\nKd 1 0 0\nmap_Kd four_colors.png\nnewmtl shiny\nKs 0.5 0.5 0.5\nNs 20\n");
+        write(
+            path / "mesh.mtl",
+            "newmtl red\nKd 1 0 0\nmap_Kd four_colors.png\nnewmtl shiny\nKs 0.5 0.5 0.5\nNs 20\n");
         write(path / "buffer.bin", std::string(64, '\0'));
     }
     ~Folder() {

@@ -1,5 +1,6 @@
-// What the fuzz targets share. A target hands one input to one reader, as the program would, and holds it to its promise: it
-// either reads the input or throws std::runtime_error with a message "expected X, got Y"; no crash, leak, other exception or endless loop.
+// What the fuzz targets share. A target hands one input to one reader, as the program would, and
+// holds it to its promise: it either reads the input or throws std::runtime_error with a message
+// "expected X, got Y"; no crash, leak, other exception or endless loop.
 #pragma once
 
 #include <cstddef>
@@ -38,8 +39,9 @@ auto accepted(const Read& read) -> std::optional<std::invoke_result_t<Read>> {
     }
 }
 
-/// A folder of this process, below the system's folder for temporary files, that goes away with it. Holds the files that inputs may
-/// name: four_colors.png, pixel.exr, mesh.mtl, buffer.bin. One thread calls these.
+/// A folder of this process, below the system's folder for temporary files, that goes away with it.
+/// Holds the files that inputs may name: four_colors.png, pixel.exr, mesh.mtl, buffer.bin. One
+/// thread calls these.
 [[nodiscard]] const std::filesystem::path& folder();
 
 /// Writes an input to a file of that folder, for readers that take paths.

@@ -25,15 +25,18 @@ bool none_or(const Array& array, std::size_t count) {
 } // namespace
 
 void require_sound(const mesh::TriangleMesh& mesh) {
-    require(!mesh.positions.empty() && !mesh.triangles.empty(), "a mesh has vertices and triangles");
-    require(std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite), "positions are finite");
+    require(!mesh.positions.empty() && !mesh.triangles.empty(),
+            "a mesh has vertices and triangles");
+    require(std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite),
+            "positions are finite");
     for (const mesh::Triangle& triangle : mesh.triangles)
         for (const std::uint32_t vertex : triangle)
             require(vertex < mesh.num_vertices(), "triangles are of vertices");
     require(mesh.normals.size() == mesh.num_vertices(), "every vertex has a normal");
     for (const glm::vec3& normal : mesh.normals) {
         const float length = glm::length(normal);
-        require(length == 0.0f || std::abs(length - 1.0f) < 1e-4f, "normals are unit vectors or zero");
+        require(length == 0.0f || std::abs(length - 1.0f) < 1e-4f,
+                "normals are unit vectors or zero");
     }
     require(none_or(mesh.colors, mesh.num_vertices()) && none_or(mesh.uvs, mesh.num_vertices()) &&
                 none_or(mesh.corner_uvs, mesh.num_triangles()) &&
@@ -46,7 +49,8 @@ void require_sound(const mesh::TriangleMesh& mesh) {
             "triangles have materials and groups of the mesh");
     for (const mesh::Material& material : mesh.materials)
         for (const auto& slot : {material.base_color_texture, material.metallic_roughness_texture})
-            require(!slot || slot->texture < mesh.textures.size(), "materials have textures of the mesh");
+            require(!slot || slot->texture < mesh.textures.size(),
+                    "materials have textures of the mesh");
 }
 
 } // namespace relumine::fuzz

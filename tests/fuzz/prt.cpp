@@ -10,7 +10,8 @@
 namespace {
 
 // Where things are in the file: docs/prt-format.md.
-constexpr std::size_t FileSizeAt = 16, NumSectionsAt = 24, ChecksumAt = 32, HeaderSize = 40, EntrySize = 48;
+constexpr std::size_t FileSizeAt = 16, NumSectionsAt = 24, ChecksumAt = 32, HeaderSize = 40,
+                      EntrySize = 48;
 
 std::uint64_t number_at(const std::vector<std::byte>& file, std::size_t at, std::size_t num_bytes) {
     std::uint64_t value = 0;
@@ -32,7 +33,8 @@ std::vector<std::byte> with_checksums(std::span<const std::byte> input) {
         return file;
     for (std::size_t i = 0; i < num_sections; ++i) {
         const std::size_t entry = HeaderSize + i * EntrySize;
-        const std::uint64_t offset = number_at(file, entry + 16, 8), size = number_at(file, entry + 24, 8);
+        const std::uint64_t offset = number_at(file, entry + 16, 8),
+                            size = number_at(file, entry + 24, 8);
         if (offset <= file.size() && size <= file.size() - offset)
             put(file, entry + 40, XXH64(file.data() + offset, size, 0));
     }

@@ -19,7 +19,8 @@ void require_sound(const prt::Scene& scene) {
         for (const std::uint32_t vertex : triangle)
             require(vertex < scene.mesh.num_vertices(), "triangles are of vertices");
     const std::size_t num_pairs = num_receivers * transfer.num_clusters();
-    const bool is_deep = transfer.glossy && transfer.glossy->deepest_level() > 4; // 12 MB and more of light
+    const bool is_deep =
+        transfer.glossy && transfer.glossy->deepest_level() > 4; // 12 MB and more of light
     if (num_receivers == 0 || num_pairs > 100'000 || is_deep)
         return;
     for (std::size_t place = 0; place < num_receivers; ++place)
@@ -33,7 +34,8 @@ void require_sound(const prt::Scene& scene) {
     relighter.set_environment(std::move(map));
     require(relighter.radiance().size() == num_receivers, "every receiver has a radiance");
     const std::vector<glm::vec3> red(4, glm::vec3(1.0f, 0.0f, 0.0f));
-    relighter.update_region({.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3}, red);
+    relighter.update_region({.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
+                            red);
 }
 
 } // namespace relumine::fuzz

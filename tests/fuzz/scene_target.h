@@ -5,7 +5,8 @@
 
 namespace relumine::fuzz {
 
-/// Uses a scene that passed all checks: lights it (unless it is large), so that an index that should not have passed is met.
+/// Uses a scene that passed all checks: lights it (unless it is large), so that an index that
+/// should not have passed is met.
 void require_sound(const prt::Scene& scene);
 
 } // namespace relumine::fuzz

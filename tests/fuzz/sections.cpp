@@ -1,5 +1,5 @@
-// The sections of a .prt file without its container, so that mutations reach what is in them: for each section the letter of its
-// name (below), its size (two bytes, low first) and its bytes.
+// The sections of a .prt file without its container, so that mutations reach what is in them: for
+// each section the letter of its name (below), its size (two bytes, low first) and its bytes.
 #include <array>
 #include <vector>
 
@@ -19,9 +19,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::span<const std::byte> content = rest.first(std::min(length, rest.size()));
         rest = rest.subspan(content.size());
         if (letter < fuzz::SectionNames.size())
-            sections[std::string(fuzz::SectionNames[letter])].assign(content.begin(), content.end());
+            sections[std::string(fuzz::SectionNames[letter])].assign(content.begin(),
+                                                                     content.end());
     }
-    if (const auto scene = fuzz::accepted([&] { return prt::scene_of("input.prt", std::move(sections)); }))
+    if (const auto scene =
+            fuzz::accepted([&] { return prt::scene_of("input.prt", std::move(sections)); }))
         fuzz::require_sound(*scene);
     return 0;
 }

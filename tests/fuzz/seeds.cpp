@@ -1,4 +1,5 @@
-// Writes the binary seeds of the corpus anew, small files by our own writers: fuzz_seeds FOLDER. To be run when a format changed.
+// Writes the binary seeds of the corpus anew, small files by our own writers: fuzz_seeds FOLDER. To
+// be run when a format changed.
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -79,7 +80,8 @@ void write_textures(const fs::path& folder) {
                                               99,  99, 99, 1,   3, 4,   5, 6,   7, 8, 9,   9};
     std::string file;
     const auto append = [](void* to, void* data, int size) {
-        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                              static_cast<std::size_t>(size));
     };
     const auto finish = [&](const char* name) {
         write(folder / name, file);
@@ -122,8 +124,8 @@ void write_exr_variants(const fs::path& folder) {
     const auto with_buffer = [&](Imf::Header& header, Imf::FrameBuffer& buffer) {
         for (const char* channel : {"R", "G", "B"}) {
             header.channels().insert(channel, Imf::Channel(Imf::HALF));
-            buffer.insert(channel,
-                          Imf::Slice(Imf::HALF, reinterpret_cast<char*>(values.data()), 2, 2 * Width));
+            buffer.insert(channel, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(values.data()), 2,
+                                              2 * Width));
         }
     };
     struct Compression {
@@ -166,7 +168,8 @@ void write_environments(const fs::path& folder) {
     using cubemap::Layout;
     using cubemap::Sampling;
     write(folder / "exr/plain.exr", app::exr_file(8, 4, gradient()));
-    write(folder / "exr/cube_zip.exr", cubemap::encode_exr(image(Layout::Cube, 3, 18, Sampling::Borders)));
+    write(folder / "exr/cube_zip.exr",
+          cubemap::encode_exr(image(Layout::Cube, 3, 18, Sampling::Borders)));
     write_exr_variants(folder / "exr");
     write(folder / "hdr/flat.hdr", app::hdr_file(4, 2, gradient()));
     write(folder / "hdr/runs.hdr",
@@ -194,12 +197,13 @@ std::string with_raw_frames(const fs::path& path) {
     const prt::Sections sections = prt::read_sections(path);
     std::string file = text_of(path).substr(0, 40), stored;
     for (const auto& [name, content] : sections) {
-        const std::string frame = raw_frame({reinterpret_cast<const char*>(content.data()), content.size()});
+        const std::string frame =
+            raw_frame({reinterpret_cast<const char*>(content.data()), content.size()});
         std::string padded = name;
         padded.resize(16);
         file += padded;
-        for (const std::uint64_t number :
-             {40 + 48 * sections.size() + stored.size(), frame.size(), content.size(), std::size_t{0}})
+        for (const std::uint64_t number : {40 + 48 * sections.size() + stored.size(), frame.size(),
+                                           content.size(), std::size_t{0}})
             file.append(reinterpret_cast<const char*>(&number), 8);
         stored += frame;
     }
@@ -244,8 +248,9 @@ void write_scenes(const fs::path& folder) {
     scene.receivers.surfaces.assign(
         scene.receivers.size(),
         {.specular = glm::vec3(0.5f), .highlight = prt::Highlight::Ggx, .shape = 0.5f});
-    scene.transfer.glossy = prt::precompute_glossy(scene.receivers, rays, scene.transfer,
-                                                   {.tolerance = 0.5f, .face_resolution = 4, .bias = 1e-4f});
+    scene.transfer.glossy =
+        prt::precompute_glossy(scene.receivers, rays, scene.transfer,
+                               {.tolerance = 0.5f, .face_resolution = 4, .bias = 1e-4f});
     prt::set_surfaces(scene.transfer, scene.receivers);
     save("glossy");
 

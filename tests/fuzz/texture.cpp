@@ -5,8 +5,8 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     using namespace relumine;
-    const auto texture =
-        fuzz::accepted([&] { return mesh::decode_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
+    const auto texture = fuzz::accepted(
+        [&] { return mesh::decode_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
     if (!texture)
         return 0;
     fuzz::require(texture->texels.size() == std::size_t{texture->width} * texture->height,

@@ -43,7 +43,8 @@ TEST(DiscLight, AgreesWithBruteForceAsItSets) {
             if (angle < 0.0)
                 continue;
             const glm::dvec3 result = irradiance(light, {std::sin(angle), 0.0, std::cos(angle)});
-            EXPECT_NEAR(result.x, reference(angle, radius), 1e-4 * radius) << radius << ' ' << offset;
+            EXPECT_NEAR(result.x, reference(angle, radius), 1e-4 * radius)
+                << radius << ' ' << offset;
             EXPECT_NEAR(result.y, 2.0 * result.x, 1e-12);
             EXPECT_EQ(result.z, 0.0);
         }
@@ -60,9 +61,10 @@ TEST(DiscLight, APointIsACosine) {
 TEST(DiscLight, HugeAndTinyStayFinite) {
     for (const double solid_angle : {1e-12, 1e-9, 2.0 * Pi, 4.0 * Pi})
         for (const double y : {-1.0, -1e-6, 0.0, 1e-6, 1.0}) {
-            const double value = irradiance({.irradiance = glm::dvec3(1.0), .solid_angle = solid_angle},
-                                            {std::sqrt(1.0 - y * y), y, 0.0})
-                                     .x;
+            const double value =
+                irradiance({.irradiance = glm::dvec3(1.0), .solid_angle = solid_angle},
+                           {std::sqrt(1.0 - y * y), y, 0.0})
+                    .x;
             EXPECT_GE(value, 0.0);
             EXPECT_LE(value, 1.0 + 1e-12);
         }

@@ -50,15 +50,15 @@ TEST(ImportanceSampling, EachPixelGoesToTheStrataItLiesIn) {
         double above = 0.0;
         for (std::uint32_t y = 0; y < 8; ++y) {
             const double down =
-                overlap(above / all, (above + rows[y]) / all, strata[s].top, strata[s].bottom) * all /
-                rows[y];
+                overlap(above / all, (above + rows[y]) / all, strata[s].top, strata[s].bottom) *
+                all / rows[y];
             double left = 0.0;
             for (std::uint32_t x = 0; x < 16; ++x) {
                 const double energy = grid.energy(x, y);
                 if (energy > 0.0) {
-                    const double across =
-                        overlap(left / rows[y], (left + energy) / rows[y], strata[s].left, strata[s].right) *
-                        rows[y] / energy;
+                    const double across = overlap(left / rows[y], (left + energy) / rows[y],
+                                                  strata[s].left, strata[s].right) *
+                                          rows[y] / energy;
                     expected += down * across * grid.solid_angle(x, y) * grid.radiance(x, y);
                 }
                 left += energy;
@@ -84,7 +84,8 @@ TEST(ImportanceSampling, LightsStandWhereThereIsLight) {
 }
 
 TEST(ImportanceSampling, OtherSeedsOtherDirectionsWithTheRightMean) {
-    // A white map, so that strata and energy are independent of colour: the mean over seeds tends to the exact irradiance.
+    // A white map, so that strata and energy are independent of colour: the mean over seeds tends
+    // to the exact irradiance.
     const auto image = lat_long(64, 32, [](std::uint32_t x, std::uint32_t y) {
         return glm::vec3(0.1f + static_cast<float>(x % 16) * static_cast<float>(y));
     });
@@ -93,17 +94,21 @@ TEST(ImportanceSampling, OtherSeedsOtherDirectionsWithTheRightMean) {
     double exact = 0.0;
     cubemap::for_each_pixel({image.layout, image.sampling, image.width, image.height},
                             [&](std::size_t pixel, const cubemap::PixelPlace& place) {
-                                exact += static_cast<double>(image.pixels[pixel].g) * place.solid_angle *
+                                exact += static_cast<double>(image.pixels[pixel].g) *
+                                         place.solid_angle *
                                          std::max(glm::dot(place.direction, normal), 0.0);
                             });
     double mean = 0.0;
     constexpr int NumSeeds = 2000;
     for (std::uint64_t seed = 1; seed <= NumSeeds; ++seed)
         for (const DistantLight& light : importance_sample(grid, 8, seed))
-            mean += light.irradiance.g * std::max(glm::dot(light.direction, normal), 0.0) / NumSeeds;
+            mean +=
+                light.irradiance.g * std::max(glm::dot(light.direction, normal), 0.0) / NumSeeds;
     EXPECT_NEAR(mean, exact, 0.01 * exact);
-    EXPECT_NE(importance_sample(grid, 8, 1)[3].direction, importance_sample(grid, 8, 2)[3].direction);
-    EXPECT_EQ(importance_sample(grid, 8, 1)[3].direction, importance_sample(grid, 8, 1)[3].direction);
+    EXPECT_NE(importance_sample(grid, 8, 1)[3].direction,
+              importance_sample(grid, 8, 2)[3].direction);
+    EXPECT_EQ(importance_sample(grid, 8, 1)[3].direction,
+              importance_sample(grid, 8, 1)[3].direction);
 }
 
 } // namespace

@@ -33,9 +33,9 @@ std::vector<ClusterPoint> clumps(std::size_t count, unsigned seed) {
             points.push_back(points[engine() % points.size()]);
             continue;
         }
-        const glm::dvec3 d =
-            middles[engine() % middles.size()] +
-            (unit(engine) < 0.3 ? 1.0 : 0.05) * glm::dvec3(normal(engine), normal(engine), normal(engine));
+        const glm::dvec3 d = middles[engine() % middles.size()] +
+                             (unit(engine) < 0.3 ? 1.0 : 0.05) *
+                                 glm::dvec3(normal(engine), normal(engine), normal(engine));
         points.push_back(point(d.x, d.y, d.z, std::pow(10.0, -4.0 * unit(engine)),
                                std::floor(40.0 * unit(engine)) / 40.0));
     }
@@ -55,8 +55,8 @@ TEST(ClusterMetric, HandWorkedValues) {
     const ClusterPoint up = point(0, 1, 0, 0.25, 0.1);
     const ClusterPoint side = point(1, 0, 0, 1.0, 0.4);
     EXPECT_NEAR(position_distance(up, side), 0.5, 1e-15);
-    EXPECT_NEAR(distance(up, side, {.position = 3.0, .luminance = 2.0, .time = 10.0}), 1.5 + 1.5 + 3.0,
-                1e-14);
+    EXPECT_NEAR(distance(up, side, {.position = 3.0, .luminance = 2.0, .time = 10.0}),
+                1.5 + 1.5 + 3.0, 1e-14);
     EXPECT_NEAR(position_distance(up, point(0, -1, 0, 0, 0)), 1.0, 1e-15);
     EXPECT_EQ(position_distance(up, up), 0.0);
     // where arccos of the dot product, 1 - 5e-21, would give 0
@@ -65,7 +65,8 @@ TEST(ClusterMetric, HandWorkedValues) {
 
 TEST(NearestCentre, IsThatOfAPlainLoopWhateverTheGuess) {
     for (const ClusterWeights& weights :
-         {ClusterWeights{}, ClusterWeights{.position = 0.0}, ClusterWeights{.luminance = 50.0, .time = 0.0},
+         {ClusterWeights{}, ClusterWeights{.position = 0.0},
+          ClusterWeights{.luminance = 50.0, .time = 0.0},
           ClusterWeights{.position = 1e-3, .luminance = 0.0, .time = 0.0}}) {
         const std::vector<ClusterPoint> points = clumps(400, 3);
         std::vector<ClusterPoint> centres(points.begin(), points.begin() + 60);
@@ -86,8 +87,9 @@ TEST(NearestCentre, IsThatOfAPlainLoopWhateverTheGuess) {
 }
 
 TEST(KMeans, TheSameAsWithoutBounds) {
-    // What the bounds spare must change nothing: each assignment of the fast version is checked by the centres it ended with, and its
-    // whole course by a plain one that starts from the same centres.
+    // What the bounds spare must change nothing: each assignment of the fast version is checked by
+    // the centres it ended with, and its whole course by a plain one that starts from the same
+    // centres.
     for (const std::uint64_t seed : {1u, 2u, 3u}) {
         const std::vector<ClusterPoint> points = clumps(3000, static_cast<unsigned>(seed));
         const KMeansOptions options{.num_clusters = 40, .seed = seed};
@@ -136,8 +138,10 @@ TEST(KMeans, TheSameAsWithoutBounds) {
                 double dt = 0.0;
                 for (std::size_t i = 0; i < points.size(); ++i)
                     if (cluster_of[i] == j) {
-                        dp += position_distance(points[i], old) - position_distance(points[i], mean);
-                        dl += luminance_distance(points[i], old) - luminance_distance(points[i], mean);
+                        dp +=
+                            position_distance(points[i], old) - position_distance(points[i], mean);
+                        dl += luminance_distance(points[i], old) -
+                              luminance_distance(points[i], mean);
                         dt += time_distance(points[i], old) - time_distance(points[i], mean);
                     }
                 if (dp > 1e-14 * size)
@@ -196,9 +200,10 @@ TEST(KMeans, EmptyClustersAreReseeded) {
 TEST(KMeans, BadOptions) {
     const std::vector<ClusterPoint> points = clumps(20, 1);
     EXPECT_THROW(static_cast<void>(k_means(points, {.num_clusters = 0})), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(k_means(points, {.weights = {.time = -1.0}})), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(
-                     k_means(points, {.weights = {.position = std::numeric_limits<double>::quiet_NaN()}})),
+    EXPECT_THROW(static_cast<void>(k_means(points, {.weights = {.time = -1.0}})),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(k_means(
+                     points, {.weights = {.position = std::numeric_limits<double>::quiet_NaN()}})),
                  std::invalid_argument);
     EXPECT_TRUE(k_means({}, {}).converged);
     std::stop_source stop;

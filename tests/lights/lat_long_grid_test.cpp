@@ -16,7 +16,8 @@ constexpr double Pi = std::numbers::pi;
 /// The direction of a point of a lat-long: centre +Z, +X left of it, top +Y.
 glm::dvec3 direction(double u, double v) {
     const double longitude = Pi - 2.0 * Pi * u;
-    return {std::sin(Pi * v) * std::sin(longitude), std::cos(Pi * v), std::sin(Pi * v) * std::cos(longitude)};
+    return {std::sin(Pi * v) * std::sin(longitude), std::cos(Pi * v),
+            std::sin(Pi * v) * std::cos(longitude)};
 }
 
 TEST(LatLongGrid, MomentsAreTheIntegralsOverThePixel) {
@@ -32,12 +33,13 @@ TEST(LatLongGrid, MomentsAreTheIntegralsOverThePixel) {
                 glm::dvec4 sum(0.0);
                 for (int j = 0; j < Steps; ++j)
                     for (int i = 0; i < Steps; ++i) {
-                        const double u = across[x] + (across[x + 1] - across[x]) * (i + 0.5) / Steps;
+                        const double u =
+                            across[x] + (across[x + 1] - across[x]) * (i + 0.5) / Steps;
                         const double v = down[y] + (down[y + 1] - down[y]) * (j + 0.5) / Steps;
                         sum += std::sin(Pi * v) * glm::dvec4(direction(u, v), 1.0);
                     }
-                sum *=
-                    2.0 * Pi * Pi * (across[x + 1] - across[x]) * (down[y + 1] - down[y]) / (Steps * Steps);
+                sum *= 2.0 * Pi * Pi * (across[x + 1] - across[x]) * (down[y + 1] - down[y]) /
+                       (Steps * Steps);
                 const glm::dvec4 moments = grid.moments(x, y);
                 for (int i = 0; i < 4; ++i)
                     EXPECT_NEAR(moments[i], sum[i], 1e-4) << x << "," << y << "," << i;
@@ -69,12 +71,14 @@ TEST(SummedAreaTable, SumsRectangles) {
             row[x] = grid.energy(x, y);
     });
     double whole = 0.0;
-    for (const PixelRectangle& region : {PixelRectangle{0, 0, 70, 33}, PixelRectangle{3, 4, 4, 5},
-                                         PixelRectangle{69, 32, 70, 33}, PixelRectangle{10, 0, 60, 20}}) {
+    for (const PixelRectangle& region :
+         {PixelRectangle{0, 0, 70, 33}, PixelRectangle{3, 4, 4, 5}, PixelRectangle{69, 32, 70, 33},
+          PixelRectangle{10, 0, 60, 20}}) {
         double expected = 0.0;
         for (std::uint32_t y = region.y0; y < region.y1; ++y)
             for (std::uint32_t x = region.x0; x < region.x1; ++x)
-                expected += luminance(glm::dvec3(image.pixels[y * 70 + x])) * grid.solid_angle(x, y);
+                expected +=
+                    luminance(glm::dvec3(image.pixels[y * 70 + x])) * grid.solid_angle(x, y);
         whole = std::max(whole, expected);
         EXPECT_NEAR(table.sum(region), expected, 1e-13 * whole);
     }

@@ -18,8 +18,9 @@ FrameImages moving_sun(std::uint32_t width = 64) {
     return [=](std::size_t frame) {
         const auto sun = static_cast<std::uint32_t>((width - 5 + frame) % width);
         return lat_long(width, width / 2, [&](std::uint32_t x, std::uint32_t y) {
-            return x == sun && y == width / 8 ? glm::vec3(500.0f, 450.0f, 300.0f)
-                                              : glm::vec3(0.2f, 0.3f, 0.5f) / (1.0f + static_cast<float>(y));
+            return x == sun && y == width / 8
+                       ? glm::vec3(500.0f, 450.0f, 300.0f)
+                       : glm::vec3(0.2f, 0.3f, 0.5f) / (1.0f + static_cast<float>(y));
         });
     };
 }
@@ -37,10 +38,11 @@ void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance) {
         EXPECT_NEAR(a[channel], b[channel], tolerance) << channel;
 }
 
-constexpr std::array AllStrengths = {
-    StrengthOptions{}, StrengthOptions{.strength = Strength::Even, .fade = 3},
-    StrengthOptions{.strength = Strength::Even, .fade = 50}, StrengthOptions{.strength = Strength::Followed},
-    StrengthOptions{.strength = Strength::Followed, .fade = 2}};
+constexpr std::array AllStrengths = {StrengthOptions{},
+                                     StrengthOptions{.strength = Strength::Even, .fade = 3},
+                                     StrengthOptions{.strength = Strength::Even, .fade = 50},
+                                     StrengthOptions{.strength = Strength::Followed},
+                                     StrengthOptions{.strength = Strength::Followed, .fade = 2}};
 
 TEST(FrameSamples, AddUpToTheirFrame) {
     const FrameImages images = [](std::size_t frame) {
@@ -64,7 +66,8 @@ TEST(FrameSamples, LuminanceIsTheMapsWhereTheSampleStands) {
     for (const FrameSample& s : samples.samples) {
         const auto image = moving_sun()(s.frame);
         const double across = std::atan2(s.direction.x, s.direction.z); // the left edge is +pi
-        const auto x = static_cast<std::size_t>((0.5 - 0.5 * across / std::numbers::pi) * 64.0) % 64;
+        const auto x =
+            static_cast<std::size_t>((0.5 - 0.5 * across / std::numbers::pi) * 64.0) % 64;
         const auto y = static_cast<std::size_t>(std::acos(s.direction.y) / std::numbers::pi * 32.0);
         EXPECT_DOUBLE_EQ(s.luminance, luminance(image.pixels[y * 64 + x]));
     }
@@ -84,20 +87,23 @@ TEST(FrameSamples, SeedsAndStrata) {
     EXPECT_EQ(same[0], same[1]);
     const auto other = directions({.samples_per_frame = 20, .seed_per_frame = true});
     EXPECT_NE(other[0], other[1]);
-    // Independent samples: the right luminance in sum, equal for each; the right direction on average.
+    // Independent samples: the right luminance in sum, equal for each; the right direction on
+    // average.
     const FrameSamples independent =
         sample_frames(still, 1, {.samples_per_frame = 512, .seed = 3, .stratified = false});
     const glm::dvec3 expected = power(still(0));
     EXPECT_NEAR(luminance(total_irradiance(independent.samples)), luminance(expected),
                 1e-9 * luminance(expected));
     for (const FrameSample& s : independent.samples)
-        EXPECT_NEAR(luminance(s.irradiance), luminance(expected) / 512.0, 1e-9 * luminance(expected));
+        EXPECT_NEAR(luminance(s.irradiance), luminance(expected) / 512.0,
+                    1e-9 * luminance(expected));
     EXPECT_NEAR(total_irradiance(independent.samples).r, expected.r, 0.2 * expected.r);
 }
 
 TEST(FrameSamples, BadFramesAndBlackOnes) {
     const FrameImages bad = [](std::size_t frame) {
-        return constant(8, 4, glm::vec3(frame == 2 ? std::numeric_limits<float>::quiet_NaN() : 1.0f));
+        return constant(8, 4,
+                        glm::vec3(frame == 2 ? std::numeric_limits<float>::quiet_NaN() : 1.0f));
     };
     try {
         static_cast<void>(sample_frames(bad, 4, {.samples_per_frame = 4}));
@@ -105,8 +111,10 @@ TEST(FrameSamples, BadFramesAndBlackOnes) {
     } catch (const std::invalid_argument& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("frame 2: expected radiance that is finite"));
     }
-    EXPECT_THROW(static_cast<void>(sample_frames(bad, 1, {.samples_per_frame = 0})), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(sample_frames(bad, 1, {.samples_per_frame = 33})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(sample_frames(bad, 1, {.samples_per_frame = 0})),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(sample_frames(bad, 1, {.samples_per_frame = 33})),
+                 std::invalid_argument);
 
     const FrameImages black = [](std::size_t) {
         return constant(8, 4, glm::vec3(0.0f));
@@ -151,7 +159,8 @@ TEST(LightClusters, ALightOfASingleFrame) {
         const bool flash = cluster.light.direction.x > 0.5;
         EXPECT_EQ(cluster.first_frame, flash ? 3u : 0u);
         EXPECT_EQ(cluster.last_frame, flash ? 3u : 5u);
-        expect_near(cluster.light.irradiance, (flash ? 8.0 : 1.0) * glm::dvec3(1.0, 0.5, 2.0), 1e-12);
+        expect_near(cluster.light.irradiance, (flash ? 8.0 : 1.0) * glm::dvec3(1.0, 0.5, 2.0),
+                    1e-12);
         EXPECT_NEAR(cluster.light.solid_angle, flash ? 0.02 : 0.01, 1e-12);
         EXPECT_NEAR(glm::length(cluster.light.direction), 1.0, 1e-12);
     }
@@ -162,8 +171,8 @@ TEST(LightClusters, ALightOfASingleFrame) {
 }
 
 TEST(LightClusters, OneLightAtConstantSpeed) {
-    // One sample a frame on the horizon, one degree further each time, 60 frames into 6 clusters. Each is a run of frames, and its light stands
-    // over the middle of the run.
+    // One sample a frame on the horizon, one degree further each time, 60 frames into 6 clusters.
+    // Each is a run of frames, and its light stands over the middle of the run.
     FrameSamples samples{.num_frames = 60, .samples = {}};
     for (std::uint32_t frame = 0; frame < 60; ++frame) {
         const double angle = frame * std::numbers::pi / 180.0;
@@ -173,7 +182,8 @@ TEST(LightClusters, OneLightAtConstantSpeed) {
     EXPECT_NEAR(clusters.mean_live(), 1.0, 1e-12); // the spans do not overlap and leave no gap
     for (const LightCluster& cluster : clusters.clusters) {
         EXPECT_EQ(cluster.num_samples, cluster.num_frames());
-        const double middle = 0.5 * (cluster.first_frame + cluster.last_frame) * std::numbers::pi / 180.0;
+        const double middle =
+            0.5 * (cluster.first_frame + cluster.last_frame) * std::numbers::pi / 180.0;
         expect_near(cluster.light.direction, {std::sin(middle), 0.0, std::cos(middle)}, 1e-12);
         expect_near(cluster.light.irradiance, {1.0, 0.5, 2.0}, 1e-12);
     }
@@ -184,12 +194,14 @@ TEST(LightClusters, LightOverAllFramesIsThatOfTheSamples) {
     const glm::dvec3 expected = total_irradiance(samples.samples);
     const LightClusters clusters = cluster_lights(samples, {.num_clusters = 60});
     for (const StrengthOptions& strength : AllStrengths)
-        expect_near(total_irradiance(frame_lights(clusters, strength)), expected, 1e-9 * expected.r);
+        expect_near(total_irradiance(frame_lights(clusters, strength)), expected,
+                    1e-9 * expected.r);
 }
 
 TEST(LightClusters, FollowedLightsHaveThePowerOfEachFrame) {
     const FrameImages images = [](std::size_t frame) { // brightens by half
-        return constant(32, 16, glm::vec3(1.0f, 2.0f, 0.5f) * (1.0f + 0.05f * static_cast<float>(frame)));
+        return constant(32, 16,
+                        glm::vec3(1.0f, 2.0f, 0.5f) * (1.0f + 0.05f * static_cast<float>(frame)));
     };
     const LightClusters clusters =
         cluster_lights(sample_frames(images, 11, {.samples_per_frame = 64}), {.num_clusters = 30});
@@ -223,8 +235,8 @@ TEST(LightClusters, LightThatStandsStillStandsStill) {
     for (const double gamma : {0.0, 1.0, 100.0}) {
         const LightClusters clusters =
             cluster_lights(samples, {.num_clusters = 64, .weights = {.time = gamma}});
-        for (const StrengthOptions& strength :
-             {StrengthOptions{.strength = Strength::Even}, StrengthOptions{.strength = Strength::Followed}}) {
+        for (const StrengthOptions& strength : {StrengthOptions{.strength = Strength::Even},
+                                                StrengthOptions{.strength = Strength::Followed}}) {
             const FrameLights lights = frame_lights(clusters, strength);
             ASSERT_GT(lights.at(0).size(), 40u);
             for (std::size_t frame = 1; frame < 40; ++frame) {

@@ -1,4 +1,5 @@
-// Every format read back by its own rules, not by ours: where does the light come from, and how strong is it?
+// Every format read back by its own rules, not by ours: where does the light come from, and how
+// strong is it?
 #include "lights/light_export.h"
 
 #include <numbers>
@@ -34,7 +35,8 @@ LightList example() {
 std::vector<std::vector<double>> numbers_after(const std::string& text, const std::string& marker) {
     static const std::regex Number(R"([-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?)");
     std::vector<std::vector<double>> result;
-    for (std::size_t at = text.find(marker); at != std::string::npos; at = text.find(marker, at + 1)) {
+    for (std::size_t at = text.find(marker); at != std::string::npos;
+         at = text.find(marker, at + 1)) {
         const std::size_t begin = at + marker.size();
         const std::string line = text.substr(begin, text.find('\n', begin) - begin);
         result.emplace_back();
@@ -44,7 +46,8 @@ std::vector<std::vector<double>> numbers_after(const std::string& text, const st
     return result;
 }
 
-void expect_lights(const std::vector<DistantLight>& got, const std::vector<DistantLight>& expected) {
+void expect_lights(const std::vector<DistantLight>& got,
+                   const std::vector<DistantLight>& expected) {
     ASSERT_EQ(got.size(), expected.size());
     for (std::size_t i = 0; i < got.size(); ++i) {
         EXPECT_NEAR(glm::distance(got[i].direction, expected[i].direction), 0.0, 1e-9) << i;
@@ -54,7 +57,8 @@ void expect_lights(const std::vector<DistantLight>& got, const std::vector<Dista
                 << i;
     }
     // And so the power, to far better than 1e-6.
-    EXPECT_NEAR(total_irradiance(got).g, total_irradiance(expected).g, 1e-9 * total_irradiance(expected).g);
+    EXPECT_NEAR(total_irradiance(got).g, total_irradiance(expected).g,
+                1e-9 * total_irradiance(expected).g);
 }
 
 TEST(LightExport, Csv) {
@@ -76,7 +80,8 @@ TEST(LightExport, PbrtShinesFromFromToTo) {
     const std::string text = light_text(list, LightFormat::Pbrt);
     std::vector<DistantLight> got;
     for (const auto& n : numbers_after(text, "LightSource \"distant\"")) {
-        // "point3 from" [ x y z ] "point3 to" [ 0 0 0 ] "rgb L" [ r g b ]; the 3 of each point3 is a number, too
+        // "point3 from" [ x y z ] "point3 to" [ 0 0 0 ] "rgb L" [ r g b ]; the 3 of each point3 is
+        // a number, too
         ASSERT_EQ(n.size(), 11u);
         const glm::dvec3 from(n[1], n[2], n[3]), to(n[5], n[6], n[7]);
         got.push_back({glm::normalize(from - to), {n[8], n[9], n[10]}});
@@ -120,8 +125,8 @@ TEST(LightExport, UsdShinesAlongMinusZ) {
             EXPECT_NEAR(glm::distance(glm::cross(x, y), z), 0.0, 1e-12);
             EXPECT_NEAR(glm::length(x), 1.0, 1e-12);
             const glm::dvec3 shines = -z;
-            got.push_back(
-                {-shines, intensities[i][0] * glm::dvec3(colours[i][0], colours[i][1], colours[i][2])});
+            got.push_back({-shines, intensities[i][0] *
+                                        glm::dvec3(colours[i][0], colours[i][1], colours[i][2])});
         }
         expect_lights(got, list.lights);
         EXPECT_EQ(angles[0][0] > 0.0, soft);
@@ -152,8 +157,9 @@ TEST(LightExport, GltfShinesAlongMinusZOfTheNode) {
         std::vector<DistantLight> got;
         for (const auto& index : root["scenes"][0]["nodes"]) {
             const auto& node = root["nodes"][index.get<std::size_t>()];
-            const auto& light = root["extensions"]["KHR_lights_punctual"]["lights"]
-                                    [node["extensions"]["KHR_lights_punctual"]["light"].get<std::size_t>()];
+            const auto& light =
+                root["extensions"]["KHR_lights_punctual"]["lights"]
+                    [node["extensions"]["KHR_lights_punctual"]["light"].get<std::size_t>()];
             EXPECT_EQ(light["type"], "directional");
             const auto q = node["rotation"].get<std::array<double, 4>>();
             const glm::dvec3 shines = glm::dquat(q[3], q[0], q[1], q[2]) * glm::dvec3(0, 0, -1);
@@ -175,7 +181,8 @@ TEST(LightExport, EveryFormatSaysUnitAndAxesInItsHead) {
         if (format == LightFormat::Json)
             continue;
         const std::string text = light_text(list, format);
-        EXPECT_THAT(text.substr(0, 1000), HasSubstr("16 distant lights of we-_ird???.hdr, median-cut"));
+        EXPECT_THAT(text.substr(0, 1000),
+                    HasSubstr("16 distant lights of we-_ird???.hdr, median-cut"));
         EXPECT_THAT(text.substr(0, 1000), HasSubstr("right-handed, +Y up"));
         EXPECT_THAT(text.substr(0, 1000), HasSubstr("radiance times steradians"));
         EXPECT_THROW((void)light_text({.lights = {{.irradiance = {-1, 0, 0}}}}, format),

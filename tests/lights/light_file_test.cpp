@@ -63,7 +63,8 @@ TEST_F(LightFile, ReadsBackBitByBit) {
 }
 
 TEST_F(LightFile, AFileByHandNeedsLittle) {
-    EXPECT_EQ(with_light(R"({"direction": [0, 0.7071, 0.7071], "irradiance": [1, 2, 3]})"), "no error");
+    EXPECT_EQ(with_light(R"({"direction": [0, 0.7071, 0.7071], "irradiance": [1, 2, 3]})"),
+              "no error");
     const LightList list = load_lights(path_);
     ASSERT_EQ(list.lights.size(), 1u);
     EXPECT_NEAR(glm::length(list.lights[0].direction), 1.0, 1e-15);
@@ -73,10 +74,13 @@ TEST_F(LightFile, AFileByHandNeedsLittle) {
 
 TEST_F(LightFile, RefusesWithTheLine) {
     const std::string good = R"({"direction": [0, 1, 0], "irradiance": [1, 2, 3]})";
-    EXPECT_THAT(with_light(good + ",\n" + R"({"direction": [0, 1, 0], "irradiance": [1, -2, 3]})"),
-                HasSubstr(":4: expected irradiance that is finite and not negative, got [1, -2, 3]"));
-    EXPECT_THAT(with_light(R"({"direction": [0, 1, 0], "irradiance": [1, 2, 3], "color": 1})"),
-                HasSubstr(":3: expected in a light only direction, irradiance, solid_angle, got \"color\""));
+    EXPECT_THAT(
+        with_light(good + ",\n" + R"({"direction": [0, 1, 0], "irradiance": [1, -2, 3]})"),
+        HasSubstr(":4: expected irradiance that is finite and not negative, got [1, -2, 3]"));
+    EXPECT_THAT(
+        with_light(R"({"direction": [0, 1, 0], "irradiance": [1, 2, 3], "color": 1})"),
+        HasSubstr(
+            ":3: expected in a light only direction, irradiance, solid_angle, got \"color\""));
     EXPECT_THAT(with_light(R"({"direction": [0, 2, 0], "irradiance": [1, 2, 3]})"),
                 HasSubstr(":3: expected a direction of length 1, got [0, 2, 0] of length 2"));
     EXPECT_THAT(with_light(R"({"direction": [0, 1], "irradiance": [1, 2, 3]})"),
@@ -89,15 +93,18 @@ TEST_F(LightFile, RefusesWithTheLine) {
                 HasSubstr(":3: expected"));
     EXPECT_THAT(with_light(R"({"direction": [0, 1, 0], "irradiance": [1, "2", 3]})"),
                 HasSubstr(":3: expected"));
-    EXPECT_THAT(with_light(R"({"direction": [0, 1, 0], "irradiance": [1, 2, 3], "solid_angle": -1})"),
-                HasSubstr(":3: expected a solid angle from 0 to 4 pi, got -1"));
+    EXPECT_THAT(
+        with_light(R"({"direction": [0, 1, 0], "irradiance": [1, 2, 3], "solid_angle": -1})"),
+        HasSubstr(":3: expected a solid angle from 0 to 4 pi, got -1"));
     EXPECT_THAT(with_light(""), HasSubstr(":2: expected one light at least, got none"));
-    EXPECT_THAT(message("{\"version\": 2, \"lights\": []}"), HasSubstr(":1: expected version 1, got 2"));
+    EXPECT_THAT(message("{\"version\": 2, \"lights\": []}"),
+                HasSubstr(":1: expected version 1, got 2"));
     EXPECT_THAT(message("{\"lights\": []}"), HasSubstr(":1: expected \"version\", got none"));
     EXPECT_THAT(message("{\"version\": 1}"), HasSubstr(":1: expected \"lights\", got none"));
     EXPECT_THAT(message("{\"version\": 1,\n\"light\": []}"),
                 HasSubstr(":2: expected in a light list only version"));
-    EXPECT_THAT(message("{\"version\": 1, \"seed\": -1, \"lights\": [" + good + "]}"), HasSubstr("\"seed\""));
+    EXPECT_THAT(message("{\"version\": 1, \"seed\": -1, \"lights\": [" + good + "]}"),
+                HasSubstr("\"seed\""));
     EXPECT_THAT(message("[]"), HasSubstr(":1: expected a light list"));
     EXPECT_THAT(message(""), HasSubstr("expected"));
     EXPECT_THAT(message("{\"version\": 1, \"lights\": [" + good), HasSubstr("expected"));
@@ -116,8 +123,10 @@ TEST_F(LightFile, WritesNothingThatItWouldRefuse) {
     refused({.irradiance = {0.0, INFINITY, 0.0}});
     refused({.solid_angle = 13.0});
     EXPECT_THROW(save_lights(path_, {}), std::invalid_argument);
-    EXPECT_THROW(save_lights(path_, {.lights = {{}}, .seed = ~std::uint64_t{0}}), std::invalid_argument);
-    EXPECT_THROW(save_lights(path_, {.lights = {{}}, .environment = "\xff.hdr"}), std::invalid_argument);
+    EXPECT_THROW(save_lights(path_, {.lights = {{}}, .seed = ~std::uint64_t{0}}),
+                 std::invalid_argument);
+    EXPECT_THROW(save_lights(path_, {.lights = {{}}, .environment = "\xff.hdr"}),
+                 std::invalid_argument);
     EXPECT_THROW(save_lights("/no/such/folder/lights.json", {.lights = {{}}}), std::runtime_error);
 }
 

@@ -63,7 +63,8 @@ private:
     void cut(const PixelRectangle& r, std::vector<PixelRectangle>& out) const {
         const double height = std::numbers::pi * r.height() / image_.height;
         const double inclination = std::numbers::pi * (0.5 - 0.5 * (r.y0 + r.y1) / image_.height);
-        const double width = 2.0 * std::numbers::pi * r.width() / image_.width * std::cos(inclination);
+        const double width =
+            2.0 * std::numbers::pi * r.width() / image_.width * std::cos(inclination);
         const bool columns = r.height() == 1 || (r.width() > 1 && width >= height);
         double best = 1e300;
         PixelRectangle first, second;
@@ -102,13 +103,14 @@ TEST(MedianCut, WorkedByHand) {
     const LatLongGrid grid(even);
     EXPECT_EQ(median_cut(grid, 1), (std::vector<PixelRectangle>{{0, 0, 4, 2}}));
     EXPECT_EQ(median_cut(grid, 2), (std::vector<PixelRectangle>{{0, 0, 2, 2}, {2, 0, 4, 2}}));
-    EXPECT_EQ(median_cut(grid, 4),
-              (std::vector<PixelRectangle>{{0, 0, 1, 2}, {1, 0, 2, 2}, {2, 0, 3, 2}, {3, 0, 4, 2}}));
+    EXPECT_EQ(median_cut(grid, 4), (std::vector<PixelRectangle>{
+                                       {0, 0, 1, 2}, {1, 0, 2, 2}, {2, 0, 3, 2}, {3, 0, 4, 2}}));
     EXPECT_EQ(median_cut(grid, 8)[1], (PixelRectangle{0, 1, 1, 2}));
 
-    // One row, 8 | 1 1 1 1 1 1 1: the first cut leaves 8 and 7; the bright pixel cannot be cut, so the other region is.
-    const auto row =
-        lat_long(8, 1, [](std::uint32_t x, std::uint32_t) { return glm::vec3(x == 0 ? 8.0f : 1.0f); });
+    // One row, 8 | 1 1 1 1 1 1 1: the first cut leaves 8 and 7; the bright pixel cannot be cut, so
+    // the other region is.
+    const auto row = lat_long(
+        8, 1, [](std::uint32_t x, std::uint32_t) { return glm::vec3(x == 0 ? 8.0f : 1.0f); });
     const LatLongGrid row_grid(row);
     EXPECT_EQ(median_cut(row_grid, 2), (std::vector<PixelRectangle>{{0, 0, 1, 1}, {1, 0, 8, 1}}));
     const auto three = median_cut(row_grid, 3);
@@ -122,12 +124,13 @@ TEST(MedianCut, WorkedByHand) {
 
 TEST(MedianCut, ColumnsNearThePolesAreNarrow) {
     // All light in the top row of 16: seen from above a small cap, wide in the image only.
-    const auto image =
-        lat_long(32, 16, [](std::uint32_t, std::uint32_t y) { return glm::vec3(y < 4 ? 1.0f : 0.0f); });
+    const auto image = lat_long(
+        32, 16, [](std::uint32_t, std::uint32_t y) { return glm::vec3(y < 4 ? 1.0f : 0.0f); });
     const LatLongGrid grid(image);
     for (const PixelRectangle& region : median_cut(grid, 4)) {
         if (region.y1 <= 4) {
-            EXPECT_GT(region.width() * 2.0 * std::numbers::pi / 32, region.height() * std::numbers::pi / 16);
+            EXPECT_GT(region.width() * 2.0 * std::numbers::pi / 32,
+                      region.height() * std::numbers::pi / 16);
         }
     }
 }

@@ -22,13 +22,15 @@ constexpr double FullSphere = 4.0 * std::numbers::pi;
 
 class EveryMethod : public testing::TestWithParam<Method> {};
 
-INSTANTIATE_TEST_SUITE_P(PlaceLights, EveryMethod, testing::ValuesIn(AllMethods), [](const auto& method) {
-    std::string result(name(method.param));
-    std::erase(result, '-');
-    return result;
-});
+INSTANTIATE_TEST_SUITE_P(PlaceLights, EveryMethod, testing::ValuesIn(AllMethods),
+                         [](const auto& method) {
+                             std::string result(name(method.param));
+                             std::erase(result, '-');
+                             return result;
+                         });
 
-void expect_same_power(const std::vector<DistantLight>& lights, const cubemap::EnvironmentImage& image) {
+void expect_same_power(const std::vector<DistantLight>& lights,
+                       const cubemap::EnvironmentImage& image) {
     const glm::dvec3 expected = power(image);
     const glm::dvec3 got = total_irradiance(lights);
     for (int channel = 0; channel < 3; ++channel)
@@ -36,7 +38,8 @@ void expect_same_power(const std::vector<DistantLight>& lights, const cubemap::E
 }
 
 TEST_P(EveryMethod, KeepsThePowerForAnyNumberOfLights) {
-    for (const auto& image : {wild(64, 32), wild(37, 20, 7), wild(5, 90, 3), wild(1, 64), wild(64, 1)}) {
+    for (const auto& image :
+         {wild(64, 32), wild(37, 20, 7), wild(5, 90, 3), wild(1, 64), wild(64, 1)}) {
         for (const std::size_t n : {1, 2, 3, 7, 16, 61, 64}) {
             SCOPED_TRACE(testing::Message() << image.width << "x" << image.height << " " << n);
             const Placement placement = place(GetParam(), image, n);
@@ -74,7 +77,8 @@ TEST_P(EveryMethod, EveryPixelItsOwnLight) {
 
 TEST_P(EveryMethod, BlackMapsGetBlackLights) {
     for (const auto& image : {constant(1, 1, glm::vec3(0.0f)), constant(32, 16, glm::vec3(0.0f))}) {
-        for (const std::size_t n : {std::size_t{1}, image.pixels.size() / 2 + 1, image.pixels.size()}) {
+        for (const std::size_t n :
+             {std::size_t{1}, image.pixels.size() / 2 + 1, image.pixels.size()}) {
             const Placement placement = place(GetParam(), image, n);
             ASSERT_EQ(placement.lights.size(), n);
             for (const DistantLight& light : placement.lights) {

@@ -21,7 +21,8 @@ namespace {
 std::vector<glm::dvec3> normals() {
     std::vector<glm::dvec3> result;
     for (int i = 0; i < 32; ++i) {
-        const double y = 1.0 - (2.0 * i + 1.0) / 32.0, across = std::sqrt(1.0 - y * y), turn = i * 2.399963;
+        const double y = 1.0 - (2.0 * i + 1.0) / 32.0, across = std::sqrt(1.0 - y * y),
+                     turn = i * 2.399963;
         result.emplace_back(across * std::cos(turn), y, across * std::sin(turn));
     }
     return result;
@@ -65,7 +66,8 @@ TEST(SunSplit, SumLightsLikeTheOriginal) {
             ASSERT_TRUE(split);
             EXPECT_LT(worst_error(map, *split), 1e-3);
             const glm::dvec3 expected = data_gen::direction_from_angles(elevation, azimuth);
-            EXPECT_LT(glm::distance(split->sun.direction, expected), 5e-3); // 0.3 degrees; a texel has 0.7
+            EXPECT_LT(glm::distance(split->sun.direction, expected),
+                      5e-3); // 0.3 degrees; a texel has 0.7
             // What is left is a sky without a sun.
             EXPECT_FALSE(split_sun(split->rest));
             const auto brightest = [](const cubemap::CubeMap& m) {
@@ -79,29 +81,33 @@ TEST(SunSplit, SumLightsLikeTheOriginal) {
     }
 }
 
-/// The light is round and the sun's pixels are not. That shows where the sun sets on a surface, and only there: by a part of its light that is
-/// small against its radius.
+/// The light is round and the sun's pixels are not. That shows where the sun sets on a surface, and
+/// only there: by a part of its light that is small against its radius.
 TEST(SunSplit, WhereTheSunSetsOnASurface) {
     for (const std::uint32_t resolution : {64u, 256u}) {
         const cubemap::CubeMap map = data_gen::sun_and_sky(resolution);
         const auto split = split_sun(map);
         ASSERT_TRUE(split);
-        const glm::dvec3 side = glm::normalize(glm::cross(split->sun.direction, glm::dvec3(0.0, 1.0, 0.0)));
+        const glm::dvec3 side =
+            glm::normalize(glm::cross(split->sun.direction, glm::dvec3(0.0, 1.0, 0.0)));
         const glm::dvec3 other = glm::cross(split->sun.direction, side);
         const double radius = std::sqrt(split->sun.solid_angle / 3.14159265);
         for (int i = 0; i < 64; ++i) {
             const double turn = 0.7 * i, height = radius * (i % 9 - 4) / 2.0;
-            const glm::dvec3 normal = glm::normalize(std::cos(turn) * side + std::sin(turn) * other +
-                                                     height * split->sun.direction);
+            const glm::dvec3 normal = glm::normalize(
+                std::cos(turn) * side + std::sin(turn) * other + height * split->sun.direction);
             const double expected = irradiance_of(map, normal).y;
-            const double result = irradiance_of(split->rest, normal).y + irradiance(split->sun, normal).y;
-            EXPECT_NEAR(result, expected, 0.2 * radius * split->sun.irradiance.y) << resolution << ' ' << i;
+            const double result =
+                irradiance_of(split->rest, normal).y + irradiance(split->sun, normal).y;
+            EXPECT_NEAR(result, expected, 0.2 * radius * split->sun.irradiance.y)
+                << resolution << ' ' << i;
         }
     }
 }
 
 TEST(SunSplit, TheGeneratedSunsIrradiance) {
-    const data_gen::DaylightOptions options{.sun_elevation_degrees = 40.0, .sun_azimuth_degrees = 20.0};
+    const data_gen::DaylightOptions options{.sun_elevation_degrees = 40.0,
+                                            .sun_azimuth_degrees = 20.0};
     const data_gen::Daylight daylight(options);
     const double sine = std::sin(data_gen::Daylight::SunRadiusDegrees * 3.14159265358979 / 180.0);
     for (const std::uint32_t resolution : {64u, 256u, 1024u}) {
@@ -112,7 +118,8 @@ TEST(SunSplit, TheGeneratedSunsIrradiance) {
             EXPECT_NEAR(split->sun.irradiance[channel] / expected, 1.0, 3e-3) << resolution;
         }
         if (resolution == 1024) {
-            EXPECT_NEAR(2.0 * std::sqrt(split->sun.solid_angle / 3.14159265358979) * 180.0 / 3.14159265358979,
+            EXPECT_NEAR(2.0 * std::sqrt(split->sun.solid_angle / 3.14159265358979) * 180.0 /
+                            3.14159265358979,
                         0.533, 0.03);
         }
     }
@@ -140,13 +147,15 @@ TEST(SunSplit, NoSunNoSplit) {
 TEST(SunSplit, LatLongImages) {
     const cubemap::CubeMap map = data_gen::sun_and_sky(
         256, {.sun_elevation_degrees = 30.0, .sun_azimuth_degrees = 180.0}); // on the seam
-    for (const cubemap::Sampling sampling : {cubemap::Sampling::TexelCentres, cubemap::Sampling::Borders}) {
+    for (const cubemap::Sampling sampling :
+         {cubemap::Sampling::TexelCentres, cubemap::Sampling::Borders}) {
         const cubemap::EnvironmentImage image =
             cubemap::to_image(map, cubemap::Layout::LatLong, 1024, 512, sampling);
         const auto split = split_sun(image);
         ASSERT_TRUE(split);
         EXPECT_LT(worst_error(image, *split), 1e-3);
-        EXPECT_LT(glm::distance(split->sun.direction, data_gen::direction_from_angles(30.0, 180.0)), 2e-3);
+        EXPECT_LT(glm::distance(split->sun.direction, data_gen::direction_from_angles(30.0, 180.0)),
+                  2e-3);
     }
 }
 
@@ -156,7 +165,8 @@ TEST(SunSplit, MeasuredSuns) {
         const std::filesystem::path path = std::filesystem::path(RELUMINE_DATA_DIR) / "envs" / name;
         if (!std::filesystem::exists(path))
             GTEST_SKIP() << "no data folder";
-        const cubemap::EnvironmentImage image = cubemap::load_environment(path, {.fix_bad_pixels = true});
+        const cubemap::EnvironmentImage image =
+            cubemap::load_environment(path, {.fix_bad_pixels = true});
         const auto split = split_sun(image);
         ASSERT_TRUE(split) << name;
         EXPECT_LT(worst_error(image, *split), 1e-3) << name;
@@ -165,7 +175,8 @@ TEST(SunSplit, MeasuredSuns) {
 
 TEST(SunSplit, SameForAnyNumberOfThreads) {
     const cubemap::CubeMap map = data_gen::sun_and_sky(128);
-    const cubemap::EnvironmentImage image = cubemap::to_image(map, cubemap::Layout::LatLong, 512, 256);
+    const cubemap::EnvironmentImage image =
+        cubemap::to_image(map, cubemap::Layout::LatLong, 512, 256);
     const auto all = split_sun(image);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const auto single = split_sun(image);

@@ -15,7 +15,8 @@ namespace relumine::lights {
 
 using Painter = std::function<glm::vec3(std::uint32_t x, std::uint32_t y)>;
 
-inline cubemap::EnvironmentImage lat_long(std::uint32_t width, std::uint32_t height, const Painter& painter) {
+inline cubemap::EnvironmentImage lat_long(std::uint32_t width, std::uint32_t height,
+                                          const Painter& painter) {
     cubemap::EnvironmentImage image;
     image.width = width;
     image.height = height;
@@ -31,7 +32,8 @@ inline cubemap::EnvironmentImage constant(std::uint32_t width, std::uint32_t hei
 }
 
 /// Values over five decades, each channel its own; a tenth of the pixels black.
-inline cubemap::EnvironmentImage wild(std::uint32_t width, std::uint32_t height, unsigned seed = 1) {
+inline cubemap::EnvironmentImage wild(std::uint32_t width, std::uint32_t height,
+                                      unsigned seed = 1) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<float> decade(-2.0f, 3.0f);
     std::uniform_real_distribution<float> chance(0.0f, 1.0f);
@@ -54,7 +56,8 @@ inline glm::dvec3 power(const cubemap::EnvironmentImage& image) {
 
 /// For messages of failed tests.
 inline void PrintTo(const PixelRectangle& region, std::ostream* out) {
-    *out << "[" << region.x0 << ", " << region.x1 << ") x [" << region.y0 << ", " << region.y1 << ")";
+    *out << "[" << region.x0 << ", " << region.x1 << ") x [" << region.y0 << ", " << region.y1
+         << ")";
 }
 
 } // namespace relumine::lights

@@ -35,8 +35,10 @@ public:
         if (result.energy <= 0.0)
             return {};
         const glm::dvec3 c = moment / result.energy;
-        each([&](double value, const glm::dvec4& m) { // integral of |w - c|^2 over the pixel, |w| = 1
-            result.variance += value * (m.w - 2.0 * glm::dot(c, glm::dvec3(m)) + glm::dot(c, c) * m.w);
+        each([&](double value,
+                 const glm::dvec4& m) { // integral of |w - c|^2 over the pixel, |w| = 1
+            result.variance +=
+                value * (m.w - 2.0 * glm::dot(c, glm::dvec3(m)) + glm::dot(c, c) * m.w);
         });
         return result;
     }
@@ -93,7 +95,9 @@ TEST(VarianceCut, CutsWhereTheNaiveOneDoes) {
 cubemap::EnvironmentImage two_lamps() {
     return lat_long(64, 32, [](std::uint32_t x, std::uint32_t y) {
         const bool level = y >= 14 && y < 18;
-        return glm::vec3(level && x >= 10 && x < 16 ? 3.0f : level && x >= 40 && x < 46 ? 1.0f : 0.0f);
+        return glm::vec3(level && x >= 10 && x < 16   ? 3.0f
+                         : level && x >= 40 && x < 46 ? 1.0f
+                                                      : 0.0f);
     });
 }
 
@@ -111,20 +115,23 @@ TEST(VarianceCut, GivesEachOfTwoLampsItsLightWhereMedianCutCutsThroughTheBrighte
     EXPECT_GT(median.regions[0].x1, 10u);
     EXPECT_LT(median.regions[0].x1, 16u);
     EXPECT_NEAR(median.lights[0].irradiance.g, median.lights[1].irradiance.g, 1e-9);
-    // The second light has the dim lamp and a third of the bright one, and stands between them where no light comes from.
+    // The second light has the dim lamp and a third of the bright one, and stands between them
+    // where no light comes from.
     EXPECT_GT(glm::distance(median.lights[1].direction, dim), 0.5);
     EXPECT_GT(glm::distance(median.lights[1].direction, bright), 0.5);
 }
 
 TEST(VarianceCut, PolesAreOnePlace) {
-    // A lamp around the pole is wide in the image but small on the sphere: it is not cut before a wide one at the horizon.
+    // A lamp around the pole is wide in the image but small on the sphere: it is not cut before a
+    // wide one at the horizon.
     const auto image = lat_long(64, 32, [](std::uint32_t x, std::uint32_t y) {
         return glm::vec3(y < 2 ? 10.0f : y >= 14 && y < 18 && x >= 16 && x < 48 ? 1.0f : 0.0f);
     });
     const auto lights = place(Method::VarianceCut, image, 3).lights;
-    const auto at_the_pole = std::count_if(lights.begin(), lights.end(), [](const DistantLight& light) {
-        return light.direction.y > 0.999 && light.irradiance.g > 0.0;
-    });
+    const auto at_the_pole =
+        std::count_if(lights.begin(), lights.end(), [](const DistantLight& light) {
+            return light.direction.y > 0.999 && light.irradiance.g > 0.0;
+        });
     EXPECT_EQ(at_the_pole, 1);
 }
 

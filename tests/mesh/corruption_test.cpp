@@ -1,5 +1,5 @@
-// Every truncation and every single changed byte of a small file of each format: the readers must refuse the result or read a
-// valid mesh, quickly.
+// Every truncation and every single changed byte of a small file of each format: the readers must
+// refuse the result or read a valid mesh, quickly.
 #include <ctime>
 #include <functional>
 
@@ -12,11 +12,13 @@ struct Sample {
     std::string name;
     std::string content;
     TriangleMesh (*load)(std::string_view, NormalSource);
-    std::size_t last_refused_end; ///< truncations to this many bytes or fewer must be refused
+    /// Truncations to this many bytes or fewer must be refused
+    std::size_t last_refused_end;
 };
 
 std::string small_obj() {
-    return "o a\nusemtl m\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 .5 .5 .5\nv .5 .5 1 1 1 "
+    return "o a\nusemtl m\nv 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 1 1 0 0 0 1\nv 0 1 0 .5 .5 .5\nv .5 .5 "
+           "1 1 1 "
            "1\nvt 0 0\nvt "
            "1 1\nvn 0 0 1\n"
            "f 1/1/1 2/2/1 3/1/1 4/2/1\nf -1//1 1//1 \\\n2//1\n";
@@ -40,13 +42,16 @@ TriangleMesh gltf(std::string_view text, NormalSource normals) {
 }
 
 std::string small_off() {
-    return "CNOFF # c\n5 2 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0 0 0 1 0 255 0 255\n1 1 0 0 0 1 0 0 255 255\n"
+    return "CNOFF # c\n5 2 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0 0 0 1 0 255 0 255\n1 1 0 0 0 1 0 0 "
+           "255 255\n"
            "0 1 0 0 0 1 9 9 9 9\n.5 .5 1 1 0 0 9 9 9 9\n4 0 1 2 3 255 0 0\n3 4 0 1\n";
 }
 
 std::string small_ply(const std::string& format) {
-    return box_ply(
-        {.format = format, .vertex_extras = true, .face_list_before = true, .face_list_after = true});
+    return box_ply({.format = format,
+                    .vertex_extras = true,
+                    .face_list_before = true,
+                    .face_list_after = true});
 }
 
 std::string small_ascii_stl() {
@@ -67,7 +72,8 @@ std::vector<Sample> samples() {
         {"ply_ascii", small_ply("ascii"), ply, without_tail(small_ply("ascii"), 5)},
         {"ply_little", small_ply("binary_little_endian"), ply,
          without_tail(small_ply("binary_little_endian"), 1)},
-        {"ply_big", small_ply("binary_big_endian"), ply, without_tail(small_ply("binary_big_endian"), 1)},
+        {"ply_big", small_ply("binary_big_endian"), ply,
+         without_tail(small_ply("binary_big_endian"), 1)},
         {"stl_ascii", small_ascii_stl(), stl, without_tail(small_ascii_stl(), 4)},
         {"stl_binary", box_binary_stl(), stl, without_tail(box_binary_stl(), 1)},
     };
@@ -100,7 +106,8 @@ TEST_P(CorruptionTest, EveryTruncationIsRefusedOrHarmless) {
         const std::vector<char> copy(sample.content.begin(),
                                      sample.content.begin() + static_cast<std::ptrdiff_t>(end));
         const bool refused = is_refused(sample, std::string_view(copy.data(), copy.size()));
-        EXPECT_TRUE(refused || end > sample.last_refused_end) << sample.name << " cut to " << end << " bytes";
+        EXPECT_TRUE(refused || end > sample.last_refused_end)
+            << sample.name << " cut to " << end << " bytes";
     }
 }
 

@@ -13,10 +13,13 @@
 namespace relumine::mesh {
 namespace {
 
-/// (n + 1)^2 points, n^2 squares of two triangles each, at place(i, j); `keep(i, j)` says which squares are there.
+/// (n + 1)^2 points, n^2 squares of two triangles each, at place(i, j); `keep(i, j)` says which
+/// squares are there.
 TriangleMesh grid(
     std::uint32_t n, const std::function<glm::vec3(float, float)>& place,
-    const std::function<bool(std::uint32_t, std::uint32_t)>& keep = [](auto, auto) { return true; }) {
+    const std::function<bool(std::uint32_t, std::uint32_t)>& keep = [](auto, auto) {
+        return true;
+    }) {
     TriangleMesh mesh;
     for (std::uint32_t j = 0; j <= n; ++j)
         for (std::uint32_t i = 0; i <= n; ++i)
@@ -96,7 +99,8 @@ TEST(ExactSign, CoplanarIsThatOfIntegers) {
     EXPECT_GT(num_coplanar, 1000);
     // One step of the last bit is seen at any size.
     for (const float scale : {1e-12f, 1.0f, 1e12f}) {
-        const glm::vec3 a(0.0f), b(scale, 0, scale), c(0, scale, scale), d(scale, scale, 2.0f * scale);
+        const glm::vec3 a(0.0f), b(scale, 0, scale), c(0, scale, scale),
+            d(scale, scale, 2.0f * scale);
         EXPECT_TRUE(coplanar(a, b, c, d));
         EXPECT_FALSE(coplanar(a, b, c, {d.x, d.y, std::nextafter(d.z, 0.0f)}));
     }
@@ -106,11 +110,13 @@ TEST(FlatRegions, AFloorIsTwoTriangles) {
     EXPECT_EQ(num_merged(grid(1, flat)), 2u);
     EXPECT_EQ(num_merged(grid(20, flat)), 2u);
     // A slanted plane of exact floats.
-    EXPECT_EQ(num_merged(grid(8, [](float i, float j) { return glm::vec3(i, 0.25f * i - 0.5f * j, j); })),
-              2u);
-    // Uneven spacing, and a triangle as outline.
     EXPECT_EQ(
-        num_merged(grid(8, [](float i, float j) { return glm::vec3(i * i, 1.0f, j + 0.125f * j * j); })), 2u);
+        num_merged(grid(8, [](float i, float j) { return glm::vec3(i, 0.25f * i - 0.5f * j, j); })),
+        2u);
+    // Uneven spacing, and a triangle as outline.
+    EXPECT_EQ(num_merged(grid(
+                  8, [](float i, float j) { return glm::vec3(i * i, 1.0f, j + 0.125f * j * j); })),
+              2u);
     TriangleMesh half = grid(
         4, [](float i, float j) { return glm::vec3(i, 2.0f, j); },
         [](std::uint32_t i, std::uint32_t j) { return i > j; });
@@ -123,18 +129,23 @@ TEST(FlatRegions, OutlinesThatAreNotConvexStay) {
     const auto unchanged = [](const TriangleMesh& mesh) {
         EXPECT_EQ(with_flat_regions_merged(mesh), mesh.triangles);
     };
-    unchanged(grid(5, flat, [](std::uint32_t i, std::uint32_t j) { return i != 2 || j != 2; })); // a hole
-    unchanged(grid(5, flat, [](std::uint32_t i, std::uint32_t j) { return i < 2 || j < 2; }));   // an L
+    unchanged(
+        grid(5, flat, [](std::uint32_t i, std::uint32_t j) { return i != 2 || j != 2; })); // a hole
+    unchanged(
+        grid(5, flat, [](std::uint32_t i, std::uint32_t j) { return i < 2 || j < 2; })); // an L
     // Two squares that touch in a point are two regions.
-    EXPECT_EQ(num_merged(grid(4, flat, [](std::uint32_t i, std::uint32_t j) { return (i < 2) == (j < 2); })),
+    EXPECT_EQ(num_merged(grid(4, flat,
+                              [](std::uint32_t i, std::uint32_t j) { return (i < 2) == (j < 2); })),
               4u);
 }
 
 TEST(FlatRegions, WhatIsNotExactlyFlatStays) {
-    const TriangleMesh wavy = grid(6, [](float i, float j) { return glm::vec3(i, 0.1f * i * j, j); });
+    const TriangleMesh wavy =
+        grid(6, [](float i, float j) { return glm::vec3(i, 0.1f * i * j, j); });
     EXPECT_EQ(with_flat_regions_merged(wavy), wavy.triangles);
-    TriangleMesh dented =
-        grid(6, flat); // by one step of the last bit: the triangles around it stay, so the rest has a hole
+    TriangleMesh dented = grid(
+        6,
+        flat); // by one step of the last bit: the triangles around it stay, so the rest has a hole
     dented.positions[3 * 7 + 3].y = std::nextafter(0.7f, 1.0f);
     EXPECT_EQ(num_merged(dented), dented.triangles.size());
 }
@@ -151,7 +162,8 @@ TEST(FlatRegions, FoldsAndSharedEdgesAreOutlines) {
     crease.triangles = {{0, 1, 2}, {1, 0, 3}, {1, 3, 4}};
     EXPECT_EQ(with_flat_regions_merged(crease).size(), 3u);
 
-    // A wall stands on the middle line of a floor: its edge has four triangles, the floor falls into two rectangles.
+    // A wall stands on the middle line of a floor: its edge has four triangles, the floor falls
+    // into two rectangles.
     TriangleMesh wall = grid(4, flat);
     const auto base = static_cast<std::uint32_t>(wall.num_vertices());
     for (std::uint32_t i = 0; i < 5; ++i)

@@ -9,7 +9,8 @@ namespace relumine::mesh {
 namespace {
 
 TriangleMesh box() {
-    TriangleMesh mesh = off("COFF\n8 7 0\n" + box_vertex_lines("", " 0 0 255 255") + box_face_lines());
+    TriangleMesh mesh =
+        off("COFF\n8 7 0\n" + box_vertex_lines("", " 0 0 255 255") + box_face_lines());
     mesh.uvs.assign(8, {0.5f, 0.5f});
     return mesh;
 }
@@ -21,8 +22,10 @@ TEST(Floor, AppendsAGridUnderTheMesh) {
     EXPECT_EQ(defect(mesh), "");
     ASSERT_EQ(mesh.num_vertices(), 8u + 25u);
     ASSERT_EQ(mesh.num_triangles(), 12u + 32u);
-    EXPECT_TRUE(std::equal(before.positions.begin(), before.positions.end(), mesh.positions.begin()));
-    EXPECT_TRUE(std::equal(before.triangles.begin(), before.triangles.end(), mesh.triangles.begin()));
+    EXPECT_TRUE(
+        std::equal(before.positions.begin(), before.positions.end(), mesh.positions.begin()));
+    EXPECT_TRUE(
+        std::equal(before.triangles.begin(), before.triangles.end(), mesh.triangles.begin()));
     EXPECT_NEAR(area(mesh) - BoxArea, 144.0, 1e-4) << "four times the larger extent, 3, squared";
     EXPECT_EQ(mesh.positions[8], glm::vec3(0.5f - 6.0f, 0.0f, 1.5f - 6.0f));
     EXPECT_EQ(mesh.positions.back(), glm::vec3(0.5f + 6.0f, 0.0f, 1.5f + 6.0f));

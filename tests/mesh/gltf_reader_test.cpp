@@ -15,12 +15,14 @@ using Json = nlohmann::json;
 using testing::ElementsAre;
 
 std::string base64(const std::string& bytes) {
-    constexpr std::string_view Alphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    constexpr std::string_view Alphabet =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t bits = 0;
         for (std::size_t j = 0; j < 3; ++j)
-            bits = bits << 8u | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0u);
+            bits =
+                bits << 8u | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0u);
         for (std::size_t j = 0; j < 4; ++j)
             text += i + j > bytes.size() ? '=' : Alphabet[bits >> (18 - 6 * j) & 63u];
     }
@@ -44,7 +46,8 @@ struct Model {
     template<class Value>
     std::size_t add(const std::vector<Value>& values, int component_type, const char* type,
                     bool normalized = false, std::size_t count = 0) {
-        const std::string bytes(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Value));
+        const std::string bytes(reinterpret_cast<const char*>(values.data()),
+                                values.size() * sizeof(Value));
         json["accessors"].push_back({{"bufferView", add_view(bytes)},
                                      {"componentType", component_type},
                                      {"type", type},
@@ -84,13 +87,14 @@ struct Model {
 /// A square in the plane z = 0 with uvs, two triangles, one node.
 Model square() {
     Model model;
-    const auto positions = model.add<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 5126, "VEC3");
+    const auto positions =
+        model.add<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 5126, "VEC3");
     const auto uvs = model.add<glm::vec2>({{0, 1}, {1, 1}, {1, 0}, {0, 0}}, 5126, "VEC2");
     const auto indices = model.add<std::uint16_t>({0, 1, 2, 0, 2, 3}, 5123, "SCALAR");
-    model.json["meshes"] = {
-        {{"name", "square"},
-         {"primitives",
-          {{{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}}, {"indices", indices}}}}}};
+    model.json["meshes"] = {{{"name", "square"},
+                             {"primitives",
+                              {{{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
+                                {"indices", indices}}}}}};
     model.json["nodes"] = {{{"mesh", 0}}};
     return model;
 }
@@ -106,7 +110,8 @@ TEST_F(GltfTest, TheSameEmbeddedExternalAndBinary) {
     static_cast<void>(write("some data.bin", model.buffer + "padding"));
     const TriangleMesh embedded = load(write("a.gltf", model.embedded()));
     EXPECT_EQ(defect(embedded), "");
-    EXPECT_EQ(embedded.positions, (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+    EXPECT_EQ(embedded.positions,
+              (std::vector<glm::vec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
     EXPECT_EQ(embedded.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
     EXPECT_EQ(embedded.uvs, (std::vector<glm::vec2>{{0, 1}, {1, 1}, {1, 0}, {0, 0}}));
     EXPECT_EQ(embedded.normals, std::vector<glm::vec3>(4, {0, 0, 1})) << "the file has none";
@@ -133,12 +138,14 @@ TEST_F(GltfTest, OurOwnFilesLoadAgain) {
     const TriangleMesh loaded = load(folder_ / "box.glb");
     expect_box(loaded);
     EXPECT_EQ(loaded.colors, radiance);
-    EXPECT_EQ(loaded.materials, (std::vector<Material>{{.name = "radiance"}})) << "unlit is no metal";
+    EXPECT_EQ(loaded.materials, (std::vector<Material>{{.name = "radiance"}}))
+        << "unlit is no metal";
 }
 
 TEST_F(GltfTest, NodesPlaceMeshes) {
     Model model = square();
-    const auto normals = model.add<glm::vec3>(std::vector<glm::vec3>(4, {0, 0.6f, 0.8f}), 5126, "VEC3");
+    const auto normals =
+        model.add<glm::vec3>(std::vector<glm::vec3>(4, {0, 0.6f, 0.8f}), 5126, "VEC3");
     model.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = normals;
     const double h = std::sqrt(0.5);
     model.json["nodes"] = {
@@ -181,20 +188,22 @@ TEST_F(GltfTest, StripsFansPointsAndPrimitivesWithoutIndices) {
     const TriangleMesh mesh = gltf(model.embedded());
     EXPECT_EQ(mesh.num_vertices(), 12u);
     EXPECT_EQ(mesh.triangles,
-              (std::vector<Triangle>{{0, 1, 3}, {1, 2, 3}, {5, 6, 4}, {6, 7, 4}, {8, 9, 10}, {9, 11, 10}}));
+              (std::vector<Triangle>{
+                  {0, 1, 3}, {1, 2, 3}, {5, 6, 4}, {6, 7, 4}, {8, 9, 10}, {9, 11, 10}}));
 }
 
 TEST_F(GltfTest, QuantizedAttributesAndColors) {
     Model model = square();
     Json& attributes = model.json["meshes"][0]["primitives"][0]["attributes"];
     using Color = std::array<std::uint8_t, 4>;
-    attributes["COLOR_0"] =
-        model.add<Color>({{255, 0, 51, 255}, {0, 0, 0, 9}, {0, 255, 0, 0}, {1, 2, 3, 4}}, 5121, "VEC4", true);
+    attributes["COLOR_0"] = model.add<Color>(
+        {{255, 0, 51, 255}, {0, 0, 0, 9}, {0, 255, 0, 0}, {1, 2, 3, 4}}, 5121, "VEC4", true);
     using Uv = std::array<std::uint16_t, 2>;
-    attributes["TEXCOORD_0"] = model.add<Uv>({{0, 65535}, {65535, 0}, {0, 0}, {0, 0}}, 5123, "VEC2", true);
+    attributes["TEXCOORD_0"] =
+        model.add<Uv>({{0, 65535}, {65535, 0}, {0, 0}, {0, 0}}, 5123, "VEC2", true);
     using Position = std::array<std::int16_t, 4>; // padded to four bytes
-    const auto positions =
-        model.add<Position>({{-5, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 300, 0, 0}}, 5122, "VEC3");
+    const auto positions = model.add<Position>(
+        {{-5, 0, 0, 0}, {1, 0, 0, 0}, {1, 1, 0, 0}, {0, 300, 0, 0}}, 5122, "VEC3");
     model.json["bufferViews"].back()["byteStride"] = 8;
     attributes["POSITION"] = positions;
     model.json["extensionsRequired"] = {"KHR_mesh_quantization"};
@@ -209,7 +218,8 @@ TEST_F(GltfTest, MaterialsAsWritten) {
     Model model = square();
     model.json["materials"] = {
         {{"name", "gold"},
-         {"pbrMetallicRoughness", {{"baseColorFactor", {1.0, 0.75, 0.25, 0.5}}, {"roughnessFactor", 0.25}}}},
+         {"pbrMetallicRoughness",
+          {{"baseColorFactor", {1.0, 0.75, 0.25, 0.5}}, {"roughnessFactor", 0.25}}}},
         {{"pbrMetallicRoughness", {{"metallicFactor", 0.5}}}}};
     model.json["meshes"][0]["primitives"][0]["material"] = 1;
     const TriangleMesh mesh = gltf(model.embedded());
@@ -237,9 +247,9 @@ TEST_F(GltfTest, TexturesEmbeddedAndExternal) {
     model.json["samplers"] = {{{"wrapS", 33071}, {"wrapT", 33648}}};
     model.json["textures"] = {{{"source", 0}}, {{"source", 1}, {"sampler", 0}}, {{"source", 2}}};
     for (int i = 0; i < 3; ++i)
-        model.json["materials"].push_back(
-            {{"pbrMetallicRoughness",
-              {{"baseColorTexture", {{"index", i}}}, {"metallicRoughnessTexture", {{"index", 2 - i}}}}}});
+        model.json["materials"].push_back({{"pbrMetallicRoughness",
+                                            {{"baseColorTexture", {{"index", i}}},
+                                             {"metallicRoughnessTexture", {{"index", 2 - i}}}}}});
     model.json["meshes"][0]["primitives"][0]["material"] = 0;
     for (const TriangleMesh& mesh :
          {load(write("a.gltf", model.embedded())), load(write("b.glb", model.glb()))}) {
@@ -251,7 +261,8 @@ TEST_F(GltfTest, TexturesEmbeddedAndExternal) {
             EXPECT_TRUE(material.base_color_texture->is_srgb);
             EXPECT_FALSE(material.metallic_roughness_texture->is_srgb);
             const Texture& texture = mesh.textures[material.base_color_texture->texture];
-            EXPECT_EQ(sample(texture, *material.base_color_texture, {0.25f, 0.25f}), glm::vec3(1, 0, 0));
+            EXPECT_EQ(sample(texture, *material.base_color_texture, {0.25f, 0.25f}),
+                      glm::vec3(1, 0, 0));
             EXPECT_NEAR(sample(texture, *material.base_color_texture, {0.75f, 0.75f}).r,
                         std::pow((128.0 / 255.0 + 0.055) / 1.055, 2.4), 1e-6);
             EXPECT_NEAR(sample(texture, *material.metallic_roughness_texture, {0.75f, 0.75f}).r,
@@ -277,8 +288,10 @@ TEST_F(GltfTest, TextureTransformAndOtherUvSets) {
     primitive["material"] = 0;
     model.json["images"] = {{{"uri", "data:image/png;base64," + base64(four_colors())}}};
     model.json["textures"] = {{{"source", 0}}};
-    const Json transform = {
-        {"offset", {0, 1}}, {"rotation", std::numbers::pi / 2}, {"scale", {0.5, 0.5}}, {"texCoord", 3}};
+    const Json transform = {{"offset", {0, 1}},
+                            {"rotation", std::numbers::pi / 2},
+                            {"scale", {0.5, 0.5}},
+                            {"texCoord", 3}};
     Json info = {{"index", 0}, {"extensions", {{"KHR_texture_transform", transform}}}};
     model.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", info}}}}};
     const TriangleMesh mesh = gltf(model.embedded());
@@ -304,7 +317,8 @@ TEST_F(GltfTest, RefusesWhatItWouldMisread) {
     expect_refusal([] { return gltf("{\"asset\": "); }, "syntax error at byte");
     expect_refusal([] { return gltf("[]"); }, "object");
     expect_refusal([] { return gltf("{}"); }, "glTF version 2, got 'none'");
-    expect_refusal([] { return gltf("{\"asset\":{\"version\":\"2.0\"},\"x\":1e999}"); }, "out of range");
+    expect_refusal([] { return gltf("{\"asset\":{\"version\":\"2.0\"},\"x\":1e999}"); },
+                   "out of range");
     expect_refusal([this] { return load(write("a.gltf", square().external("gone.bin"))); },
                    "the file 'gone.bin' beside it");
     expect_refusal([] { return gltf(square().external("data:,x")); }, "base64");
@@ -329,7 +343,8 @@ TEST_F(GltfTest, RefusesWhatItWouldMisread) {
     refused([](Json& j) { j["accessors"][0]["count"] = 1e30; }, "whole number");
     refused([](Json& j) { j["accessors"][0]["count"] = 0; }, "got 0 elements");
     refused([](Json& j) { j["accessors"][0]["byteOffset"] = 40; }, "accessor 0 inside");
-    refused([](Json& j) { j["accessors"][0]["type"] = "VEC2"; }, "3 components of accessor 0, got 2");
+    refused([](Json& j) { j["accessors"][0]["type"] = "VEC2"; },
+            "3 components of accessor 0, got 2");
     refused([](Json& j) { j["accessors"][0]["type"] = "MAT4"; }, "MAT4");
     refused([](Json& j) { j["accessors"][0]["componentType"] = 5130; }, "5130");
     refused([](Json& j) { j["accessors"][0]["sparse"] = Json::object(); }, "sparse");
@@ -370,7 +385,8 @@ TEST_F(GltfTest, RefusesWhatItWouldMisread) {
     std::string glb = square().glb();
     glb[4] = 1;
     expect_refusal([&] { return gltf(glb); }, "version 2 of .glb, got 1");
-    expect_refusal([] { return gltf(square().glb().substr(0, 100)); }, "bytes that the .glb file declares");
+    expect_refusal([] { return gltf(square().glb().substr(0, 100)); },
+                   "bytes that the .glb file declares");
     expect_refusal([] { return gltf("glTF"); }, "20 bytes");
 }
 

@@ -14,14 +14,16 @@ TEST_F(LoadTest, TellsTheFormatByTheExtensionInAnyCase) {
     expect_box(load(write("box.PLY", box_ply({.format = "binary_big_endian"}))));
     expect_box(load(write("box.oFf", "OFF\n8 7 0\n" + box_vertex_lines() + box_face_lines())));
     EXPECT_EQ(load(write("box.STL", box_binary_stl())).num_vertices(), 8u);
-    EXPECT_EQ(load(write("triangle.Obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3")).num_triangles(), 1u);
+    EXPECT_EQ(load(write("triangle.Obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3")).num_triangles(),
+              1u);
 }
 
 TEST_F(LoadTest, NamesTheFileInEveryError) {
     expect_refusal([this] { return load(write("broken.obj", "v 0 0\n")); },
                    "broken.obj: expected 3, 4, 6 or 7 numbers");
-    expect_refusal([this] { return load(write("box.fbx", "")); },
-                   "box.fbx: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '.fbx'");
+    expect_refusal(
+        [this] { return load(write("box.fbx", "")); },
+        "box.fbx: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '.fbx'");
     expect_refusal([this] { return load(write("box", "")); }, "got ''");
     try {
         static_cast<void>(load(folder_ / "missing.ply"));

@@ -24,7 +24,8 @@ public:
         else
             raw(static_cast<std::uint32_t>(value));
     }
-    void list(const std::string& size_type, const std::string& type, const std::vector<double>& values) {
+    void list(const std::string& size_type, const std::string& type,
+              const std::vector<double>& values) {
         number(size_type, static_cast<double>(values.size()));
         for (const double value : values)
             number(type, value);
@@ -48,20 +49,22 @@ private:
 };
 
 std::string header(const PlyOptions& o) {
-    const std::string vertex = fmt::format(
-        "element vertex 8\n{}property {} x\nproperty {} y\nproperty {} z\n{}",
-        o.vertex_extras ? "property list uchar float weights\n" : "", o.coordinate_type, o.coordinate_type,
-        o.coordinate_type,
-        o.vertex_extras
-            ? "property short flags\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n"
-            : "");
+    const std::string vertex =
+        fmt::format("element vertex 8\n{}property {} x\nproperty {} y\nproperty {} z\n{}",
+                    o.vertex_extras ? "property list uchar float weights\n" : "", o.coordinate_type,
+                    o.coordinate_type, o.coordinate_type,
+                    o.vertex_extras ? "property short flags\nproperty uchar red\nproperty uchar "
+                                      "green\nproperty uchar blue\n"
+                                    : "");
     const std::string face = fmt::format(
         "element face 7\n{}property list {} {} {}\n{}",
         o.face_list_before ? "property list uchar float texcoord\n" : "", o.size_type, o.index_type,
-        o.index_name, o.face_list_after ? "property list uchar float texcoord\nproperty uchar red\n" : "");
+        o.index_name,
+        o.face_list_after ? "property list uchar float texcoord\nproperty uchar red\n" : "");
     return fmt::format("ply\nformat {} 1.0\ncomment a box\n{}{}{}end_header\n", o.format,
-                       o.other_element ? "element camera 2\nproperty list uchar float view\nproperty int id\n"
-                                       : "",
+                       o.other_element
+                           ? "element camera 2\nproperty list uchar float view\nproperty int id\n"
+                           : "",
                        o.faces_first ? face : vertex, o.faces_first ? vertex : face);
 }
 

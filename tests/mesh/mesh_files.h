@@ -1,4 +1,5 @@
-// What the tests of the mesh folder share: a small polygon mesh in every format, and what every loaded mesh must fulfil.
+// What the tests of the mesh folder share: a small polygon mesh in every format, and what every
+// loaded mesh must fulfil.
 #pragma once
 
 #include <algorithm>
@@ -34,7 +35,8 @@ inline std::span<const std::byte> bytes_of(std::string_view text) {
 }
 
 /// Lines "prefix x y z suffix" of the box.
-inline std::string box_vertex_lines(const std::string& prefix = "", const std::string& suffix = "") {
+inline std::string box_vertex_lines(const std::string& prefix = "",
+                                    const std::string& suffix = "") {
     std::string text;
     for (const glm::vec3& p : BoxPositions)
         text += fmt::format("{}{} {} {}{}\n", prefix, p.x, p.y, p.z, suffix);
@@ -50,7 +52,8 @@ inline std::string box_face_lines(const std::string& suffix = "") {
 }
 
 inline std::string replace_all(std::string text, std::string_view from, std::string_view to) {
-    for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+    for (std::size_t at = text.find(from); at != std::string::npos;
+         at = text.find(from, at + to.size()))
         text.replace(at, from.size(), to);
     return text;
 }
@@ -58,9 +61,9 @@ inline std::string replace_all(std::string text, std::string_view from, std::str
 inline double area(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (const Triangle& t : mesh.triangles)
-        sum += 0.5 *
-               glm::length(glm::cross(glm::dvec3(mesh.positions[t[1]]) - glm::dvec3(mesh.positions[t[0]]),
-                                      glm::dvec3(mesh.positions[t[2]]) - glm::dvec3(mesh.positions[t[0]])));
+        sum += 0.5 * glm::length(glm::cross(
+                         glm::dvec3(mesh.positions[t[1]]) - glm::dvec3(mesh.positions[t[0]]),
+                         glm::dvec3(mesh.positions[t[2]]) - glm::dvec3(mesh.positions[t[0]])));
     return sum;
 }
 
@@ -68,8 +71,9 @@ inline double area(const TriangleMesh& mesh) {
 inline double volume(const TriangleMesh& mesh) {
     double sum = 0.0;
     for (const Triangle& t : mesh.triangles)
-        sum += glm::dot(glm::dvec3(mesh.positions[t[0]]),
-                        glm::cross(glm::dvec3(mesh.positions[t[1]]), glm::dvec3(mesh.positions[t[2]]))) /
+        sum += glm::dot(
+                   glm::dvec3(mesh.positions[t[0]]),
+                   glm::cross(glm::dvec3(mesh.positions[t[1]]), glm::dvec3(mesh.positions[t[2]]))) /
                6.0;
     return sum;
 }
@@ -139,7 +143,8 @@ class MeshFileTest : public testing::Test {
 protected:
     void SetUp() override { std::filesystem::create_directories(folder_); }
     void TearDown() override { std::filesystem::remove_all(folder_); }
-    [[nodiscard]] std::filesystem::path write(const std::string& name, std::string_view content) const {
+    [[nodiscard]] std::filesystem::path write(const std::string& name,
+                                              std::string_view content) const {
         std::ofstream(folder_ / name, std::ios::binary) << content;
         return folder_ / name;
     }
@@ -155,11 +160,15 @@ struct PlyOptions {
     std::string size_type = "uchar";
     std::string index_type = "int";
     std::string index_name = "vertex_indices";
-    bool vertex_extras = false;    ///< short, uchar r g b, and a list before the coordinates
-    bool face_list_before = false; ///< texture coordinates before the indices
+    /// Short, uchar r g b, and a list before the coordinates
+    bool vertex_extras = false;
+    /// Texture coordinates before the indices
+    bool face_list_before = false;
     bool face_list_after = false;
-    bool faces_first = false;   ///< the element face before the element vertex
-    bool other_element = false; ///< with a list, in front
+    /// The element face before the element vertex
+    bool faces_first = false;
+    /// With a list, in front
+    bool other_element = false;
 };
 std::string box_ply(const PlyOptions& options = {});
 

@@ -12,24 +12,27 @@ using testing::ElementsAre;
 
 class MtlTest : public MeshFileTest {
 protected:
-    [[nodiscard]] TriangleMesh with_mtl(const std::string& mtl, const std::string& statements = "") const {
+    [[nodiscard]] TriangleMesh with_mtl(const std::string& mtl,
+                                        const std::string& statements = "") const {
         static_cast<void>(write("a.mtl", mtl));
-        return load(write("mesh.obj",
-                          "mtllib a.mtl\n" + statements + "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"));
+        return load(write("mesh.obj", "mtllib a.mtl\n" + statements +
+                                          "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n"));
     }
 };
 
 TEST_F(MtlTest, MaterialsAsWritten) {
-    static_cast<void>(write("a.mtl",
-                            "# Blender\nnewmtl red wall\nKd 0.5 0.25 0.125\nKs 0 0 0\nNs 10\nillum 2\n\n"
-                            "newmtl shiny\nKa 1 1 1\nKd 0.25\nKs 0.5 0.5 0.75\nNs 96.5\nd 0.5\n"
-                            "newmtl metal\nKd 1 0.75 0.5\nPr 0.25\nPm 1\n"));
-    const TriangleMesh mesh = load(write("mesh.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
-                                                     "usemtl shiny\nf 1 2 3 4\nusemtl red wall\nf 1 2 3\n"
-                                                     "usemtl shiny\nf 2 3 4\nusemtl metal\nf 1 3 4\n"));
+    static_cast<void>(
+        write("a.mtl", "# Blender\nnewmtl red wall\nKd 0.5 0.25 0.125\nKs 0 0 0\nNs 10\nillum 2\n\n"
+                       "newmtl shiny\nKa 1 1 1\nKd 0.25\nKs 0.5 0.5 0.75\nNs 96.5\nd 0.5\n"
+                       "newmtl metal\nKd 1 0.75 0.5\nPr 0.25\nPm 1\n"));
+    const TriangleMesh mesh =
+        load(write("mesh.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+                               "usemtl shiny\nf 1 2 3 4\nusemtl red wall\nf 1 2 3\n"
+                               "usemtl shiny\nf 2 3 4\nusemtl metal\nf 1 3 4\n"));
     ASSERT_EQ(mesh.materials.size(), 3u);
-    EXPECT_EQ(mesh.materials[0],
-              (Material{.name = "red wall", .base_color = {0.5f, 0.25f, 0.125f}, .exponent = 10.0f}));
+    EXPECT_EQ(
+        mesh.materials[0],
+        (Material{.name = "red wall", .base_color = {0.5f, 0.25f, 0.125f}, .exponent = 10.0f}));
     EXPECT_EQ(mesh.materials[1], (Material{.name = "shiny",
                                            .base_color = glm::vec3(0.25f),
                                            .specular = {0.5f, 0.5f, 0.75f},
@@ -48,9 +51,10 @@ TEST_F(MtlTest, MaterialsAsWritten) {
 TEST_F(MtlTest, FacesWithoutAMaterialAndUnknownNames) {
     static_cast<void>(write("a.mtl", "newmtl known\nKd 0.5\n"));
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-    const TriangleMesh mesh = load(
-        write("mesh.obj",
-              vertices + "f 1 2 3\nf 2 3 1\nusemtl known\nf 1 2 3\nusemtl other\nf 1 2 3\nmtllib a.mtl\n"));
+    const TriangleMesh mesh = load(write(
+        "mesh.obj",
+        vertices +
+            "f 1 2 3\nf 2 3 1\nusemtl known\nf 1 2 3\nusemtl other\nf 1 2 3\nmtllib a.mtl\n"));
     EXPECT_THAT(mesh.triangle_materials, ElementsAre(2, 2, 0, 1));
     EXPECT_EQ(mesh.materials[1], (Material{.name = "other"}));
     EXPECT_EQ(mesh.materials[2], (Material{.name = "default"}));
@@ -72,7 +76,8 @@ TEST_F(MtlTest, GroupsAndObjects) {
     EXPECT_THAT(mesh.triangle_groups, ElementsAre(2, 0, 0, 1, 0, 2));
 }
 
-/// A seam: vertices with several uvs. Concave polygons are cut elsewhere than fans, and keep each corner's uv.
+/// A seam: vertices with several uvs. Concave polygons are cut elsewhere than fans, and keep each
+/// corner's uv.
 TEST_F(MtlTest, UvsPerCorner) {
     const TriangleMesh mesh = obj("v 0 0 0\nv 2 0 0\nv 0.5 0.5 0\nv 0 2 0\nv 5 0 0\n"
                                   "vt 0 0\nvt 2 0\nvt 0.5 0.5\nvt 0 2\nvt 9 9\n"

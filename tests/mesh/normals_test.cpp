@@ -9,8 +9,8 @@ namespace {
 
 TEST(SmoothNormals, CubeCornersPointAlongTheDiagonalsHoweverQuadsAreCut) {
     // Each of the 64 ways to cut the six quads.
-    const std::vector<std::array<std::uint32_t, 4>> quads = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                                             {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    const std::vector<std::array<std::uint32_t, 4>> quads = {
+        {0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
     for (unsigned cut = 0; cut < 64; ++cut) {
         TriangleMesh mesh;
         for (const glm::vec3& corner : BoxPositions)
@@ -23,7 +23,8 @@ TEST(SmoothNormals, CubeCornersPointAlongTheDiagonalsHoweverQuadsAreCut) {
         }
         const std::vector<glm::vec3> normals = smooth_normals(mesh);
         for (std::size_t i = 0; i < 8; ++i)
-            EXPECT_NEAR(glm::distance(normals[i], mesh.positions[i] / std::sqrt(3.0f)), 0.0f, 1e-6f) << cut;
+            EXPECT_NEAR(glm::distance(normals[i], mesh.positions[i] / std::sqrt(3.0f)), 0.0f, 1e-6f)
+                << cut;
     }
 }
 

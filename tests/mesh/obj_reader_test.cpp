@@ -32,8 +32,9 @@ TEST(ObjReader, LineEndsWhiteSpaceAndComments) {
 }
 
 TEST(ObjReader, SkipsOtherStatements) {
-    expect_box(obj("mtllib a.mtl\no box\n" +
-                   replace_all(box_obj(), "f 2 3 7\n", "usemtl x\ns off\nl 1 2\np 1\ng a b\nf 2 3 7\n")));
+    expect_box(
+        obj("mtllib a.mtl\no box\n" +
+            replace_all(box_obj(), "f 2 3 7\n", "usemtl x\ns off\nl 1 2\np 1\ng a b\nf 2 3 7\n")));
 }
 
 TEST(ObjReader, NegativeIndicesCountBackFromTheNewestElement) {
@@ -51,7 +52,8 @@ TEST(ObjReader, NegativeIndicesCountBackFromTheNewestElement) {
 }
 
 TEST(ObjReader, FacesMayComeBeforeTheirVertices) {
-    EXPECT_EQ(obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles, (std::vector<Triangle>{{0, 1, 2}}));
+    EXPECT_EQ(obj("f 1 2 3\nv 0 0 0\nv 1 0 0\nv 0 1 0\n").triangles,
+              (std::vector<Triangle>{{0, 1, 2}}));
 }
 
 TEST(ObjReader, PositionsUvsAndNormalsHaveTheirOwnCounts) {
@@ -63,7 +65,8 @@ TEST(ObjReader, PositionsUvsAndNormalsHaveTheirOwnCounts) {
     EXPECT_EQ(mesh.num_vertices(), 5u);
     EXPECT_EQ(mesh.uvs, (std::vector<glm::vec2>{{0, 0}, {1, 0}, {0, 0}, {1, 0}, {0, 0}}));
     EXPECT_EQ(mesh.normals[0], glm::vec3(0, 0, 1));
-    EXPECT_NEAR(glm::distance(mesh.normals[2], glm::vec3(std::sqrt(0.5f), 0, std::sqrt(0.5f))), 0.0f, 1e-6f);
+    EXPECT_NEAR(glm::distance(mesh.normals[2], glm::vec3(std::sqrt(0.5f), 0, std::sqrt(0.5f))),
+                0.0f, 1e-6f);
     EXPECT_EQ(mesh.normals[4], glm::vec3(0.0f)) << "unreferenced";
     EXPECT_EQ(obj(text, NormalSource::Smooth).normals[2], glm::vec3(0, 0, 1));
 }
@@ -72,13 +75,15 @@ TEST(ObjReader, NormalsCountOnlyIfEveryCornerHasOne) {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 1 0 0\nvn 0 0 0\n";
     EXPECT_EQ(obj(vertices + "f 1//1 2//1 3//1\n").normals[0], glm::vec3(1, 0, 0));
     EXPECT_EQ(obj(vertices + "f 1//1 2//1 3\n").normals[0], glm::vec3(0, 0, 1));
-    EXPECT_EQ(obj(vertices + "f 1//1 2//1 3//2\n").normals[0], glm::vec3(0, 0, 1)) << "a zero normal is none";
+    EXPECT_EQ(obj(vertices + "f 1//1 2//1 3//2\n").normals[0], glm::vec3(0, 0, 1))
+        << "a zero normal is none";
 }
 
 TEST(ObjReader, UvsCountOnlyIfVerticesHaveOne) {
     const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nvt 0 0\nvt 1 0\nvt 1 0\n";
     EXPECT_TRUE(obj(vertices + "f 1/1 2/2 3/1\nf 2/1 4/1 3/1\n").uvs.empty()) << "a seam";
-    EXPECT_EQ(obj(vertices + "f 1/1 2/2 3/1\nf 2/3 4/1 3/1\n").uvs.size(), 4u) << "equal coordinates";
+    EXPECT_EQ(obj(vertices + "f 1/1 2/2 3/1\nf 2/3 4/1 3/1\n").uvs.size(), 4u)
+        << "equal coordinates";
     EXPECT_TRUE(obj(vertices + "f 1/1 2/2 3/1\nf 2 4 3\n").uvs.empty());
     EXPECT_EQ(obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/2/1 3/3/1\n").num_triangles(), 1u)
         << "lists that are absent";
@@ -90,12 +95,14 @@ TEST(ObjReader, ColorsOfVertices) {
     EXPECT_EQ(obj(box_obj(" 1 0.5 0.25 1")).colors.size(), 8u);
     EXPECT_EQ(obj(box_obj(" 255 0 51")).colors[3], glm::vec3(1.0f, 0.0f, 0.2f));
     EXPECT_TRUE(obj(box_obj(" nan nan nan")).colors.empty());
-    EXPECT_TRUE(obj(replace_all(box_obj(" 1 0.5 0.25"), "v 1 2 3 1 0.5 0.25", "v 1 2 3")).colors.empty());
+    EXPECT_TRUE(
+        obj(replace_all(box_obj(" 1 0.5 0.25"), "v 1 2 3 1 0.5 0.25", "v 1 2 3")).colors.empty());
 }
 
 TEST(ObjReader, SkipsFacesOfFewerThanThreeCorners) {
     expect_box(obj(box_obj() + "f 1 2\nf 3\nf\n"));
-    expect_refusal([] { return obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"); }, "got 3 vertices and 1 faces");
+    expect_refusal([] { return obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"); },
+                   "got 3 vertices and 1 faces");
 }
 
 TEST(ObjReader, RefusesWhatItWouldMisread) {

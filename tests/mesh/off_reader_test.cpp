@@ -5,7 +5,8 @@ namespace {
 
 std::string box_off(const std::string& keyword = "OFF", const std::string& vertex_suffix = "",
                     const std::string& face_suffix = "") {
-    return keyword + "\n8 7 0\n" + box_vertex_lines("", vertex_suffix) + box_face_lines(face_suffix);
+    return keyword + "\n8 7 0\n" + box_vertex_lines("", vertex_suffix) +
+           box_face_lines(face_suffix);
 }
 
 TEST(OffReader, KeepsVerticesAndCutsPolygons) {

@@ -44,12 +44,13 @@ TEST_P(PlyReaderTest, LineEndsOfTheHeader) {
 
 TEST_P(PlyReaderTest, RefusesTooMuchAndTooLittle) {
     const std::string text = box_ply({.format = GetParam()});
-    for (const char* count :
-         {"9", "1000", "4294967295", "100000000000", "9000000000000000000", "99999999999999999999"}) {
-        expect_refusal([&] { return ply(replace_all(text, "vertex 8", fmt::format("vertex {}", count))); },
-                       "got");
-        expect_refusal([&] { return ply(replace_all(text, "face 7", fmt::format("face {}", count))); },
-                       "got");
+    for (const char* count : {"9", "1000", "4294967295", "100000000000", "9000000000000000000",
+                              "99999999999999999999"}) {
+        expect_refusal(
+            [&] { return ply(replace_all(text, "vertex 8", fmt::format("vertex {}", count))); },
+            "got");
+        expect_refusal(
+            [&] { return ply(replace_all(text, "face 7", fmt::format("face {}", count))); }, "got");
     }
     expect_refusal([&] { return ply(replace_all(text, "vertex 8", "vertex -8")); }, "'-8'");
     expect_refusal([&] { return ply(replace_all(text, "face 7", "face 6")); }, "end of the data");
@@ -57,7 +58,8 @@ TEST_P(PlyReaderTest, RefusesTooMuchAndTooLittle) {
     expect_refusal([&] { return ply(text + "1"); }, "end of the data");
     expect_box(ply(text + "\r\n"));
     // An element without properties takes no bytes, however many there are.
-    expect_box(ply(replace_all(text, "end_header", "element nothing 1000000000000000\nend_header")));
+    expect_box(
+        ply(replace_all(text, "end_header", "element nothing 1000000000000000\nend_header")));
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, PlyReaderTest,
@@ -69,26 +71,31 @@ TEST(PlyReader, AsciiLineEnds) {
 }
 
 std::string triangle_ply(const std::string& properties, const std::string& values) {
-    return fmt::format(
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{}"
-        "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
-        "0 0 0 {}\n1 0 0 {}\n0 1 0 {}\n3 0 1 2\n",
-        properties, values, values, values);
+    return fmt::format("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+                       "y\nproperty float z\n{}"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                       "0 0 0 {}\n1 0 0 {}\n0 1 0 {}\n3 0 1 2\n",
+                       properties, values, values, values);
 }
 
 TEST(PlyReader, AttributesOfVertices) {
     const std::string normals = "property float nx\nproperty float ny\nproperty float nz\n";
     EXPECT_EQ(ply(triangle_ply(normals, "0 3 4")).normals[0], glm::vec3(0.0f, 0.6f, 0.8f));
-    EXPECT_EQ(ply(triangle_ply(normals, "0 3 4"), NormalSource::Smooth).normals[0], glm::vec3(0, 0, 1));
+    EXPECT_EQ(ply(triangle_ply(normals, "0 3 4"), NormalSource::Smooth).normals[0],
+              glm::vec3(0, 0, 1));
     EXPECT_EQ(ply(triangle_ply(normals, "0 0 0")).normals[0], glm::vec3(0, 0, 1));
     EXPECT_EQ(ply(triangle_ply(normals, "nan 0 0")).normals[0], glm::vec3(0, 0, 1));
 
     const auto colors = [](const std::string& type) {
-        return fmt::format("property {} red\nproperty {} green\nproperty {} blue\n", type, type, type);
+        return fmt::format("property {} red\nproperty {} green\nproperty {} blue\n", type, type,
+                           type);
     };
-    EXPECT_EQ(ply(triangle_ply(colors("uchar"), "255 51 0")).colors[2], glm::vec3(1.0f, 0.2f, 0.0f));
-    EXPECT_EQ(ply(triangle_ply(colors("ushort"), "65535 13107 0")).colors[2], glm::vec3(1.0f, 0.2f, 0.0f));
-    EXPECT_EQ(ply(triangle_ply(colors("float"), "7.5 0.25 0")).colors[2], glm::vec3(7.5f, 0.25f, 0.0f))
+    EXPECT_EQ(ply(triangle_ply(colors("uchar"), "255 51 0")).colors[2],
+              glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_EQ(ply(triangle_ply(colors("ushort"), "65535 13107 0")).colors[2],
+              glm::vec3(1.0f, 0.2f, 0.0f));
+    EXPECT_EQ(ply(triangle_ply(colors("float"), "7.5 0.25 0")).colors[2],
+              glm::vec3(7.5f, 0.25f, 0.0f))
         << "HDR";
     EXPECT_TRUE(ply(triangle_ply(colors("float"), "nan 0.25 0")).colors.empty());
     EXPECT_TRUE(ply(triangle_ply("property uchar red\n", "255")).colors.empty());
@@ -96,7 +103,8 @@ TEST(PlyReader, AttributesOfVertices) {
     EXPECT_EQ(ply(triangle_ply("property float s\nproperty float t\n", "0.25 0.5")).uvs[2],
               glm::vec2(0.25f, 0.5f));
     EXPECT_EQ(
-        ply(triangle_ply("property float u\nproperty float v\nproperty float s\n", "0.25 0.5 9")).uvs[2],
+        ply(triangle_ply("property float u\nproperty float v\nproperty float s\n", "0.25 0.5 9"))
+            .uvs[2],
         glm::vec2(0.25f, 0.5f));
 }
 

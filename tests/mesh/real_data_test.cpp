@@ -1,4 +1,5 @@
-// Real meshes, which are not part of the repository: counts of vertices and triangles that were found with other readers.
+// Real meshes, which are not part of the repository: counts of vertices and triangles that were
+// found with other readers.
 #include <chrono>
 
 #include "mesh/floor.h"
@@ -10,7 +11,8 @@ namespace {
 struct RealMesh {
     const char* path;
     std::size_t num_vertices;
-    std::size_t num_triangles; ///< corners - 2, summed over all faces
+    /// Corners - 2, summed over all faces
+    std::size_t num_triangles;
 };
 
 constexpr RealMesh RealMeshes[] = {
@@ -83,7 +85,8 @@ TEST_F(RealDataTest, EveryMeshHasItsCounts) {
 
 TEST_F(RealDataTest, ConcavePolygonIsCoveredExactly) {
     const TriangleMesh mesh = load(folder_ / "ugly/assimp_concave_polygon.obj");
-    // Triangles that all look the same way cover no more than their sum's length, the polygon's own area.
+    // Triangles that all look the same way cover no more than their sum's length, the polygon's own
+    // area.
     glm::dvec3 sum(0.0);
     for (const Triangle& t : mesh.triangles)
         sum += 0.5 * glm::cross(glm::dvec3(mesh.positions[t[1]] - mesh.positions[t[0]]),
@@ -113,8 +116,8 @@ TEST_F(RealDataTest, MalformedFilesAreRefusedOrReadAsWhatTheyAre) {
         const auto start = std::chrono::steady_clock::now();
         try {
             const TriangleMesh mesh = load(entry.path());
-            EXPECT_THAT(readable, testing::Contains(
-                                      testing::Pair(entry.path().filename().string(), mesh.num_triangles())));
+            EXPECT_THAT(readable, testing::Contains(testing::Pair(entry.path().filename().string(),
+                                                                  mesh.num_triangles())));
             EXPECT_EQ(defect(mesh), "");
             EXPECT_TRUE(mesh.colors.empty()) << "some are not numbers";
             ++num_read;

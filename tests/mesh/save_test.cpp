@@ -13,11 +13,13 @@ namespace {
 class SaveTest : public MeshFileTest {
 protected:
     [[nodiscard]] std::size_t num_files() const {
-        return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder_), {}));
+        return static_cast<std::size_t>(
+            std::distance(std::filesystem::directory_iterator(folder_), {}));
     }
     const TriangleMesh box_ = ply(box_ply());
-    const std::vector<glm::vec3> colors_ = {{0, 0, 0},    {1, 0, 0}, {0, 100.5f, 0}, {0, 0, 1e-6f},
-                                            {1, 0.1f, 1}, {2, 2, 2}, {3, 3, 3},      {0.25f, 0.5f, 0.75f}};
+    const std::vector<glm::vec3> colors_ = {{0, 0, 0},     {1, 0, 0},           {0, 100.5f, 0},
+                                            {0, 0, 1e-6f}, {1, 0.1f, 1},        {2, 2, 2},
+                                            {3, 3, 3},     {0.25f, 0.5f, 0.75f}};
 };
 
 TEST_F(SaveTest, PlyLoadsAgainUnchanged) {
@@ -35,7 +37,8 @@ TEST_F(SaveTest, PlyLoadsAgainUnchanged) {
 template<class Value>
 std::vector<Value> values_of(const tinygltf::Model& model, int index) {
     const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
-    const tinygltf::BufferView& view = model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
+    const tinygltf::BufferView& view =
+        model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
     std::vector<Value> values(accessor.count);
     EXPECT_EQ(view.byteLength, values.size() * sizeof(Value));
     EXPECT_EQ(view.byteOffset % 4, 0u);
@@ -51,13 +54,14 @@ TEST_F(SaveTest, GlbHoldsWhatItShould) {
 
     tinygltf::Model model;
     std::string error, warning;
-    ASSERT_TRUE(
-        tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning, (folder_ / "box.GLB").string()))
+    ASSERT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning,
+                                                        (folder_ / "box.GLB").string()))
         << error;
     EXPECT_EQ(error + warning, "");
     EXPECT_EQ(model.asset.version, "2.0");
     EXPECT_THAT(model.extensionsUsed, testing::ElementsAre("KHR_materials_unlit"));
-    EXPECT_EQ(model.scenes.at(static_cast<std::size_t>(model.defaultScene)).nodes, std::vector<int>{0});
+    EXPECT_EQ(model.scenes.at(static_cast<std::size_t>(model.defaultScene)).nodes,
+              std::vector<int>{0});
     const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
     EXPECT_EQ(model.materials.at(static_cast<std::size_t>(primitive.material))
                   .extensions.count("KHR_materials_unlit"),
@@ -75,7 +79,8 @@ TEST_F(SaveTest, GlbHoldsWhatItShould) {
     EXPECT_EQ(values_of<glm::vec3>(model, color), colors_);
     for (const glm::vec3& normal : values_of<glm::vec3>(model, primitive.attributes.at("NORMAL")))
         EXPECT_NEAR(glm::length(normal), 1.0f, 1e-5f) << "glTF knows no zero normals";
-    const tinygltf::Accessor& indices = model.accessors.at(static_cast<std::size_t>(primitive.indices));
+    const tinygltf::Accessor& indices =
+        model.accessors.at(static_cast<std::size_t>(primitive.indices));
     EXPECT_EQ(indices.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
     std::vector<std::uint32_t> expected;
     for (const Triangle& triangle : mesh.triangles)
@@ -88,7 +93,8 @@ TEST_F(SaveTest, FailingLeavesNothingBehind) {
         const std::filesystem::path target = write(name, "old");
         std::vector<glm::vec3> bad = colors_;
         bad[5].y = std::numeric_limits<float>::quiet_NaN();
-        expect_refusal([&] { return save(target, box_, bad), 0; }, "finite colours, got 2 nan 2 at vertex 5");
+        expect_refusal([&] { return save(target, box_, bad), 0; },
+                       "finite colours, got 2 nan 2 at vertex 5");
         bad.pop_back();
         expect_refusal([&] { return save(target, box_, bad), 0; }, "expected 8 colours, got 7");
         expect_refusal([&] { return save(target, TriangleMesh{}, {}), 0; }, "triangles");

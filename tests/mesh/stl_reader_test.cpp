@@ -72,7 +72,8 @@ TEST(StlReader, RefusesWhatItWouldMisread) {
     std::string binary = box_binary_stl();
     binary[80] = 13;
     binary[0] = 'x';
-    expect_refusal([&] { return stl(binary); }, "expected 734 bytes of binary STL with 13 facets, got 684");
+    expect_refusal([&] { return stl(binary); },
+                   "expected 734 bytes of binary STL with 13 facets, got 684");
     binary[83] = '\xFF';
     expect_refusal([&] { return stl(binary); }, "facets, got 684");
     expect_refusal([] { return stl(""); }, "0 bytes");

@@ -12,13 +12,15 @@ namespace relumine::mesh {
 
 using Rgb8 = std::array<std::uint8_t, 3>;
 
-inline constexpr Rgb8 Red = {255, 0, 0}, Green = {0, 255, 0}, Blue = {0, 0, 255}, Gray = {128, 128, 128};
+inline constexpr Rgb8 Red = {255, 0, 0}, Green = {0, 255, 0}, Blue = {0, 0, 255},
+                      Gray = {128, 128, 128};
 
 /// A PNG file of the pixels, the top row first.
 inline std::string png(int width, int height, const std::vector<Rgb8>& pixels) {
     std::string file;
     const auto append = [](void* to, void* data, int size) {
-        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                              static_cast<std::size_t>(size));
     };
     stbi_write_png_to_func(append, &file, width, height, 3, pixels.data(), 3 * width);
     return file;

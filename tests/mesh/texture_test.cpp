@@ -20,7 +20,8 @@ TEST(Texture, RowsStartWhereVDoes) {
     const Texture top = decoded(four_colors());
     EXPECT_EQ(top.width, 2u);
     EXPECT_EQ(top.texels, (std::vector<Rgb8>{Red, Green, Blue, Gray}));
-    EXPECT_EQ(decoded(four_colors(), VOrigin::Bottom).texels, (std::vector<Rgb8>{Blue, Gray, Red, Green}));
+    EXPECT_EQ(decoded(four_colors(), VOrigin::Bottom).texels,
+              (std::vector<Rgb8>{Blue, Gray, Red, Green}));
 }
 
 TEST(Texture, BilinearBetweenTexelCentres) {
@@ -32,7 +33,8 @@ TEST(Texture, BilinearBetweenTexelCentres) {
     expect_color(sample(texture, clamped, {0.5f, 0.25f}), {0.5f, 0.5f, 0});
     expect_color(sample(texture, clamped, {0.625f, 0.25f}), {0.25f, 0.75f, 0});
     const float gray = 128.0f / 255.0f;
-    expect_color(sample(texture, clamped, {0.5f, 0.5f}), glm::vec3(1 + gray, 1 + gray, 1 + gray) * 0.25f);
+    expect_color(sample(texture, clamped, {0.5f, 0.5f}),
+                 glm::vec3(1 + gray, 1 + gray, 1 + gray) * 0.25f);
 }
 
 TEST(Texture, WrapModes) {
@@ -71,7 +73,8 @@ TEST(Texture, SrgbIsDecodedBeforeFiltering) {
 
 TEST(Texture, UvTransform) {
     const Texture texture = decoded(four_colors());
-    const TextureSlot slot{.uv_from_mesh_uv = glm::mat2(0.0f, 1.0f, 2.0f, 0.0f), .uv_offset = {0.25f, 0.25f}};
+    const TextureSlot slot{.uv_from_mesh_uv = glm::mat2(0.0f, 1.0f, 2.0f, 0.0f),
+                           .uv_offset = {0.25f, 0.25f}};
     expect_color(sample(texture, slot, {0.5f, 0.0f}), {0, 0, 1}); // u' = 2 v + 1/4, v' = u + 1/4
     expect_color(sample(texture, slot, {0.0f, 0.25f}), {0, 1, 0});
 }
@@ -101,7 +104,8 @@ std::string written(const Writer& writer) {
     const std::vector<Rgb8> pixels = {Red, Green, Blue, Gray, Red, Red};
     std::string file;
     const auto append = [](void* to, void* data, int size) {
-        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                              static_cast<std::size_t>(size));
     };
     writer(append, &file, 3, 2, 3, pixels.data());
     return file;
@@ -109,7 +113,8 @@ std::string written(const Writer& writer) {
 
 TEST(Texture, WhatAShortFileLacksIsNotMadeUp) {
     stbi_write_tga_with_rle = 0;
-    for (const std::string& file : {written(stbi_write_bmp_to_func), written(stbi_write_tga_to_func)}) {
+    for (const std::string& file :
+         {written(stbi_write_bmp_to_func), written(stbi_write_tga_to_func)}) {
         EXPECT_EQ(decoded(file).texels, (std::vector<Rgb8>{Red, Green, Blue, Gray, Red, Red}));
         for (std::size_t missing = 1; missing <= 18; ++missing)
             expect_refusal([&] { return decoded(file.substr(0, file.size() - missing)); },
@@ -120,7 +125,8 @@ TEST(Texture, WhatAShortFileLacksIsNotMadeUp) {
 TEST(Texture, JpegsAreReadWholeOrRefused) {
     std::string file;
     const auto append = [](void* to, void* data, int size) {
-        static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
+        static_cast<std::string*>(to)->append(static_cast<const char*>(data),
+                                              static_cast<std::size_t>(size));
     };
     const std::vector<Rgb8> orange(40 * 24, {250, 130, 10});
     stbi_write_jpg_to_func(append, &file, 40, 24, 3, orange.data(), 95);
@@ -137,7 +143,8 @@ TEST(Texture, JpegsAreReadWholeOrRefused) {
     for (std::size_t end = 4; end < file.size(); ++end)
         expect_refusal([&] { return decoded(file.substr(0, end)); }, "broken data (");
     file[file.find("\xff\xc0") + 5] = 0x7f; // 32536 rows
-    expect_refusal([&] { return decoded(file); }, "expected an image of at most 16384 x 16384 pixels");
+    expect_refusal([&] { return decoded(file); },
+                   "expected an image of at most 16384 x 16384 pixels");
 }
 
 TEST(Texture, OtherFormatsAreNotEvenTried) {

@@ -41,8 +41,9 @@ std::vector<Triangle> triangles_of(const std::vector<glm::vec3>& positions) {
     return triangles;
 }
 
-/// Triangles that look the polygon's way and whose areas sum up to its area cover it exactly: any overlap or any triangle
-/// outside would have to be made up for by a triangle that looks the other way.
+/// Triangles that look the polygon's way and whose areas sum up to its area cover it exactly: any
+/// overlap or any triangle outside would have to be made up for by a triangle that looks the other
+/// way.
 void expect_cover(const std::vector<glm::dvec2>& points) {
     for (const bool reversed : {false, true}) {
         std::vector<glm::dvec2> polygon = points;
@@ -58,7 +59,8 @@ void expect_cover(const std::vector<glm::dvec2>& points) {
         for (const Triangle& t : mesh.triangles)
             sum += 0.5 * glm::cross(glm::dvec3(mesh.positions[t[1]] - mesh.positions[t[0]]),
                                     glm::dvec3(mesh.positions[t[2]] - mesh.positions[t[0]]));
-        EXPECT_NEAR(glm::dot(sum, glm::dvec3(0.48, 0.64, 0.6)), signed_area(polygon), 1e-5 * expected);
+        EXPECT_NEAR(glm::dot(sum, glm::dvec3(0.48, 0.64, 0.6)), signed_area(polygon),
+                    1e-5 * expected);
     }
 }
 
@@ -83,7 +85,8 @@ TEST(Triangulate, RandomStarsAreCoveredExactly) {
     for (std::size_t n = 3; n < 300; n += 1 + n / 8) {
         std::vector<glm::dvec2> star;
         for (std::size_t i = 0; i < n; ++i) {
-            const double angle = 2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
+            const double angle =
+                2.0 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(n);
             star.push_back(radius(random) * glm::dvec2(std::cos(angle), std::sin(angle)));
         }
         expect_cover(star);

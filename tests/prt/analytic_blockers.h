@@ -22,7 +22,8 @@ public:
     using Predicate = std::function<bool(const glm::dvec3& origin, const glm::dvec3& direction)>;
     explicit AnalyticBlockers(Predicate blocked) : blocked_(std::move(blocked)) {}
 
-    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const prt::DirectionPacket& directions,
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin,
+                                         const prt::DirectionPacket& directions,
                                          std::uint32_t active) const override {
         std::uint32_t blocked = 0;
         for (std::uint32_t i = 0; i < prt::PacketSize; ++i)
@@ -43,11 +44,12 @@ private:
 
 /// A sphere that rays start outside of.
 [[nodiscard]] inline AnalyticBlockers sphere_blocker(const glm::dvec3& centre, double radius) {
-    return AnalyticBlockers([centre, radius](const glm::dvec3& origin, const glm::dvec3& direction) {
-        const glm::dvec3 to_centre = centre - origin;
-        const double along = glm::dot(to_centre, direction);
-        return along > 0.0 && glm::dot(to_centre, to_centre) - along * along < radius * radius;
-    });
+    return AnalyticBlockers(
+        [centre, radius](const glm::dvec3& origin, const glm::dvec3& direction) {
+            const glm::dvec3 to_centre = centre - origin;
+            const double along = glm::dot(to_centre, direction);
+            return along > 0.0 && glm::dot(to_centre, to_centre) - along * along < radius * radius;
+        });
 }
 
 /// The half-plane y = height, x > edge.
@@ -63,14 +65,17 @@ class CountingBlockers final : public prt::Blockers {
 public:
     explicit CountingBlockers(const prt::Blockers& blockers) : blockers_(blockers) {}
 
-    using Ray = std::array<float, 6>; ///< origin, direction
+    /// Origin, direction
+    using Ray = std::array<float, 6>;
 
-    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const prt::DirectionPacket& directions,
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin,
+                                         const prt::DirectionPacket& directions,
                                          std::uint32_t active) const override {
         const std::scoped_lock lock(mutex_);
         for (std::uint32_t i = 0; i < prt::PacketSize; ++i)
             if ((active >> i & 1u) != 0)
-                ++rays_[{origin.x, origin.y, origin.z, directions.x[i], directions.y[i], directions.z[i]}];
+                ++rays_[{origin.x, origin.y, origin.z, directions.x[i], directions.y[i],
+                         directions.z[i]}];
         return blockers_.occluded(origin, directions, active);
     }
 

@@ -20,7 +20,8 @@ inline void put_byte(const std::filesystem::path& path, std::size_t at, std::byt
 
 /// `action` throws std::runtime_error with one line that begins with the path and holds `reason`.
 template<typename Action>
-void expect_refused(const std::filesystem::path& path, const std::string& reason, const Action& action) {
+void expect_refused(const std::filesystem::path& path, const std::string& reason,
+                    const Action& action) {
     try {
         action();
         ADD_FAILURE() << "accepted; expected: " << reason;

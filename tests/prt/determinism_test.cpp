@@ -1,5 +1,5 @@
-// The same input gives the same file: with any number of threads, in a second run, and, for a scene without rays in doubt, on other
-// processors. docs/robustness.md says what is promised.
+// The same input gives the same file: with any number of threads, in a second run, and, for a scene
+// without rays in doubt, on other processors. docs/robustness.md says what is promised.
 #include <filesystem>
 #include <map>
 
@@ -26,8 +26,8 @@ namespace {
 
 enum class Shine { Diffuse, Glossy };
 
-/// Hard and soft shadows; with highlights of GGX of several widths. Made without sines and powers, which C libraries round in
-/// their own way.
+/// Hard and soft shadows; with highlights of GGX of several widths. Made without sines and powers,
+/// which C libraries round in their own way.
 Scene precomputed(Shine shine) {
     Scene scene;
     scene.mesh = scenes::sphere_and_box_on_floor();
@@ -39,9 +39,10 @@ Scene precomputed(Shine shine) {
     if (shine == Shine::Glossy) {
         look_from(scene.receivers, {1.5f, 2.5f, 3.0f});
         for (std::size_t i = 0; i < scene.receivers.size(); ++i)
-            scene.receivers.surfaces.push_back({.specular = glm::vec3(0.04f, 0.3f, 0.9f),
-                                                .highlight = i % 3 == 2 ? Highlight::None : Highlight::Ggx,
-                                                .shape = i % 3 == 0 ? 0.25f : 0.5f});
+            scene.receivers.surfaces.push_back(
+                {.specular = glm::vec3(0.04f, 0.3f, 0.9f),
+                 .highlight = i % 3 == 2 ? Highlight::None : Highlight::Ggx,
+                 .shape = i % 3 == 0 ? 0.25f : 0.5f});
     }
     scene.transfer = precompute(scene.receivers, beams, options);
     if (shine == Shine::Glossy) {
@@ -86,8 +87,8 @@ protected:
     }
 
 private:
-    std::filesystem::path path_ =
-        std::filesystem::path(testing::TempDir()) / fmt::format("relumine_determinism_{}.prt", ::getpid());
+    std::filesystem::path path_ = std::filesystem::path(testing::TempDir()) /
+                                  fmt::format("relumine_determinism_{}.prt", ::getpid());
 };
 
 TEST_P(Determinism, TheSameBytesForAnyNumberOfThreadsAndASecondRun) {

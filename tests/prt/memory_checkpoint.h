@@ -18,8 +18,10 @@ public:
     /// The save after so many throws Killed, before it saves anything.
     std::size_t saves_to_live = static_cast<std::size_t>(-1);
     std::size_t num_saves = 0;
-    std::size_t every = 1;   ///< of the looks, one is due
-    bool is_failing = false; ///< nothing can be saved
+    /// Of the looks, one is due
+    std::size_t every = 1;
+    /// Nothing can be saved
+    bool is_failing = false;
     bool is_worth_it = true;
     std::map<std::string, Saved> parts;
 

@@ -9,15 +9,17 @@
 namespace relumine::prt {
 namespace {
 
-constexpr SceneSizes Sizes = {.num_vertices = 100000, .num_triangles = 200000, .num_receivers = 100000};
+constexpr SceneSizes Sizes = {
+    .num_vertices = 100000, .num_triangles = 200000, .num_receivers = 100000};
 
 TEST(MemoryEstimate, PeaksGrowWithAllTheyAreMadeOf) {
-    EXPECT_GT(scene_bytes(Sizes),
-              scene_bytes({.num_vertices = 100000, .num_triangles = 200000, .num_receivers = 50000}));
     EXPECT_GT(
         scene_bytes(Sizes),
-        scene_bytes(
-            {.num_vertices = 100000, .num_triangles = 200000, .num_receivers = 100000, .has_beams = false}));
+        scene_bytes({.num_vertices = 100000, .num_triangles = 200000, .num_receivers = 50000}));
+    EXPECT_GT(scene_bytes(Sizes), scene_bytes({.num_vertices = 100000,
+                                               .num_triangles = 200000,
+                                               .num_receivers = 100000,
+                                               .has_beams = false}));
     EXPECT_GT(peak_bytes(Sizes, 2 << 20, 0), peak_bytes(Sizes, 1 << 20, 0));
     EXPECT_GT(peak_bytes(Sizes, 0, 2 << 20), peak_bytes(Sizes, 0, 1 << 20));
     EXPECT_EQ(peak_bytes(Sizes, 0, 0), scene_bytes(Sizes));
@@ -42,11 +44,12 @@ TEST(MemoryEstimate, PlanesGetAQuarterOfWhatIsLeft) {
 }
 
 struct SmallScene {
-    mesh::TriangleMesh mesh =
-        scenes::joined(scenes::floor_grid(60, 4.0f), scenes::icosphere(4, 0.5f, {0.0f, 0.7f, 0.0f}));
+    mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(60, 4.0f),
+                                             scenes::icosphere(4, 0.5f, {0.0f, 0.7f, 0.0f}));
     Receivers receivers = vertex_receivers(mesh);
     RayScene rays{mesh};
-    PrecomputeOptions options{.tolerance = 0.03f, .face_resolution = 256, .bias = automatic_bias(mesh)};
+    PrecomputeOptions options{
+        .tolerance = 0.03f, .face_resolution = 256, .bias = automatic_bias(mesh)};
     SceneSizes sizes{.num_vertices = mesh.num_vertices(),
                      .num_triangles = mesh.num_triangles(),
                      .num_receivers = receivers.size()};
@@ -56,14 +59,15 @@ TEST(MemoryEstimate, ATrialForetellsTheClusters) {
     const SmallScene scene;
     PrecomputeStatistics statistics;
     static_cast<void>(precompute(scene.receivers, scene.rays, scene.options, &statistics));
-    const MemoryEstimate estimate =
-        estimate_memory(scene.sizes, scene.receivers, scene.rays, scene.options, std::uint64_t{1} << 40);
+    const MemoryEstimate estimate = estimate_memory(scene.sizes, scene.receivers, scene.rays,
+                                                    scene.options, std::uint64_t{1} << 40);
     EXPECT_FALSE(estimate.is_at_least);
     EXPECT_GT(2 * estimate.num_clusters, statistics.num_clusters);
     EXPECT_LT(estimate.num_clusters, 2 * statistics.num_clusters);
     EXPECT_GT(2 * estimate.column_bytes, statistics.column_bytes);
     EXPECT_LT(estimate.column_bytes, 2 * statistics.column_bytes);
-    EXPECT_EQ(estimate.peak_bytes, peak_bytes(scene.sizes, estimate.plane_bytes, estimate.column_bytes));
+    EXPECT_EQ(estimate.peak_bytes,
+              peak_bytes(scene.sizes, estimate.plane_bytes, estimate.column_bytes));
 }
 
 TEST(MemoryEstimate, ATrialStopsWhenTheLimitIsReached) {

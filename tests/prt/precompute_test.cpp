@@ -25,13 +25,16 @@
 namespace relumine::prt {
 namespace {
 
-/// Outgoing radiance of every receiver, in the receivers' order, under a sky of radiance 1, from exact vector irradiances.
+/// Outgoing radiance of every receiver, in the receivers' order, under a sky of radiance 1, from
+/// exact vector irradiances.
 std::vector<double> radiance_under_white(const Transfer& transfer) {
     std::vector<double> radiance(transfer.num_receivers());
     for (std::size_t leaf = 0; leaf < transfer.num_clusters(); ++leaf) {
-        const glm::dvec3 irradiance = scenes::vector_irradiance_of_white(transfer.quadtree.leaves()[leaf]);
+        const glm::dvec3 irradiance =
+            scenes::vector_irradiance_of_white(transfer.quadtree.leaves()[leaf]);
         for (std::size_t place = 0; place < radiance.size(); ++place) {
-            const double cosine = std::max(0.0, glm::dot(glm::dvec3(transfer.normals[place]), irradiance));
+            const double cosine =
+                std::max(0.0, glm::dot(glm::dvec3(transfer.normals[place]), irradiance));
             radiance[transfer.order[place]] +=
                 transfer.counts.count(place, leaf) / 16.0 * cosine / std::numbers::pi;
         }
@@ -45,7 +48,8 @@ Receivers random_receivers(std::size_t n, std::uint32_t seed) {
     std::uniform_real_distribution<float> coordinate(-1.0f, 1.0f);
     Receivers receivers;
     for (std::size_t i = 0; i < n; ++i) {
-        receivers.positions.emplace_back(coordinate(random), coordinate(random), coordinate(random));
+        receivers.positions.emplace_back(coordinate(random), coordinate(random),
+                                         coordinate(random));
         receivers.normals.push_back(scenes::random_direction(random));
     }
     return receivers;
@@ -67,7 +71,8 @@ struct SmallScene {
     mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
     Receivers receivers = vertex_receivers(mesh);
     RayScene rays{mesh};
-    PrecomputeOptions options{.tolerance = 0.02f, .face_resolution = 64, .bias = automatic_bias(mesh)};
+    PrecomputeOptions options{
+        .tolerance = 0.02f, .face_resolution = 64, .bias = automatic_bias(mesh)};
 
     [[nodiscard]] Transfer transfer() const { return precompute(receivers, rays, options); }
 };
@@ -75,22 +80,26 @@ struct SmallScene {
 TEST(Precompute, WhiteFurnace) {
     const Receivers receivers = random_receivers(300, 1);
     for (const float tolerance : {0.0135f, 0.003f}) {
-        const Transfer transfer =
-            precompute(receivers, scenes::no_blockers(), {.tolerance = tolerance, .face_resolution = 256});
+        const Transfer transfer = precompute(receivers, scenes::no_blockers(),
+                                             {.tolerance = tolerance, .face_resolution = 256});
         double squares = 0.0;
         for (const double b : radiance_under_white(transfer)) {
-            // Only the clusters that the horizon cuts are wrong: half of its length times the RMS error allowed times the
-            // width of such a cluster (1/8 rad at the coarsest) if all erred alike.
-            EXPECT_NEAR(b, 1.0, 2.0 * std::numbers::pi * static_cast<double>(tolerance) / 8.0 * 3.0);
+            // Only the clusters that the horizon cuts are wrong: half of its length times the RMS
+            // error allowed times the width of such a cluster (1/8 rad at the coarsest) if all
+            // erred alike.
+            EXPECT_NEAR(b, 1.0,
+                        2.0 * std::numbers::pi * static_cast<double>(tolerance) / 8.0 * 3.0);
             squares += (b - 1.0) * (b - 1.0);
         }
-        EXPECT_LT(std::sqrt(squares / 300.0), 2.0 * std::numbers::pi * static_cast<double>(tolerance) / 8.0);
+        EXPECT_LT(std::sqrt(squares / 300.0),
+                  2.0 * std::numbers::pi * static_cast<double>(tolerance) / 8.0);
     }
 }
 
 TEST(Precompute, FloorWithNothingInTheWay) {
-    // The horizon runs along cell edges. The samples on it are not above it, so the lowest ring of cells counts 12 of 16. There T
-    // runs from 0 to h/pi in a ring of height h, at most t on either side of its mean: h < 2 pi t, a quarter of h^2 is lost.
+    // The horizon runs along cell edges. The samples on it are not above it, so the lowest ring of
+    // cells counts 12 of 16. There T runs from 0 to h/pi in a ring of height h, at most t on either
+    // side of its mean: h < 2 pi t, a quarter of h^2 is lost.
     constexpr double Tolerance = 0.0135;
     constexpr double Lost = Tolerance * Tolerance * std::numbers::pi * std::numbers::pi;
     const Transfer transfer = precompute(row_of_receivers(20, -1.0f, 1.0f), scenes::no_blockers(),
@@ -101,14 +110,15 @@ TEST(Precompute, FloorWithNothingInTheWay) {
     }
 }
 
-// A half-plane parallel to the receiver at height h whose edge is d away hides the lune from the angle phi = atan(d/h) to the
-// horizon. The lune's outline projects onto a half circle and a half ellipse of half-axis sin phi: pi/2 (1 - sin phi) is lost.
+// A half-plane parallel to the receiver at height h whose edge is d away hides the lune from the
+// angle phi = atan(d/h) to the horizon. The lune's outline projects onto a half circle and a half
+// ellipse of half-axis sin phi: pi/2 (1 - sin phi) is lost.
 double radiance_beside_half_plane(double h, double d) {
     return 0.5 * (1.0 + d / std::hypot(d, h));
 }
 
-// Where the shadow's edge runs along the texels, each may err by half of a texel of 2 / R along a line of length at most pi on
-// the unit sphere: 0.5 (2 / 256) pi / pi.
+// Where the shadow's edge runs along the texels, each may err by half of a texel of 2 / R along a
+// line of length at most pi on the unit sphere: 0.5 (2 / 256) pi / pi.
 constexpr double HalfTexel = 1.0 / 256.0;
 
 TEST(Precompute, InfiniteHalfPlaneOverAReceiver) {
@@ -150,8 +160,8 @@ TEST(Precompute, MeshOfAHalfPlaneOverAReceiver) {
     }
 }
 
-// A sphere of angular radius a, its centre at the angle t from the normal and all of it above the horizon, hides pi sin^2(a) cos(t)
-// of a constant sky's irradiance pi.
+// A sphere of angular radius a, its centre at the angle t from the normal and all of it above the
+// horizon, hides pi sin^2(a) cos(t) of a constant sky's irradiance pi.
 double radiance_below_sphere(const glm::dvec3& position, const glm::dvec3& centre, double radius) {
     const glm::dvec3 to_centre = centre - position;
     const double distance = glm::length(to_centre);
@@ -165,19 +175,22 @@ TEST(Precompute, SphereOverAFloor) {
     const PrecomputeOptions options{.tolerance = 0.005f, .face_resolution = 256};
     const std::vector<double> analytic =
         radiance_under_white(precompute(receivers, scenes::sphere_blocker(centre, 1.0), options));
-    // 10,242 vertices with edges of 0.018: the polyhedron's sagitta is at most 0.018^2 / 6 = 5e-5 of the radius.
+    // 10,242 vertices with edges of 0.018: the polyhedron's sagitta is at most 0.018^2 / 6 = 5e-5
+    // of the radius.
     const RayScene sphere(scenes::icosphere(5, 1.0f, centre));
     const std::vector<double> traced = radiance_under_white(precompute(receivers, sphere, options));
     for (std::size_t i = 0; i < receivers.size(); ++i) {
         const double expected = radiance_below_sphere(receivers.positions[i], centre, 1.0);
-        // The outline's clusters err by chance, not alike: well below the tolerance of T times the outline's solid angle.
+        // The outline's clusters err by chance, not alike: well below the tolerance of T times the
+        // outline's solid angle.
         EXPECT_NEAR(analytic[i], expected, 0.004) << "receiver " << i;
         EXPECT_NEAR(traced[i], expected, 0.004) << "receiver " << i;
     }
 }
 
 TEST(Precompute, SphereOnAMeshFloorBlocksWithTheFloorItselfThere) {
-    // The same with the floor and its automatic bias among the blockers: nothing of the floor may be in its own way.
+    // The same with the floor and its automatic bias among the blockers: nothing of the floor may
+    // be in its own way.
     const glm::dvec3 centre(0.0, 1.3, 0.0);
     const mesh::TriangleMesh mesh =
         scenes::joined(scenes::floor_grid(9, 4.0f), scenes::icosphere(4, 1.0f, centre));
@@ -190,7 +203,8 @@ TEST(Precompute, SphereOnAMeshFloorBlocksWithTheFloorItselfThere) {
                    {.tolerance = 0.005f, .face_resolution = 256, .bias = automatic_bias(mesh)});
     const std::vector<double> radiance = radiance_under_white(transfer);
     for (std::size_t i = 0; i < receivers.size(); ++i)
-        // Sagitta 0.037^2 / 6 = 2.3e-4, twice that in area, and the bias of 6e-4 towards the sphere.
+        // Sagitta 0.037^2 / 6 = 2.3e-4, twice that in area, and the bias of 6e-4 towards the
+        // sphere.
         EXPECT_NEAR(radiance[i], radiance_below_sphere(receivers.positions[i], centre, 1.0), 0.006);
 }
 
@@ -223,7 +237,8 @@ TEST(Precompute, ToleranceZeroHoldsTheVisibilityOfEveryTexelCentre) {
 TEST(Precompute, ResolutionsBetweenPowersOfTwoGoDownToTheNextOne) {
     const Receivers receivers = row_of_receivers(3, -1.0f, 1.0f);
     const auto clusters = [&](std::uint32_t r) {
-        return precompute(receivers, scenes::no_blockers(), {.tolerance = 0.0f, .face_resolution = r})
+        return precompute(receivers, scenes::no_blockers(),
+                          {.tolerance = 0.0f, .face_resolution = r})
             .num_clusters();
     };
     EXPECT_EQ(clusters(2), 24u);
@@ -241,14 +256,17 @@ TEST(Precompute, CountsAreTheWeightedSamplesOfEachCluster) {
         for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
             const std::uint32_t receiver = transfer.order[place];
             const glm::vec3& n = scene.receivers.normals[receiver];
-            const glm::vec3 origin = ray_origin(scene.receivers.positions[receiver], n, scene.options.bias);
+            const glm::vec3 origin =
+                ray_origin(scene.receivers.positions[receiver], n, scene.options.bias);
             int count = 0;
             bool doubtful = false;
             for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                 const glm::vec3 w = direction(points[l]);
                 const float cosine = glm::dot(n, w);
                 doubtful = doubtful || std::abs(cosine) < 1e-6f;
-                const int weight = cell.level < 6 ? SampleWeights[l] : l == CentreSample ? FullCount : 0;
+                const int weight = cell.level < 6      ? SampleWeights[l]
+                                   : l == CentreSample ? FullCount
+                                                       : 0;
                 count += cosine > 0.0f && !scene.rays.occluded(origin, w) ? weight : 0;
             }
             if (!doubtful) {
@@ -293,9 +311,9 @@ TEST(Precompute, ATighterToleranceOnlyRefinesTheTree) {
             for (const Cell& cell : tight.quadtree.leaves()) {
                 const double size = cell.size();
                 std::vector<std::uint32_t> around;
-                loose->quadtree.find_leaves(
-                    {cell.face, cell.x * size, cell.y * size, (cell.x + 1) * size, (cell.y + 1) * size},
-                    around);
+                loose->quadtree.find_leaves({cell.face, cell.x * size, cell.y * size,
+                                             (cell.x + 1) * size, (cell.y + 1) * size},
+                                            around);
                 ASSERT_EQ(around.size(), 1u);
                 ASSERT_LE(loose->quadtree.leaves()[around[0]].level, cell.level);
             }
@@ -309,7 +327,8 @@ TEST(Precompute, EpsilonIsToleranceOverTheRootOfTheNumberOfReceivers) {
     SmallScene scene;
     const Transfer by_tolerance = scene.transfer();
     const double n = static_cast<double>(scene.receivers.size());
-    scene.options.epsilon = static_cast<float>(static_cast<double>(scene.options.tolerance) / std::sqrt(n));
+    scene.options.epsilon =
+        static_cast<float>(static_cast<double>(scene.options.tolerance) / std::sqrt(n));
     scene.options.tolerance = 0.5f; // overridden
     expect_same(scene.transfer(), by_tolerance);
 }
@@ -334,7 +353,8 @@ TEST(Precompute, AnyNumberOfThreadsGivesTheSameBits) {
     const SmallScene scene;
     std::optional<Transfer> first;
     for (const std::size_t num_threads : {1u, 2u, 3u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, num_threads);
+        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                          num_threads);
         const Transfer transfer = scene.transfer();
         if (first)
             expect_same(transfer, *first);
@@ -378,7 +398,8 @@ TEST(Precompute, BiasLiftsTheRaysOffTheSurface) {
     const Receivers receivers = row_of_receivers(4, -0.1f, 0.1f);
     const RayScene cover(scenes::floor_grid(2, 100.0f, 1e-3f));
     const auto radiance = [&](float bias) {
-        return radiance_under_white(precompute(receivers, cover, {.face_resolution = 32, .bias = bias}))[0];
+        return radiance_under_white(
+            precompute(receivers, cover, {.face_resolution = 32, .bias = bias}))[0];
     };
     EXPECT_NEAR(radiance(5e-4f), 0.0, 1e-6);
     EXPECT_NEAR(radiance(2e-3f), 1.0, 1e-6);
@@ -393,8 +414,9 @@ TEST(Precompute, StopsBeforeItBegins) {
 }
 
 TEST(Precompute, StopsSoon) {
-    // Packets asked for after the stop. At a million packets a second and more, "a few times a second" is 300,000 of them
-    // on each thread; however few the receivers are and however many the directions.
+    // Packets asked for after the stop. At a million packets a second and more, "a few times a
+    // second" is 300,000 of them on each thread; however few the receivers are and however many the
+    // directions.
     for (const std::size_t num_receivers : {40u, 600u}) {
         std::stop_source stop;
         std::atomic<std::size_t> num_packets = 0;
@@ -402,7 +424,8 @@ TEST(Precompute, StopsSoon) {
         public:
             Watched(std::stop_source& source, std::atomic<std::size_t>& packets)
                 : source_(source), packets_(packets) {}
-            std::uint32_t occluded(const glm::vec3&, const DirectionPacket&, std::uint32_t) const override {
+            std::uint32_t occluded(const glm::vec3&, const DirectionPacket&,
+                                   std::uint32_t) const override {
                 if (++packets_ == 1000)
                     source_.request_stop();
                 return 0;
@@ -414,8 +437,8 @@ TEST(Precompute, StopsSoon) {
         };
         PrecomputeOptions options{.tolerance = 0.0f, .min_level = 8, .face_resolution = 256};
         options.stop = stop.get_token();
-        EXPECT_THROW(static_cast<void>(
-                         precompute(random_receivers(num_receivers, 3), Watched(stop, num_packets), options)),
+        EXPECT_THROW(static_cast<void>(precompute(random_receivers(num_receivers, 3),
+                                                  Watched(stop, num_packets), options)),
                      Cancelled);
         EXPECT_LT(num_packets, 400000u) << num_receivers << " receivers";
     }
@@ -447,7 +470,8 @@ TEST(Precompute, RefusesOptionsOutOfRangeInOneLine) {
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const float infinity = std::numeric_limits<float>::infinity();
     const Receivers receivers = row_of_receivers(3, -1.0f, 1.0f);
-    const auto refused = [&](const Receivers& r, const PrecomputeOptions& options, const char* expected) {
+    const auto refused = [&](const Receivers& r, const PrecomputeOptions& options,
+                             const char* expected) {
         try {
             static_cast<void>(precompute(r, scenes::no_blockers(), options));
             ADD_FAILURE() << "accepted: " << expected;

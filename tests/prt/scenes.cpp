@@ -37,10 +37,10 @@ mesh::TriangleMesh icosphere(std::uint32_t level, float radius, const glm::vec3&
     std::vector<glm::vec3> points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0},
                                      {0, -1, g}, {0, 1, g}, {0, -1, -g}, {0, 1, -g},
                                      {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
-    std::vector<mesh::Triangle> triangles = {{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   {0, 7, 10}, {0, 10, 11},
-                                             {1, 5, 9},  {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                                             {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
-                                             {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}};
+    std::vector<mesh::Triangle> triangles = {
+        {0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+        {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+        {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     for (glm::vec3& point : points)
         point = glm::normalize(point);
     for (std::uint32_t step = 0; step < level; ++step) {
@@ -120,7 +120,8 @@ glm::vec3 random_direction(std::mt19937& random) {
     return glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
 }
 
-std::vector<bool> random_split_flags(std::mt19937& random, std::uint32_t max_level, double probability) {
+std::vector<bool> random_split_flags(std::mt19937& random, std::uint32_t max_level,
+                                     double probability) {
     std::bernoulli_distribution splits(probability);
     std::vector<bool> flags;
     const auto grow = [&](const auto& self, std::uint32_t level) -> void {
@@ -134,10 +135,11 @@ std::vector<bool> random_split_flags(std::mt19937& random, std::uint32_t max_lev
     return flags;
 }
 
-glm::dvec3 vector_irradiance_of_white(cubemap::Face face, double s0, double t0, double s1, double t1) {
+glm::dvec3 vector_irradiance_of_white(cubemap::Face face, double s0, double t0, double s1,
+                                      double t1) {
     const std::array<glm::dvec3, 4> corners = {
-        cubemap::direction(face, s0, t0), cubemap::direction(face, s1, t0), cubemap::direction(face, s1, t1),
-        cubemap::direction(face, s0, t1)};
+        cubemap::direction(face, s0, t0), cubemap::direction(face, s1, t0),
+        cubemap::direction(face, s1, t1), cubemap::direction(face, s0, t1)};
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < 4; ++i) {
         const glm::dvec3 across = glm::cross(corners[i], corners[(i + 1) % 4]);
@@ -145,7 +147,8 @@ glm::dvec3 vector_irradiance_of_white(cubemap::Face face, double s0, double t0, 
         sum += 0.5 * std::atan2(sine, glm::dot(corners[i], corners[(i + 1) % 4])) / sine * across;
     }
     // The sense of rotation is the face's; the light comes from its middle.
-    return glm::dot(sum, cubemap::direction(face, 0.5 * (s0 + s1), 0.5 * (t0 + t1))) > 0.0 ? sum : -sum;
+    return glm::dot(sum, cubemap::direction(face, 0.5 * (s0 + s1), 0.5 * (t0 + t1))) > 0.0 ? sum
+                                                                                           : -sum;
 }
 
 glm::dvec3 vector_irradiance_of_white(const prt::Cell& cell) {

@@ -18,7 +18,8 @@
 namespace relumine::relight {
 namespace {
 
-void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance, const std::string& what) {
+void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance,
+                 const std::string& what) {
     EXPECT_LE(glm::length(a - b), tolerance) << what;
 }
 
@@ -36,7 +37,8 @@ VectorIrradiance total(std::span<const VectorIrradiance> sums) {
     return result;
 }
 
-/// The sum of L dw w over the texels with their exact vector irradiance, or with dw times the centre's direction.
+/// The sum of L dw w over the texels with their exact vector irradiance, or with dw times the
+/// centre's direction.
 VectorIrradiance sum_over_texels(const cubemap::CubeMap& environment, bool exact) {
     VectorIrradiance result;
     const std::uint32_t r = environment.resolution;
@@ -45,7 +47,8 @@ VectorIrradiance sum_over_texels(const cubemap::CubeMap& environment, bool exact
         for (std::uint32_t y = 0; y < r; ++y)
             for (std::uint32_t x = 0; x < r; ++x) {
                 const glm::dvec3 e =
-                    exact ? scenes::vector_irradiance_of_white(face, x / n, y / n, (x + 1) / n, (y + 1) / n)
+                    exact ? scenes::vector_irradiance_of_white(face, x / n, y / n, (x + 1) / n,
+                                                               (y + 1) / n)
                           : cubemap::solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n) *
                                 cubemap::texel_direction(face, x, y, r);
                 const glm::dvec3 radiance = environment.at(face, x, y);
@@ -62,8 +65,8 @@ double power_of(const cubemap::CubeMap& environment) {
 // Weights are stored in float: 2^-24, here with room for a sum.
 constexpr double FloatWeights = 1e-7;
 
-// A part of side h (in u) stands for itself by its centre. The solid angle's density falls by up to 1 for each unit of u or v, and
-// u and v have the variance h^2 / 12 in it: relative error h^2 / 6.
+// A part of side h (in u) stands for itself by its centre. The solid angle's density falls by up to
+// 1 for each unit of u or v, and u and v have the variance h^2 / 12 in it: relative error h^2 / 6.
 double midpoint_error(double h) {
     return h * h / 6.0;
 }
@@ -75,8 +78,8 @@ TEST(LightBinning, LeavesThatFitTexelsAddUpToTheDirectSum) {
         const cubemap::CubeMap environment = scenes::random_environment(r, r);
         const auto sums = LightBinning(r).sums(environment, tree.leaves());
         ASSERT_EQ(sums.size(), tree.num_leaves());
-        expect_near(total(sums), sum_over_texels(environment, false), FloatWeights * power_of(environment),
-                    "R = " + std::to_string(r));
+        expect_near(total(sums), sum_over_texels(environment, false),
+                    FloatWeights * power_of(environment), "R = " + std::to_string(r));
     }
 }
 
@@ -114,9 +117,12 @@ TEST(LightBinning, EveryLeafGetsItsOwnPart) {
                     if (s0 >= s1 || t0 >= t1)
                         continue;
                     const glm::dvec3 radiance = environment.at(cell.face, x, y);
-                    const glm::dvec3 e = scenes::vector_irradiance_of_white(cell.face, s0, t0, s1, t1);
-                    expected += {.red = radiance.r * e, .green = radiance.g * e, .blue = radiance.b * e};
-                    power += (radiance.r + radiance.g + radiance.b) * cubemap::solid_angle(s0, t0, s1, t1);
+                    const glm::dvec3 e =
+                        scenes::vector_irradiance_of_white(cell.face, s0, t0, s1, t1);
+                    expected +=
+                        {.red = radiance.r * e, .green = radiance.g * e, .blue = radiance.b * e};
+                    power += (radiance.r + radiance.g + radiance.b) *
+                             cubemap::solid_angle(s0, t0, s1, t1);
                 }
             expect_near(binning.sum(environment, cell), expected,
                         (midpoint_error(2.0 * std::min(1.0 / n, size)) + FloatWeights) * power,
@@ -126,7 +132,8 @@ TEST(LightBinning, EveryLeafGetsItsOwnPart) {
 }
 
 TEST(LightBinning, WhiteFaceHasTheVectorIrradianceOfASquare) {
-    // Half the sum over four edges of the angle acos(1/3) times the edge plane's normal, which leans by 45 degrees.
+    // Half the sum over four edges of the angle acos(1/3) times the edge plane's normal, which
+    // leans by 45 degrees.
     const double expected = 2.0 * std::acos(1.0 / 3.0) / std::sqrt(2.0);
     for (const std::uint32_t r : {64u, 100u, 256u}) {
         const cubemap::CubeMap white(r, glm::vec3(1.0f, 2.0f, 0.0f));
@@ -134,7 +141,8 @@ TEST(LightBinning, WhiteFaceHasTheVectorIrradianceOfASquare) {
         for (const cubemap::Face face : cubemap::AllFaces) {
             const VectorIrradiance sum = binning.sum(white, {.face = face});
             const glm::dvec3 e = expected * cubemap::direction(face, 0.5, 0.5);
-            expect_near(sum, {.red = e, .green = 2.0 * e}, 2.0 * expected * midpoint_error(2.0 / r), "face");
+            expect_near(sum, {.red = e, .green = 2.0 * e}, 2.0 * expected * midpoint_error(2.0 / r),
+                        "face");
         }
     }
 }
@@ -151,7 +159,8 @@ TEST(LightBinning, ACellIsTheSumOfItsChildren) {
             for (std::uint32_t i = 0; i < 4; ++i)
                 children += binning.sum(environment, cell.child(i));
             const VectorIrradiance sum = binning.sum(environment, cell);
-            const double power = glm::length(sum.red) + glm::length(sum.green) + glm::length(sum.blue);
+            const double power =
+                glm::length(sum.red) + glm::length(sum.green) + glm::length(sum.blue);
             // Where the children cut texels, the cell still takes them whole.
             const bool fits = r % (2u << cell.level) == 0;
             const double h = 2.0 * std::min(1.0 / r, cell.size());
@@ -164,8 +173,8 @@ TEST(LightBinning, ACellIsTheSumOfItsChildren) {
 TEST(LightBinning, ALightOfOneTexelIsItsDirectionTimesItsPower) {
     cubemap::CubeMap environment(32);
     environment.at(cubemap::Face::NegativeX, 7, 30) = {100.0f, 0.0f, 1.0f};
-    const VectorIrradiance sum =
-        LightBinning(32).sum(environment, {.face = cubemap::Face::NegativeX, .level = 1, .x = 0, .y = 1});
+    const VectorIrradiance sum = LightBinning(32).sum(
+        environment, {.face = cubemap::Face::NegativeX, .level = 1, .x = 0, .y = 1});
     const double power = 100.0 * cubemap::solid_angle(7 / 32.0, 30 / 32.0, 8 / 32.0, 31 / 32.0);
     expect_near(sum.red, power * cubemap::texel_direction(cubemap::Face::NegativeX, 7, 30, 32),
                 FloatWeights * power, "");
@@ -182,7 +191,8 @@ TEST(TexelSums, EqualAPlainLoopForAnySizeOnEveryTarget) {
     constexpr std::size_t Stride = 60;
     for (const std::size_t width : {1u, 3u, 4u, 7u, 8u, 16u, 17u, 31u, 60u})
         for (const std::size_t height : {1u, 2u, 63u, 64u, 65u, 200u}) {
-            // What lies beside the rectangle must not matter, not even to lanes that are not counted.
+            // What lies beside the rectangle must not matter, not even to lanes that are not
+            // counted.
             constexpr float Outside = std::numeric_limits<float>::quiet_NaN();
             std::vector<glm::vec3> radiance((height - 1) * Stride + width, glm::vec3(Outside));
             std::vector<float> weights(radiance.size(), Outside);
@@ -190,18 +200,23 @@ TEST(TexelSums, EqualAPlainLoopForAnySizeOnEveryTarget) {
             for (std::size_t y = 0; y < height; ++y)
                 for (std::size_t x = 0; x < width; ++x) {
                     const std::size_t i = y * Stride + x;
-                    radiance[i] = {value(random), value(random), x == width / 2 ? 1e5f : value(random)};
+                    radiance[i] = {value(random), value(random),
+                                   x == width / 2 ? 1e5f : value(random)};
                     weights[i] = value(random);
-                    const glm::dvec3 weighted = glm::dvec3(radiance[i]) * static_cast<double>(weights[i]);
+                    const glm::dvec3 weighted =
+                        glm::dvec3(radiance[i]) * static_cast<double>(weights[i]);
                     expected.one += weighted;
                     expected.x += weighted * static_cast<double>(x);
                     expected.y += weighted * static_cast<double>(y);
                 }
             scenes::on_every_target([&] {
-                const TexelSums sums = texel_sums(radiance.data(), weights.data(), Stride, width, height);
-                // At most 64 additions in float, errors half a unit of 2^-24 each that mostly cancel.
+                const TexelSums sums =
+                    texel_sums(radiance.data(), weights.data(), Stride, width, height);
+                // At most 64 additions in float, errors half a unit of 2^-24 each that mostly
+                // cancel.
                 for (int channel = 0; channel < 3; ++channel) {
-                    EXPECT_NEAR(sums.one[channel], expected.one[channel], 1e-6 * expected.one[channel]);
+                    EXPECT_NEAR(sums.one[channel], expected.one[channel],
+                                1e-6 * expected.one[channel]);
                     EXPECT_NEAR(sums.x[channel], expected.x[channel], 1e-6 * expected.x[channel]);
                     EXPECT_NEAR(sums.y[channel], expected.y[channel], 1e-6 * expected.y[channel]);
                 }
@@ -216,7 +231,8 @@ TEST(LightBinning, AnyNumberOfThreadsGivesTheSameBits) {
     const LightBinning binning(30);
     std::vector<VectorIrradiance> first;
     for (const std::size_t num_threads : {1u, 2u, 3u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, num_threads);
+        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                          num_threads);
         const auto sums = binning.sums(environment, tree.leaves());
         if (!first.empty()) {
             EXPECT_EQ(sums, first);

@@ -16,7 +16,8 @@ namespace {
 
 using scenes::relit_scene;
 
-void expect_sums_to_radiance(const Relighter& relighter, const std::vector<std::uint32_t>& receivers) {
+void expect_sums_to_radiance(const Relighter& relighter,
+                             const std::vector<std::uint32_t>& receivers) {
     glm::dvec3 mean(0.0);
     for (const std::uint32_t receiver : receivers)
         mean += glm::dvec3(relighter.radiance()[receiver]) / static_cast<double>(receivers.size());
@@ -60,7 +61,8 @@ TEST(ContributionMap, IsBrightOnlyWhereLightReachesTheReceiver) {
         for (const cubemap::Face face : cubemap::AllFaces)
             for (std::uint32_t y = 0; y < 32; ++y)
                 for (std::uint32_t x = 0; x < 32; ++x) {
-                    // A cell of the least depth reaches at most 0.25 (the sine of its angle) below the horizon.
+                    // A cell of the least depth reaches at most 0.25 (the sine of its angle) below
+                    // the horizon.
                     if (glm::dot(cubemap::texel_direction(face, x, y, 32), normal) < -0.25) {
                         EXPECT_EQ(map.at(face, x, y), glm::vec3(0.0f));
                     }
@@ -72,7 +74,8 @@ TEST(ContributionMap, RefusesNoReceiversAndWrongOnes) {
     Relighter relighter(relit_scene().transfer);
     relighter.set_environment(cubemap::CubeMap(8, glm::vec3(1.0f)));
     EXPECT_THROW(static_cast<void>(contribution_map(relighter, {})), std::invalid_argument);
-    const std::vector<std::uint32_t> beyond = {static_cast<std::uint32_t>(relighter.radiance().size())};
+    const std::vector<std::uint32_t> beyond = {
+        static_cast<std::uint32_t>(relighter.radiance().size())};
     EXPECT_THROW(static_cast<void>(contribution_map(relighter, beyond)), std::invalid_argument);
 }
 
@@ -90,7 +93,8 @@ TEST(RadianceFrom, PartsAddUpToTheWhole) {
         // max(n.E, 0) is linear but for clusters on the receiver's horizon.
         EXPECT_NEAR(glm::length(part[i] + rest[i] - relighter.radiance()[i]), 0.0,
                     0.01 * static_cast<double>(glm::length(relighter.radiance()[i])) + 1e-6);
-    EXPECT_THROW(static_cast<void>(radiance_from(relighter, std::vector<float>(5))), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(radiance_from(relighter, std::vector<float>(5))),
+                 std::invalid_argument);
 }
 
 } // namespace

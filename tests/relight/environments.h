@@ -16,8 +16,8 @@
 namespace relumine::scenes {
 
 /// Texels between 0 and 1, a few of them `peak`.
-[[nodiscard]] inline cubemap::CubeMap random_environment(std::uint32_t resolution, std::uint32_t seed,
-                                                         float peak = 50.0f) {
+[[nodiscard]] inline cubemap::CubeMap random_environment(std::uint32_t resolution,
+                                                         std::uint32_t seed, float peak = 50.0f) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> radiance(0.0f, 1.0f);
     cubemap::CubeMap environment(resolution);

@@ -32,8 +32,8 @@ TEST(Exact, EqualsALoopOverTexelsWithSingleRays) {
         some.push_back(i);
     for (const std::uint32_t r : {1u, 6u, 16u}) { // tiles of 4 x 4: one of them cut, several, none
         const cubemap::CubeMap environment = scenes::random_environment(r, r);
-        const auto radiance =
-            exact_radiance(scene.receivers, some, scene.rays, environment, {.bias = scene.options.bias});
+        const auto radiance = exact_radiance(scene.receivers, some, scene.rays, environment,
+                                             {.bias = scene.options.bias});
         ASSERT_EQ(radiance.size(), some.size());
         for (std::size_t i = 0; i < some.size(); ++i) {
             const glm::vec3& normal = scene.receivers.normals[some[i]];
@@ -46,10 +46,11 @@ TEST(Exact, EqualsALoopOverTexelsWithSingleRays) {
                         const glm::dvec3 w = cubemap::texel_direction(face, x, y, r);
                         const double cosine = glm::dot(glm::dvec3(normal), w);
                         const double n = r;
-                        const double dw = cubemap::solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n);
+                        const double dw =
+                            cubemap::solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n);
                         if (cosine > 0.0 && !scene.rays.occluded(origin, glm::vec3(w)))
-                            expected +=
-                                glm::dvec3(environment.at(face, x, y)) * (cosine * dw / std::numbers::pi);
+                            expected += glm::dvec3(environment.at(face, x, y)) *
+                                        (cosine * dw / std::numbers::pi);
                     }
             EXPECT_LT(glm::length(radiance[i] - expected), 1e-6 * (1.0 + glm::length(expected)));
         }
@@ -59,8 +60,8 @@ TEST(Exact, EqualsALoopOverTexelsWithSingleRays) {
 TEST(Exact, WhiteFurnaceOfAFloor) {
     const prt::Receivers receivers{.positions = {glm::vec3(0.0f)}, .normals = {{0, 1, 0}}};
     const std::vector<std::uint32_t> one = {0};
-    const auto b =
-        exact_radiance(receivers, one, scenes::no_blockers(), cubemap::CubeMap(128, glm::vec3(1.0f)));
+    const auto b = exact_radiance(receivers, one, scenes::no_blockers(),
+                                  cubemap::CubeMap(128, glm::vec3(1.0f)));
     EXPECT_NEAR(b[0].r, 1.0, 4.0 / 128 / 128); // midpoint rule: h^2 with h = 2 / R
 }
 
@@ -80,8 +81,8 @@ TEST(Exact, ToleranceZeroReproducesTheFullProduct) {
     for (const std::uint32_t r : {8u, 16u}) {
         const scenes::RelitScene scene(0.0f, r);
         const cubemap::CubeMap environment = scenes::random_environment(r, r, 1000.0f);
-        const auto exact = exact_radiance(scene.receivers, all_of(scene.receivers.size()), scene.rays,
-                                          environment, {.bias = scene.options.bias});
+        const auto exact = exact_radiance(scene.receivers, all_of(scene.receivers.size()),
+                                          scene.rays, environment, {.bias = scene.options.bias});
         const std::vector<glm::vec3> expected(exact.begin(), exact.end());
         // Float weights and sums of 64 in the kernels.
         scenes::expect_close(relight(scene.transfer, environment), expected, 4e-6);
@@ -96,8 +97,8 @@ TEST(Exact, ATighterToleranceDoesNotRaiseTheVerifiedError) {
         const scenes::RelitScene scene(tolerance, 64);
         const auto all = all_of(scene.receivers.size());
         if (exact.empty())
-            exact =
-                exact_radiance(scene.receivers, all, scene.rays, environment, {.bias = scene.options.bias});
+            exact = exact_radiance(scene.receivers, all, scene.rays, environment,
+                                   {.bias = scene.options.bias});
         const double error = compare(all, exact, relight(scene.transfer, environment)).relative_l2;
         if (!errors.empty()) {
             EXPECT_LE(error, 1.05 * errors.back() + 1e-6)
@@ -113,14 +114,15 @@ TEST(Exact, AnyNumberOfThreadsGivesTheSameBitsAndProgressEndsAtOne) {
     const scenes::RelitScene& scene = scenes::relit_scene();
     std::vector<std::vector<glm::dvec3>> results;
     for (const std::size_t num_threads : {1u, 2u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, num_threads);
+        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                          num_threads);
         std::vector<double> fractions;
         ExactOptions options{.bias = scene.options.bias};
         options.on_progress = [&](double fraction) {
             fractions.push_back(fraction);
         };
-        results.push_back(exact_radiance(scene.receivers, all_of(scene.receivers.size()), scene.rays,
-                                         scenes::random_environment(8, 2), options));
+        results.push_back(exact_radiance(scene.receivers, all_of(scene.receivers.size()),
+                                         scene.rays, scenes::random_environment(8, 2), options));
         EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
         ASSERT_FALSE(fractions.empty());
         EXPECT_EQ(fractions.back(), 1.0);
@@ -138,9 +140,10 @@ TEST(Exact, Stops) {
         ++num_calls;
         stop.request_stop();
     };
-    EXPECT_THROW(static_cast<void>(exact_radiance(scene.receivers, all_of(scene.receivers.size()), scene.rays,
-                                                  scenes::random_environment(64, 3), options)),
-                 prt::Cancelled);
+    EXPECT_THROW(
+        static_cast<void>(exact_radiance(scene.receivers, all_of(scene.receivers.size()),
+                                         scene.rays, scenes::random_environment(64, 3), options)),
+        prt::Cancelled);
     EXPECT_LE(num_calls, 64) << "at most one row for each thread";
 }
 
@@ -178,7 +181,8 @@ TEST(Exact, RandomReceiversAreEvenlySpread) {
 TEST(Exact, CompareOnValuesWorkedByHand) {
     const std::vector<std::uint32_t> receivers = {2, 0};
     const std::vector<glm::dvec3> exact = {{1.0, 2.0, 3.0}, {0.0, 4.0, 2.0}};
-    const std::vector<glm::vec3> relit = {{0.0f, 4.0f, 5.0f}, {99.0f, 99.0f, 99.0f}, {1.0f, 2.0f, 4.0f}};
+    const std::vector<glm::vec3> relit = {
+        {0.0f, 4.0f, 5.0f}, {99.0f, 99.0f, 99.0f}, {1.0f, 2.0f, 4.0f}};
     const ErrorReport report = compare(receivers, exact, relit);
     EXPECT_DOUBLE_EQ(report.relative_l2, std::sqrt((1.0 + 9.0) / (14.0 + 20.0)));
     EXPECT_DOUBLE_EQ(report.mean_radiance, 2.0);
@@ -196,11 +200,13 @@ TEST(Exact, CompareOfWhatIsEqualOrBlack) {
     EXPECT_EQ(equal.mean_abs, 0.0);
     EXPECT_EQ(equal.max_abs, 0.0);
     EXPECT_EQ(equal.mean_radiance, 2.0);
-    const ErrorReport both_black = compare(receivers, black, std::vector<glm::vec3>{glm::vec3(0.0f)});
+    const ErrorReport both_black =
+        compare(receivers, black, std::vector<glm::vec3>{glm::vec3(0.0f)});
     EXPECT_EQ(both_black.relative_l2, 0.0);
     EXPECT_EQ(both_black.mean_radiance, 0.0);
     EXPECT_EQ(compare({}, {}, {}).relative_l2, 0.0);
-    EXPECT_TRUE(std::isinf(compare(receivers, black, std::vector<glm::vec3>{glm::vec3(1.0f)}).relative_l2));
+    EXPECT_TRUE(
+        std::isinf(compare(receivers, black, std::vector<glm::vec3>{glm::vec3(1.0f)}).relative_l2));
 }
 
 } // namespace

@@ -48,14 +48,15 @@ TEST(Flicker, HandWorkedValues) {
     EXPECT_EQ(report.relative_l2[2], 0.0);
     EXPECT_NEAR(report.mean_relative_l2, (0.2 / std::sqrt(5.0) + 0.16) / 3.0, 1e-12);
     // Exposure goes into the weight, too: all of t = 0 by hand at twice the light.
-    EXPECT_NEAR(measure_flicker(frames, reference, 2.0).inconsistency[0], (1.4 * 0.4 + 1.0 * 0.8) / 2.0,
-                1e-12);
+    EXPECT_NEAR(measure_flicker(frames, reference, 2.0).inconsistency[0],
+                (1.4 * 0.4 + 1.0 * 0.8) / 2.0, 1e-12);
 }
 
 TEST(Flicker, OfColoursIsThatOfLuminance) {
     const Frames reference = {{glm::dvec3(0.0)}, {glm::dvec3(0.0)}};
     const Frames frames = {{glm::dvec3(0.0)}, {glm::dvec3(1.0, 2.0, 4.0)}};
-    EXPECT_NEAR(measure_flicker(frames, reference).inconsistency[0], 0.2125 + 2 * 0.7154 + 4 * 0.0721, 1e-12);
+    EXPECT_NEAR(measure_flicker(frames, reference).inconsistency[0],
+                0.2125 + 2 * 0.7154 + 4 * 0.0721, 1e-12);
 }
 
 TEST(Flicker, AConstantErrorIsNoFlicker) {
@@ -109,7 +110,8 @@ TEST(Flicker, OfFilesIsThatOfArrays) {
     for (const auto& frame : frames)
         file.write(reinterpret_cast<const char*>(frame.data()), static_cast<std::streamsize>(24));
     file.close();
-    EXPECT_EQ(measure_flicker(std::vector{both}, b).inconsistency, measure_flicker(a, b).inconsistency);
+    EXPECT_EQ(measure_flicker(std::vector{both}, b).inconsistency,
+              measure_flicker(a, b).inconsistency);
     EXPECT_THROW(static_cast<void>(measure_flicker(std::vector{both}, std::vector{b[0]})),
                  std::runtime_error);
     EXPECT_THROW(static_cast<void>(measure_flicker(std::vector{a[0]}, std::vector{both})),
@@ -126,8 +128,9 @@ TEST(Flicker, OfFilesIsThatOfArrays) {
 }
 
 TEST(Flicker, PlotsHaveTheirCurves) {
-    const NamedReport report{"clusters", measure_flicker(Frames{grey({1.0}), grey({1.5}), grey({1.0})},
-                                                         Frames{grey({1.0}), grey({1.0}), grey({1.0})})};
+    const NamedReport report{"clusters",
+                             measure_flicker(Frames{grey({1.0}), grey({1.5}), grey({1.0})},
+                                             Frames{grey({1.0}), grey({1.0}), grey({1.0})})};
     const std::string svg = inconsistency_plot(std::vector{report}, "sun");
     EXPECT_THAT(svg, testing::HasSubstr("clusters"));
     EXPECT_THAT(svg, testing::HasSubstr("<polyline"));

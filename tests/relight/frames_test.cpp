@@ -31,7 +31,8 @@ class Frames : public testing::Test {
 protected:
     Frames() = default;
     explicit Frames(const ShadowRays& rays)
-        : relighter_(relit_scene().transfer, rays), binner_(relit_scene().transfer, rays.tolerance) {}
+        : relighter_(relit_scene().transfer, rays),
+          binner_(relit_scene().transfer, rays.tolerance) {}
 
     UpdateReport show(cubemap::CubeMap map, double bound = 0.0) {
         return relighter_.set_frame(binner_.bin(std::move(map)), bound);
@@ -98,7 +99,8 @@ TEST_F(Frames, WhenMostClustersChangeAllAreSummed) {
 }
 
 TEST_F(Frames, TheBoundHoldsOverManyFrames) {
-    // A smooth sky grows by 0.4 % a frame: with a bound of 1 % each cluster is updated at most every third frame, and is never more than 1 % off.
+    // A smooth sky grows by 0.4 % a frame: with a bound of 1 % each cluster is updated at most
+    // every third frame, and is never more than 1 % off.
     constexpr double Bound = 0.01;
     const cubemap::CubeMap base = scenes::smooth_environment(32);
     cubemap::CubeMap map = base;
@@ -128,8 +130,8 @@ TEST_F(TracedFrames, AMovingSunIsTracedAnew) {
     EXPECT_EQ(show(spot_map(19)).num_sharp_lights, 0u) << "nothing moved";
     show(cubemap::CubeMap(64, glm::vec3(0.2f, 0.3f, 0.4f))); // and it sets
     EXPECT_TRUE(relighter_.sharp_lights().empty());
-    scenes::expect_close(relighter_.radiance(), afresh(cubemap::CubeMap(64, glm::vec3(0.2f, 0.3f, 0.4f))),
-                         1e-5);
+    scenes::expect_close(relighter_.radiance(),
+                         afresh(cubemap::CubeMap(64, glm::vec3(0.2f, 0.3f, 0.4f))), 1e-5);
 }
 
 TEST_F(TracedFrames, ASunThatDimsWithinTheBoundStillLeavesItsClusterWhole) {
@@ -138,7 +140,8 @@ TEST_F(TracedFrames, ASunThatDimsWithinTheBoundStillLeavesItsClusterWhole) {
         cubemap::CubeMap map = spot_map(0);
         map.at(cubemap::Face::PositiveY, 20, 30) *= 1.0f - 0.03f * static_cast<float>(frame);
         show(map, 0.5);
-        // The sun is traced as it is; only what does not reach its cluster's bound could lag, and nothing else changed.
+        // The sun is traced as it is; only what does not reach its cluster's bound could lag, and
+        // nothing else changed.
         scenes::expect_close(relighter_.radiance(), afresh(map), 1e-5);
     }
 }
@@ -152,7 +155,8 @@ TEST_F(TracedFrames, LightListsAndRegionUpdatesMayComeBetween) {
 
     const std::vector<glm::vec3> patch(4, glm::vec3(5.0f));
     cubemap::CubeMap map = spot_map(1);
-    relighter_.update_region({.face = cubemap::Face::PositiveX, .x0 = 8, .y0 = 8, .x1 = 10, .y1 = 10}, patch);
+    relighter_.update_region(
+        {.face = cubemap::Face::PositiveX, .x0 = 8, .y0 = 8, .x1 = 10, .y1 = 10}, patch);
     show(spot_map(1)); // takes it away again
     scenes::expect_close(relighter_.radiance(), afresh(map), 1e-5);
 }

@@ -15,7 +15,8 @@ struct GlossyScene {
     prt::GlossyOptions options;
     prt::Transfer transfer = diffuse.transfer;
 
-    explicit GlossyScene(float tolerance = 0.05f, float roughness = 0.3f, std::uint32_t face_resolution = 64)
+    explicit GlossyScene(float tolerance = 0.05f, float roughness = 0.3f,
+                         std::uint32_t face_resolution = 64)
         : diffuse(0.02f, face_resolution), options{.tolerance = tolerance,
                                                    .face_resolution = face_resolution,
                                                    .bias = diffuse.options.bias} {

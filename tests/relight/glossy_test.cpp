@@ -32,8 +32,9 @@ std::vector<glm::vec3> copy(std::span<const glm::vec3> radiance) {
 
 double relative_l2(const scenes::GlossyScene& scene, const Relighter& relighter) {
     const std::vector<std::uint32_t> all = all_of(scene.receivers.size());
-    const std::vector<glm::dvec3> exact = exact_radiance(
-        scene.receivers, all, scene.diffuse.rays, relighter.environment(), {.bias = scene.options.bias});
+    const std::vector<glm::dvec3> exact =
+        exact_radiance(scene.receivers, all, scene.diffuse.rays, relighter.environment(),
+                       {.bias = scene.options.bias});
     return compare(all, exact, relighter.radiance()).relative_l2;
 }
 
@@ -59,9 +60,10 @@ prt::Receivers shiny_sphere(float roughness, std::size_t n) {
 prt::Transfer glossy_transfer(const prt::Receivers& receivers, float tolerance,
                               std::uint32_t face_resolution) {
     const scenes::AnalyticBlockers nothing = scenes::no_blockers();
-    prt::Transfer transfer = prt::precompute(receivers, nothing, {.face_resolution = face_resolution});
-    transfer.glossy = prt::precompute_glossy(receivers, nothing, transfer,
-                                             {.tolerance = tolerance, .face_resolution = face_resolution});
+    prt::Transfer transfer =
+        prt::precompute(receivers, nothing, {.face_resolution = face_resolution});
+    transfer.glossy = prt::precompute_glossy(
+        receivers, nothing, transfer, {.tolerance = tolerance, .face_resolution = face_resolution});
     prt::set_surfaces(transfer, receivers);
     return transfer;
 }
@@ -93,7 +95,8 @@ TEST(GlossyRelighting, HighlightOfASmallLightOnASphere) {
             glm::dvec3 expected(0.0);
             if (n_l > 0.0) {
                 const double n_h = glm::dot(n, h);
-                const double d = a2 / (std::numbers::pi * std::pow(n_h * n_h * (a2 - 1.0) + 1.0, 2.0));
+                const double d =
+                    a2 / (std::numbers::pi * std::pow(n_h * n_h * (a2 - 1.0) + 1.0, 2.0));
                 const double g = 0.5 / (n_l * std::sqrt(n_v * n_v * (1.0 - a2) + a2) +
                                         n_v * std::sqrt(n_l * n_l * (1.0 - a2) + a2));
                 const glm::dvec3 f0(1.0, 0.7, 0.3);
@@ -108,7 +111,8 @@ TEST(GlossyRelighting, HighlightOfASmallLightOnASphere) {
     }
 }
 
-// A white sky: what the lobe's albedo leaves of it, which evaluate_lobes() integrated over a fine grid gives.
+// A white sky: what the lobe's albedo leaves of it, which evaluate_lobes() integrated over a fine
+// grid gives.
 TEST(GlossyRelighting, WhiteFurnaceOfARoughPlane) {
     prt::Receivers receivers;
     for (int i = 0; i < 8; ++i) {
@@ -130,13 +134,14 @@ TEST(GlossyRelighting, WhiteFurnaceOfARoughPlane) {
         constexpr int N = 400;
         for (int a = 0; a < N; ++a)
             for (int b = 0; b < 2 * N; ++b) {
-                // Even in cos^2 of the angle to the normal, so that each sample stands for pi / (N 2N) of the projected hemisphere.
+                // Even in cos^2 of the angle to the normal, so that each sample stands for pi / (N
+                // 2N) of the projected hemisphere.
                 const double cosine = std::sqrt((a + 0.5) / N);
                 const double sine = std::sqrt(1.0 - cosine * cosine);
                 const double azimuth = std::numbers::pi * (b + 0.5) / N;
                 const glm::vec3 w(sine * std::cos(azimuth), cosine, sine * std::sin(azimuth));
-                const prt::Lobes<float> lobes =
-                    prt::evaluate_lobes(receivers.surfaces[i], receivers.normals[i], receivers.to_eye[i], w);
+                const prt::Lobes<float> lobes = prt::evaluate_lobes(
+                    receivers.surfaces[i], receivers.normals[i], receivers.to_eye[i], w);
                 const double dw = std::numbers::pi / (2.0 * N * N) / cosine;
                 sums.diffuse += static_cast<double>(lobes.diffuse) * dw;
                 sums.diffuse_grazing += static_cast<double>(lobes.diffuse_grazing) * dw;
@@ -146,11 +151,11 @@ TEST(GlossyRelighting, WhiteFurnaceOfARoughPlane) {
         const auto in_float = [](double value) {
             return glm::vec3(static_cast<float>(value));
         };
-        const glm::vec3 expected =
-            prt::reflect(receivers.surfaces[i], {.diffuse = in_float(sums.diffuse),
-                                                 .diffuse_grazing = in_float(sums.diffuse_grazing),
-                                                 .specular = in_float(sums.specular),
-                                                 .specular_grazing = in_float(sums.specular_grazing)});
+        const glm::vec3 expected = prt::reflect(
+            receivers.surfaces[i], {.diffuse = in_float(sums.diffuse),
+                                    .diffuse_grazing = in_float(sums.diffuse_grazing),
+                                    .specular = in_float(sums.specular),
+                                    .specular_grazing = in_float(sums.specular_grazing)});
         EXPECT_NEAR(radiance[i].g, expected.g, 0.01f) << i;
         EXPECT_LT(radiance[i].g, 1.0f);
     }
@@ -211,7 +216,8 @@ TEST(GlossyRelighting, UpdatesEqualAFullRelighting) {
     cubemap::CubeMap map = scenes::random_environment(64, 4);
     Relighter relighter(scene.transfer, scene.shadow_rays());
     relighter.set_environment(map);
-    const TexelRectangle rectangle{.face = cubemap::Face::PositiveY, .x0 = 10, .y0 = 20, .x1 = 17, .y1 = 31};
+    const TexelRectangle rectangle{
+        .face = cubemap::Face::PositiveY, .x0 = 10, .y0 = 20, .x1 = 17, .y1 = 31};
     const std::vector<glm::vec3> patch(7 * 11, glm::vec3(3.0f, 2.0f, 0.5f));
     relighter.update_region(rectangle, patch);
     Relighter full(scene.transfer, scene.shadow_rays());
@@ -243,19 +249,22 @@ TEST(GlossyRelighting, LightListsTracedAreExact) {
     relighter.set_lights({&light, 1});
     for (std::size_t i = 0; i < scene.receivers.size(); ++i) {
         const glm::vec3& normal = scene.receivers.normals[i];
-        const glm::vec3 origin = prt::ray_origin(scene.receivers.positions[i], normal, scene.options.bias);
+        const glm::vec3 origin =
+            prt::ray_origin(scene.receivers.positions[i], normal, scene.options.bias);
         glm::vec3 expected(0.0f);
-        if (glm::dot(normal, glm::vec3(w)) > 0.0f && !scene.diffuse.rays.occluded(origin, glm::vec3(w))) {
-            const prt::Lobes<float> lobes =
-                prt::evaluate_lobes(scene.receivers.surfaces[i], normal, scene.receivers.to_eye[i], w);
+        if (glm::dot(normal, glm::vec3(w)) > 0.0f &&
+            !scene.diffuse.rays.occluded(origin, glm::vec3(w))) {
+            const prt::Lobes<float> lobes = prt::evaluate_lobes(scene.receivers.surfaces[i], normal,
+                                                                scene.receivers.to_eye[i], w);
             const glm::vec3 e(light.irradiance);
-            expected =
-                prt::reflect(scene.receivers.surfaces[i], {.diffuse = lobes.diffuse * e,
-                                                           .diffuse_grazing = lobes.diffuse_grazing * e,
-                                                           .specular = lobes.specular * e,
-                                                           .specular_grazing = lobes.specular_grazing * e});
+            expected = prt::reflect(scene.receivers.surfaces[i],
+                                    {.diffuse = lobes.diffuse * e,
+                                     .diffuse_grazing = lobes.diffuse_grazing * e,
+                                     .specular = lobes.specular * e,
+                                     .specular_grazing = lobes.specular_grazing * e});
         }
-        EXPECT_LT(glm::distance(relighter.radiance()[i], expected), 1e-4f * (1.0f + glm::length(expected)));
+        EXPECT_LT(glm::distance(relighter.radiance()[i], expected),
+                  1e-4f * (1.0f + glm::length(expected)));
     }
 }
 
@@ -271,9 +280,11 @@ TEST(GlossyRelighting, TheKernelIsThePlainSumOnEveryTarget) {
             light_block(cuts, block, pyramid.light(), radiance);
             for (std::size_t i = 0; i < prt::BlockSize; ++i) {
                 glm::dvec3 expected(0.0);
-                for (std::size_t entry = cuts.begin[block]; entry < cuts.begin[block + 1]; ++entry) {
+                for (std::size_t entry = cuts.begin[block]; entry < cuts.begin[block + 1];
+                     ++entry) {
                     const double root = cuts.values[entry * prt::BlockSize + i];
-                    const float* light = pyramid.light().data() + std::size_t{3} * cuts.cells[entry];
+                    const float* light =
+                        pyramid.light().data() + std::size_t{3} * cuts.cells[entry];
                     expected += root * root * static_cast<double>(cuts.scales[entry]) *
                                 glm::dvec3(light[0], light[1], light[2]);
                 }

@@ -48,8 +48,9 @@ cubemap::LightLayer disc(const std::string& name, const glm::dvec3& direction, d
 
 cubemap::LightLayer random_layer(std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
-    cubemap::LightLayer layer = disc("layer", scenes::random_direction(random), 1.0 + 30.0 * unit(random),
-                                     glm::vec3(static_cast<float>(5.0 * unit(random))));
+    cubemap::LightLayer layer =
+        disc("layer", scenes::random_direction(random), 1.0 + 30.0 * unit(random),
+             glm::vec3(static_cast<float>(5.0 * unit(random))));
     if (unit(random) < 0.4)
         layer.region = cubemap::Rectangle{.direction = scenes::random_direction(random),
                                           .width_degrees = 5.0 + 30.0 * unit(random),
@@ -77,7 +78,8 @@ TEST(LightEditor, FollowsRandomEditsOfAllKinds) {
     for (int edit = 0; edit < 200; ++edit) {
         const auto choice = random() % 4;
         if (layers.size() < 3 || choice == 0)
-            layers.insert(layers.begin() + static_cast<std::ptrdiff_t>(random() % (layers.size() + 1)),
+            layers.insert(layers.begin() +
+                              static_cast<std::ptrdiff_t>(random() % (layers.size() + 1)),
                           random_layer(random));
         else if (choice == 1)
             layers.erase(layers.begin() + static_cast<std::ptrdiff_t>(random() % layers.size()));
@@ -87,7 +89,8 @@ TEST(LightEditor, FollowsRandomEditsOfAllKinds) {
             layers[random() % layers.size()] = random_layer(random);
         editor.set_layers(layers);
         if (edit % 20 == 19) {
-            // The composite is the same texel by texel; the sums differ by the order of a few additions in double.
+            // The composite is the same texel by texel; the sums differ by the order of a few
+            // additions in double.
             EXPECT_EQ(editor.environment().texels, cubemap::composite(base, layers).texels);
             EXPECT_LT(relative_difference(editor.radiance(), lit_afresh(editor, base)), 1e-6);
         }
@@ -272,12 +275,14 @@ TEST(LightEditor, PaintingOnTouchesOnlyTheNewPieceAndLeavesNoTrace) {
             part.points.resize(count);
             layer.region = part;
             most_touched = std::max(most_touched, editor.set_layer(0, layer).num_clusters);
-            // Texels that were not told to have changed are as they were, and all are as made from scratch.
+            // Texels that were not told to have changed are as they were, and all are as made from
+            // scratch.
             LightEditor afresh(relit_scene().transfer);
             afresh.set_base(base);
             afresh.set_rotation(editor.rotation());
             afresh.set_layers({layer});
-            ASSERT_EQ(editor.environment().texels, afresh.environment().texels) << trial << ", " << count;
+            ASSERT_EQ(editor.environment().texels, afresh.environment().texels)
+                << trial << ", " << count;
             EXPECT_LT(relative_difference(editor.radiance(), afresh.radiance()), 1e-6);
         };
         for (int i = 0; i < 10; ++i) { // also back over itself
@@ -325,10 +330,12 @@ TEST(LightEditor, ToldTexelsHoldEveryChangeOnceOnly) {
 TEST(LightEditor, SmallEditsTouchFewClusters) {
     LightEditor editor(relit_scene().transfer);
     editor.set_base(cubemap::CubeMap(64, glm::vec3(0.5f)));
-    const UpdateReport report = editor.set_layers({disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))});
+    const UpdateReport report =
+        editor.set_layers({disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))});
     EXPECT_GT(report.num_clusters, 0u);
     EXPECT_LT(report.num_clusters, relit_scene().transfer.num_clusters() / 4);
-    EXPECT_EQ(editor.set_layers({disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))}).num_clusters, 0u)
+    EXPECT_EQ(editor.set_layers({disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))}).num_clusters,
+              0u)
         << "nothing changed";
 }
 
@@ -336,17 +343,19 @@ TEST(LightEditor, RotationTurnsBaseAndLayersTogether) {
     const cubemap::CubeMap base = scenes::random_environment(32, 9);
     const cubemap::LightLayer lamp = disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f));
     cubemap::LightLayer above = disc("above", {0.0, 1.0, 0.0}, 10.0, glm::vec3(2.0f));
-    above.region =
-        cubemap::Rectangle{.direction = {0.0, 1.0, 0.0}, .width_degrees = 40.0, .height_degrees = 10.0};
+    above.region = cubemap::Rectangle{
+        .direction = {0.0, 1.0, 0.0}, .width_degrees = 40.0, .height_degrees = 10.0};
     for (const double degrees : {90.0, 180.0, -90.0}) {
         LightEditor editor(relit_scene().transfer);
         editor.set_base(base);
         editor.set_layers({lamp, above});
         const cubemap::CubeMap expected = cubemap::rotated(editor.environment(), degrees);
         editor.set_rotation(degrees);
-        // Quarter turns permute texels; a layer's coverage is integrated anew, to 0.5 % of a texel at its rim.
+        // Quarter turns permute texels; a layer's coverage is integrated anew, to 0.5 % of a texel
+        // at its rim.
         for (std::size_t i = 0; i < expected.texels.size(); ++i)
-            EXPECT_NEAR(glm::length(expected.texels[i] - editor.environment().texels[i]), 0.0, 0.03) << i;
+            EXPECT_NEAR(glm::length(expected.texels[i] - editor.environment().texels[i]), 0.0, 0.03)
+                << i;
         editor.set_rotation(0.0);
         EXPECT_EQ(editor.environment().texels, cubemap::composite(base, editor.layers()).texels);
     }
@@ -382,7 +391,8 @@ TEST(LightEditor, RefusesBadLayersAndStaysAsItWas) {
     EXPECT_EQ(editor.layers()[0].name, "lamp");
     const std::vector<glm::vec3> texels = editor.environment().texels;
     editor.set_layers({nearly});
-    EXPECT_THROW(editor.update_base(cubemap::CubeMap(16, glm::vec3(0.5e30f))), std::invalid_argument);
+    EXPECT_THROW(editor.update_base(cubemap::CubeMap(16, glm::vec3(0.5e30f))),
+                 std::invalid_argument);
     editor.set_layers({disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     EXPECT_EQ(editor.environment().texels, texels);
 }

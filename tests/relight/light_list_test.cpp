@@ -55,7 +55,8 @@ double relative_l2(std::span<const glm::dvec3> expected, std::span<const glm::ve
 TEST(LightPackets, EqualOneShadowRayPerLightAndReceiver) {
     std::mt19937 random(1);
     const scenes::RelitScene& scene = relit_scene();
-    const std::vector<DistantLight> lights = random_lights(random, 37); // two packets and a part of one
+    const std::vector<DistantLight> lights =
+        random_lights(random, 37); // two packets and a part of one
     const std::vector<std::uint32_t> receivers = all_receivers();
     const std::vector<glm::dvec3> radiance =
         radiance_under(lights, scene.receivers.normals, receivers, scene.shadow_rays());
@@ -89,13 +90,14 @@ TEST(RelighterLights, WithShadowRaysEqualTracing) {
     Relighter relighter(scene.transfer, scene.shadow_rays());
     const RelightTimes times = relighter.set_lights(lights);
     EXPECT_EQ(times.num_sharp_lights, 50u);
-    EXPECT_LT(
-        relative_l2(radiance_under(lights, scene.receivers.normals, all_receivers(), scene.shadow_rays()),
-                    relighter.radiance()),
-        1e-6);
+    EXPECT_LT(relative_l2(radiance_under(lights, scene.receivers.normals, all_receivers(),
+                                         scene.shadow_rays()),
+                          relighter.radiance()),
+              1e-6);
 }
 
-// A light at every texel, through the clusters, is the environment itself, whatever its clusters make of it.
+// A light at every texel, through the clusters, is the environment itself, whatever its clusters
+// make of it.
 TEST(RelighterLights, ThroughTheClustersALightPerTexelIsTheEnvironment) {
     const scenes::RelitScene& scene = relit_scene();
     const cubemap::CubeMap environment = scenes::smooth_environment(64);
@@ -104,9 +106,9 @@ TEST(RelighterLights, ThroughTheClustersALightPerTexelIsTheEnvironment) {
     for (const cubemap::Face face : cubemap::AllFaces)
         for (std::uint32_t y = 0; y < 64; ++y)
             for (std::uint32_t x = 0; x < 64; ++x)
-                lights.push_back(
-                    {.direction = cubemap::texel_direction(face, x, y, 64),
-                     .irradiance = glm::dvec3(environment.at(face, x, y)) * solid_angles[y * 64 + x]});
+                lights.push_back({.direction = cubemap::texel_direction(face, x, y, 64),
+                                  .irradiance = glm::dvec3(environment.at(face, x, y)) *
+                                                solid_angles[y * 64 + x]});
     Relighter of_lights(scene.transfer);
     of_lights.set_lights(lights);
     const std::vector<glm::vec3> expected = relight(scene.transfer, environment);
@@ -148,13 +150,13 @@ struct Comparison {
 
     explicit Comparison(const cubemap::CubeMap& environment) {
         relighter.set_environment(environment);
-        exact = exact_radiance(relit_scene().receivers, all_receivers(), relit_scene().rays, environment,
-                               {.bias = relit_scene().options.bias});
+        exact = exact_radiance(relit_scene().receivers, all_receivers(), relit_scene().rays,
+                               environment, {.bias = relit_scene().options.bias});
     }
 
     [[nodiscard]] double error(std::span<const DistantLight> lights) const {
-        const std::vector<glm::dvec3> radiance = radiance_under(lights, relit_scene().receivers.normals,
-                                                                all_receivers(), relit_scene().shadow_rays());
+        const std::vector<glm::dvec3> radiance = radiance_under(
+            lights, relit_scene().receivers.normals, all_receivers(), relit_scene().shadow_rays());
         return relative_l2(exact, std::vector<glm::vec3>(radiance.begin(), radiance.end()));
     }
 };
@@ -167,8 +169,8 @@ TEST(TransferLights, AreBetterThanLightsThatDoNotKnowTheScene) {
         const std::vector<DistantLight> chosen = transfer_lights(comparison.relighter, count);
         EXPECT_LE(chosen.size(), count);
         const double error = comparison.error(chosen);
-        EXPECT_LT(error,
-                  0.6 * comparison.error(lights::place_lights(lights::Method::MedianCut, environment, count)))
+        EXPECT_LT(error, 0.6 * comparison.error(lights::place_lights(lights::Method::MedianCut,
+                                                                     environment, count)))
             << count << " lights";
         EXPECT_LT(error, last);
         last = error;
@@ -186,7 +188,8 @@ TEST(TransferLights, AFewRealLightsAreFound) {
     ASSERT_EQ(chosen.size(), 3u);
     EXPECT_LT(comparison.error(chosen), 0.02);
     const glm::dvec3 power = cubemap::total_power(environment);
-    EXPECT_NEAR(glm::length(lights::total_irradiance(chosen) - power), 0.0, 0.03 * glm::length(power));
+    EXPECT_NEAR(glm::length(lights::total_irradiance(chosen) - power), 0.0,
+                0.03 * glm::length(power));
 }
 
 TEST(TransferLights, SameForAnyNumberOfThreads) {

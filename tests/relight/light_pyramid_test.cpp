@@ -36,7 +36,8 @@ TEST(LightPyramid, HoldsAllLightAtEveryLevel) {
                 for (std::uint32_t y = 0; y < 1u << level; ++y)
                     for (std::uint32_t x = 0; x < 1u << level; ++x)
                         sum += light_of(pyramid, {face, level, x, y});
-            // Where texels do not fit, a cell's light is taken for the length of its vector: it is 4 degrees wide here.
+            // Where texels do not fit, a cell's light is taken for the length of its vector: it is
+            // 4 degrees wide here.
             EXPECT_LT(glm::length(sum - expected),
                       (resolution == 6 || resolution == 40 ? 1e-3 : 1e-5) * glm::length(expected))
                 << resolution << " level " << int{level};
@@ -64,8 +65,10 @@ TEST(LightPyramid, LeavesSharpLightsOut) {
     const LightBinning binning(16);
     for (const std::uint8_t level :
          {std::uint8_t{2}, std::uint8_t{4}}) { // coarser and finer than the deepest cells
-        const prt::Cell cell{cubemap::Face::PositiveZ, level, 5u >> (4u - level), 9u >> (4u - level)};
-        const SharpLight sharp{.cell = cell, .direction = {0, 0, 1}, .irradiance = binning.sum(map, cell)};
+        const prt::Cell cell{cubemap::Face::PositiveZ, level, 5u >> (4u - level),
+                             9u >> (4u - level)};
+        const SharpLight sharp{
+            .cell = cell, .direction = {0, 0, 1}, .irradiance = binning.sum(map, cell)};
         LightPyramid pyramid(3);
         pyramid.set(map, binning, {&sharp, 1});
         EXPECT_NEAR(light_of(pyramid, {cubemap::Face::PositiveZ, 0, 0, 0}).r, 0.0, 1e-6);
@@ -80,9 +83,10 @@ TEST(LightPyramid, DistantLightsGoToTheirCells) {
     pyramid.set_lights({&light, 1});
     EXPECT_EQ(light_of(pyramid, {cubemap::Face::PositiveY, 0, 0, 0}), glm::dvec3(3, 2, 1));
     const cubemap::FacePoint point = cubemap::face_point(light.direction);
-    EXPECT_EQ(light_of(pyramid, {cubemap::Face::PositiveY, 5, static_cast<std::uint32_t>(point.s * 32),
-                                 static_cast<std::uint32_t>(point.t * 32)}),
-              glm::dvec3(3, 2, 1));
+    EXPECT_EQ(
+        light_of(pyramid, {cubemap::Face::PositiveY, 5, static_cast<std::uint32_t>(point.s * 32),
+                           static_cast<std::uint32_t>(point.t * 32)}),
+        glm::dvec3(3, 2, 1));
     pyramid.set_lights({});
     EXPECT_EQ(light_of(pyramid, {cubemap::Face::PositiveY, 0, 0, 0}), glm::dvec3(0.0));
 }

@@ -11,12 +11,14 @@ namespace {
 /// A least-squares problem with its A^T A and A^T b.
 struct Problem {
     std::size_t num_rows, num_columns;
-    std::vector<double> a; ///< [row][column]
+    /// [row][column]
+    std::vector<double> a;
     std::vector<double> b;
     std::vector<double> gram;
     std::vector<double> target;
 
-    Problem(std::size_t rows, std::size_t columns, std::vector<double> matrix, std::vector<double> right)
+    Problem(std::size_t rows, std::size_t columns, std::vector<double> matrix,
+            std::vector<double> right)
         : num_rows(rows), num_columns(columns), a(std::move(matrix)), b(std::move(right)),
           gram(columns * columns), target(columns) {
         for (std::size_t i = 0; i < columns; ++i)
@@ -47,7 +49,8 @@ Problem random_problem(std::mt19937& random, std::size_t rows, std::size_t colum
     return {rows, columns, a, b};
 }
 
-// Karush-Kuhn-Tucker: the error is flat along positive unknowns and does not fall along those that are zero.
+// Karush-Kuhn-Tucker: the error is flat along positive unknowns and does not fall along those that
+// are zero.
 void expect_optimal(const Problem& problem, std::span<const double> x) {
     for (std::size_t i = 0; i < x.size(); ++i) {
         EXPECT_GE(x[i], 0.0);

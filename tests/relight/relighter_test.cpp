@@ -24,8 +24,10 @@ using scenes::expect_close;
 using scenes::relit_scene;
 
 /// [JN, Eq. 8] as it is written: B(x) = sum over C of c/16 max(n.E_C, 0)/pi.
-std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer, const cubemap::CubeMap& environment) {
-    const auto sums = LightBinning(environment.resolution).sums(environment, transfer.quadtree.leaves());
+std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer,
+                                     const cubemap::CubeMap& environment) {
+    const auto sums =
+        LightBinning(environment.resolution).sums(environment, transfer.quadtree.leaves());
     std::vector<glm::vec3> radiance(transfer.num_receivers());
     for (std::size_t place = 0; place < transfer.num_receivers(); ++place) {
         const glm::dvec3 n = transfer.normals[place];
@@ -33,7 +35,8 @@ std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer, const cubema
         for (std::size_t leaf = 0; leaf < transfer.num_clusters(); ++leaf) {
             const glm::dvec3 cosines(glm::dot(n, sums[leaf].red), glm::dot(n, sums[leaf].green),
                                      glm::dot(n, sums[leaf].blue));
-            b += transfer.counts.count(place, leaf) / 16.0 * glm::max(cosines, 0.0) / std::numbers::pi;
+            b += transfer.counts.count(place, leaf) / 16.0 * glm::max(cosines, 0.0) /
+                 std::numbers::pi;
         }
         radiance[transfer.order[place]] = b;
     }
@@ -49,12 +52,14 @@ prt::Receivers random_receivers(std::size_t n, std::uint32_t seed) {
     prt::Receivers receivers;
     for (std::size_t i = 0; i < n; ++i) {
         receivers.positions.push_back(scenes::random_direction(random));
-        receivers.normals.push_back(i % 13 == 12 ? glm::vec3(0.0f) : scenes::random_direction(random));
+        receivers.normals.push_back(i % 13 == 12 ? glm::vec3(0.0f)
+                                                 : scenes::random_direction(random));
     }
     return receivers;
 }
 
-// Float kernels sum at most 64 clusters each before they go to double: 64 half units of 2^-24, less by chance.
+// Float kernels sum at most 64 clusters each before they go to double: 64 half units of 2^-24, less
+// by chance.
 constexpr double KernelRounding = 4e-6;
 
 TEST(Relighter, EqualsThePlainSumOnEveryTarget) {
@@ -72,26 +77,30 @@ TEST(Relighter, EqualsThePlainSumOnRandomTrees) {
     std::mt19937 random(1);
     for (const std::size_t n : {1u, 15u, 16u, 17u, 63u, 64u, 65u, 1050u}) {
         std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
-        const auto blockers = scenes::sphere_blocker({coordinate(random), 2.5, coordinate(random)}, 1.0);
+        const auto blockers =
+            scenes::sphere_blocker({coordinate(random), 2.5, coordinate(random)}, 1.0);
         const prt::Transfer transfer =
             prt::precompute(random_receivers(n, static_cast<std::uint32_t>(n)), blockers,
                             {.tolerance = 0.03f, .min_level = 1, .face_resolution = 32});
         const cubemap::CubeMap environment = scenes::random_environment(32, 2);
-        expect_close(relight(transfer, environment), plainly_relit(transfer, environment), KernelRounding);
+        expect_close(relight(transfer, environment), plainly_relit(transfer, environment),
+                     KernelRounding);
     }
 }
 
 TEST(Relighter, WhiteFurnace) {
     const prt::Receivers receivers = random_receivers(300, 3);
     for (const float tolerance : {0.0135f, 0.003f}) {
-        const prt::Transfer transfer = prt::precompute(receivers, scenes::no_blockers(),
-                                                       {.tolerance = tolerance, .face_resolution = 256});
+        const prt::Transfer transfer = prt::precompute(
+            receivers, scenes::no_blockers(), {.tolerance = tolerance, .face_resolution = 256});
         const auto radiance = relight(transfer, cubemap::CubeMap(64, glm::vec3(1.0f, 0.5f, 2.0f)));
         for (std::size_t i = 0; i < radiance.size(); ++i) {
             const bool receives = receivers.normals[i] != glm::vec3(0.0f);
-            // Only the clusters on the horizon err, by at most the tolerance, here as if all erred alike: 2 pi times 1/8 rad.
+            // Only the clusters on the horizon err, by at most the tolerance, here as if all erred
+            // alike: 2 pi times 1/8 rad.
             const double allowed =
-                receives ? 2.0 * std::numbers::pi / 8.0 * 3.0 * static_cast<double>(tolerance) : 0.0;
+                receives ? 2.0 * std::numbers::pi / 8.0 * 3.0 * static_cast<double>(tolerance)
+                         : 0.0;
             EXPECT_NEAR(radiance[i].r, receives ? 1.0 : 0.0, allowed);
             EXPECT_NEAR(radiance[i].g, 0.5 * radiance[i].r, 1e-6);
             EXPECT_NEAR(radiance[i].b, 2.0 * radiance[i].r, 1e-6);
@@ -102,8 +111,8 @@ TEST(Relighter, WhiteFurnace) {
 TEST(Relighter, SameResultForAnyResolutionOfASmoothEnvironment) {
     const prt::Transfer& transfer = relit_scene().transfer;
     const auto finest = relight(transfer, scenes::smooth_environment(256));
-    // A texel's centre stands for its mean: h^2 / 24 times a second derivative of up to 2, with h = 2 / R, and light moves within
-    // texels that are larger than clusters.
+    // A texel's centre stands for its mean: h^2 / 24 times a second derivative of up to 2, with h =
+    // 2 / R, and light moves within texels that are larger than clusters.
     for (const std::uint32_t r : {16u, 20u, 64u, 100u})
         expect_close(relight(transfer, scenes::smooth_environment(r)), finest, 2.0 / r / r + 1e-5);
 }
@@ -119,8 +128,8 @@ TEST(Relighter, IsLinearInTheEnvironment) {
         b *= 1024.0f; // a power of two: no rounding
     EXPECT_EQ(relight(transfer, scaled), expected);
     const auto black = relight(transfer, cubemap::CubeMap(32));
-    EXPECT_TRUE(
-        std::all_of(black.begin(), black.end(), [](const glm::vec3& b) { return b == glm::vec3(0.0f); }));
+    EXPECT_TRUE(std::all_of(black.begin(), black.end(),
+                            [](const glm::vec3& b) { return b == glm::vec3(0.0f); }));
 }
 
 TEST(Relighter, EnvironmentsFollowEachOtherWithoutATrace) {
@@ -142,8 +151,9 @@ TEST(Relighter, RefusesEnvironmentsThatAreNone) {
         EXPECT_EQ(copy(relighter.radiance()), before);
         EXPECT_EQ(relighter.environment().texels, good.texels);
     };
-    for (const float bad : {-1.0f, -1e-30f, std::numeric_limits<float>::quiet_NaN(),
-                            std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()})
+    for (const float bad :
+         {-1.0f, -1e-30f, std::numeric_limits<float>::quiet_NaN(),
+          std::numeric_limits<float>::infinity(), -std::numeric_limits<float>::infinity()})
         for (int channel = 0; channel < 3; ++channel) {
             cubemap::CubeMap environment = good;
             environment.at(cubemap::Face::NegativeZ, 15, 15)[channel] = bad;
@@ -224,7 +234,8 @@ void expect_a_thousand_edits_without_drift(const ShadowRays& rays, std::uint32_t
         }
     }
     restore(relighter, original);
-    // Suns of 1e6 have come and gone: what is left in double is 1e-16 of them for each edit. One float rounding may differ.
+    // Suns of 1e6 have come and gone: what is left in double is 1e-16 of them for each edit. One
+    // float rounding may differ.
     expect_close(relighter.radiance(), before, 2e-7);
 }
 
@@ -263,7 +274,8 @@ TEST(RelighterUpdate, ASunThatIsGoneLeavesNotEvenItsRounding) {
     relighter.set_environment(dim);
     const auto before = copy(relighter.radiance());
     for (const float sun : {1e6f, 1e10f, 1e20f}) {
-        const TexelRectangle texel{.face = cubemap::Face::PositiveY, .x0 = 9, .y0 = 20, .x1 = 10, .y1 = 21};
+        const TexelRectangle texel{
+            .face = cubemap::Face::PositiveY, .x0 = 9, .y0 = 20, .x1 = 10, .y1 = 21};
         relighter.update_region(texel, std::vector<glm::vec3>{glm::vec3(sun)});
         EXPECT_NE(copy(relighter.radiance()), before);
         relighter.update_region(texel, std::vector<glm::vec3>{dim.at(texel.face, 9, 20)});
@@ -277,7 +289,8 @@ TEST(RelighterUpdate, ReportsWhatItTouched) {
     const scenes::RelitScene& scene = relit_scene();
     Relighter relighter(scene.transfer);
     relighter.set_environment(cubemap::CubeMap(64, glm::vec3(1.0f)));
-    const TexelRectangle rectangle{.face = cubemap::Face::PositiveY, .x0 = 16, .y0 = 8, .x1 = 32, .y1 = 24};
+    const TexelRectangle rectangle{
+        .face = cubemap::Face::PositiveY, .x0 = 16, .y0 = 8, .x1 = 32, .y1 = 24};
     std::vector<std::uint32_t> leaves;
     scene.transfer.quadtree.find_leaves({rectangle.face, 0.25, 0.125, 0.5, 0.375}, leaves);
     const UpdateReport report =
@@ -289,8 +302,8 @@ TEST(RelighterUpdate, ReportsWhatItTouched) {
 
 TEST(RelighterUpdate, EditsThatNothingSeesChangeNothing) {
     const mesh::TriangleMesh floor = scenes::floor_grid(10, 2.0f);
-    const prt::Transfer transfer =
-        prt::precompute(prt::vertex_receivers(floor), scenes::no_blockers(), {.face_resolution = 32});
+    const prt::Transfer transfer = prt::precompute(prt::vertex_receivers(floor),
+                                                   scenes::no_blockers(), {.face_resolution = 32});
     Relighter relighter(transfer);
     relighter.set_environment(scenes::random_environment(32, 13));
     const auto before = copy(relighter.radiance());
@@ -339,7 +352,8 @@ TEST(RelighterUpdate, AnyNumberOfThreadsGivesTheSameBits) {
     for (const ShadowRays& rays : {ShadowRays{}, relit_scene().shadow_rays()}) {
         std::vector<std::vector<glm::vec3>> results;
         for (const std::size_t num_threads : {1u, 2u, 3u}) {
-            const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, num_threads);
+            const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                              num_threads);
             Relighter relighter(relit_scene().transfer, rays);
             relighter.set_environment(scenes::random_environment(32, 15, 1e5f));
             std::vector<glm::vec3> result = copy(relighter.radiance());

@@ -40,14 +40,16 @@ TEST(ScaledReceivers, EvenlySpreadWhereNothingIsExpected) {
         choose_receivers(transfer, std::vector<double>(transfer.num_receivers(), 0.0), count);
     EXPECT_NEAR(static_cast<double>(chosen.places.size()), static_cast<double>(count), 1.0);
     for (const float scale : chosen.scales)
-        EXPECT_NEAR(scale * scale, static_cast<double>(lit.size()) / static_cast<double>(count), 1e-4);
+        EXPECT_NEAR(scale * scale, static_cast<double>(lit.size()) / static_cast<double>(count),
+                    1e-4);
 }
 
 TEST(ScaledReceivers, AllOfASmallPartThatHasTheErrorAndSomeOfTheRest) {
     const prt::Transfer& transfer = relit_scene().transfer;
     const std::vector<std::size_t> lit = lit_places(transfer);
     const std::size_t count = lit.size() / 4;
-    // The error is in an eighth of the receivers: seven tenths of a quarter would be more than there are.
+    // The error is in an eighth of the receivers: seven tenths of a quarter would be more than
+    // there are.
     const std::size_t begin = lit.size() / 2;
     const std::size_t end = begin + lit.size() / 8;
     std::vector<double> expected(transfer.num_receivers(), 0.0);
@@ -56,7 +58,8 @@ TEST(ScaledReceivers, AllOfASmallPartThatHasTheErrorAndSomeOfTheRest) {
     const ScaledReceivers chosen = choose_receivers(transfer, expected, count);
     EXPECT_NEAR(static_cast<double>(chosen.places.size()), static_cast<double>(count), 1.0);
     ASSERT_TRUE(std::is_sorted(chosen.places.begin(), chosen.places.end()));
-    for (std::size_t i = begin + 3; i < end - 3; ++i) { // but for its ends, which are averaged with the rest
+    for (std::size_t i = begin + 3; i < end - 3;
+         ++i) { // but for its ends, which are averaged with the rest
         const auto found = std::lower_bound(chosen.places.begin(), chosen.places.end(), lit[i]);
         ASSERT_TRUE(found != chosen.places.end() && *found == lit[i]);
         EXPECT_EQ(chosen.scales[static_cast<std::size_t>(found - chosen.places.begin())], 1.0f);
@@ -65,7 +68,8 @@ TEST(ScaledReceivers, AllOfASmallPartThatHasTheErrorAndSomeOfTheRest) {
     double number = 0.0;
     double estimate = 0.0;
     for (std::size_t i = 0; i < chosen.places.size(); ++i) {
-        const double square = static_cast<double>(chosen.scales[i]) * static_cast<double>(chosen.scales[i]);
+        const double square =
+            static_cast<double>(chosen.scales[i]) * static_cast<double>(chosen.scales[i]);
         number += square;
         estimate += square * (1.0 + static_cast<double>(transfer.normals[chosen.places[i]].y));
     }
@@ -88,12 +92,14 @@ TEST(ScaledReceivers, ErrorsAreSquaredDifferencesOverTheirSum) {
         radiance_under(lights, relit_scene().receivers.normals, relit_scene().shadow_rays());
     double sum = 0.0;
     for (std::size_t i = 0; i < lit.size(); ++i)
-        sum += std::pow(glm::distance(glm::dvec3(lit[i]), glm::dvec3(relighter.radiance()[i])), 2.0);
+        sum +=
+            std::pow(glm::distance(glm::dvec3(lit[i]), glm::dvec3(relighter.radiance()[i])), 2.0);
     for (std::size_t place = 0; place < errors.size(); ++place) {
         const std::uint32_t i = relit_scene().transfer.order[place];
-        EXPECT_NEAR(errors[place] * sum,
-                    std::pow(glm::distance(glm::dvec3(lit[i]), glm::dvec3(relighter.radiance()[i])), 2.0),
-                    1e-9 * sum);
+        EXPECT_NEAR(
+            errors[place] * sum,
+            std::pow(glm::distance(glm::dvec3(lit[i]), glm::dvec3(relighter.radiance()[i])), 2.0),
+            1e-9 * sum);
     }
 }
 

@@ -17,7 +17,8 @@
 namespace relumine::relight {
 namespace {
 
-std::vector<SharpLight> sharp_lights(const cubemap::CubeMap& environment, float tolerance = 0.0135f) {
+std::vector<SharpLight> sharp_lights(const cubemap::CubeMap& environment,
+                                     float tolerance = 0.0135f) {
     const LightBinning binning(environment.resolution);
     const auto cells = scenes::relit_scene().transfer.quadtree.leaves();
     std::vector<double> powers;
@@ -46,14 +47,15 @@ TEST(SharpLights, TheSunIsOne) {
     double power = 0.0;
     for (const SharpLight& light : lights)
         power += glm::length(light.irradiance.red);
-    const auto sun =
-        std::max_element(lights.begin(), lights.end(), [](const SharpLight& a, const SharpLight& b) {
+    const auto sun = std::max_element(
+        lights.begin(), lights.end(), [](const SharpLight& a, const SharpLight& b) {
             return glm::length(a.irradiance.red) < glm::length(b.irradiance.red);
         });
     const double n = 128.0;
     const double expected = 1e5 * cubemap::solid_angle(40 / n, 50 / n, 41 / n, 51 / n);
     EXPECT_NEAR(glm::length(sun->irradiance.red), expected, 1e-6 * expected);
-    EXPECT_LT(power, 1.01 * expected) << "only what surrounds the sun within its cell may come along";
+    EXPECT_LT(power, 1.01 * expected)
+        << "only what surrounds the sun within its cell may come along";
     const glm::dvec3 w = cubemap::texel_direction(cubemap::Face::PositiveX, 40, 50, 128);
     EXPECT_LT(glm::length(sun->direction - w), 1e-6);
     EXPECT_TRUE(std::is_sorted(lights.begin(), lights.end(),
@@ -62,7 +64,8 @@ TEST(SharpLights, TheSunIsOne) {
 }
 
 TEST(SharpLights, ASunIsAsSharpAsTracing) {
-    // Nearly all light from one texel of 0.9 degrees: all of it traced. What remains is the sky's error.
+    // Nearly all light from one texel of 0.9 degrees: all of it traced. What remains is the sky's
+    // error.
     const scenes::RelitScene& scene = scenes::relit_scene();
     std::vector<std::uint32_t> all(scene.receivers.size());
     for (std::uint32_t i = 0; i < all.size(); ++i)
@@ -71,9 +74,10 @@ TEST(SharpLights, ASunIsAsSharpAsTracing) {
                                      {cubemap::Face::PositiveY, 80u, 30u},
                                      {cubemap::Face::NegativeZ, 3u, 20u}}) {
         const cubemap::CubeMap environment = sky_with_sun(128, face, x, y, 1e6f);
-        const auto exact =
-            exact_radiance(scene.receivers, all, scene.rays, environment, {.bias = scene.options.bias});
-        const auto traced = compare(all, exact, relight(scene.transfer, environment, scene.shadow_rays()));
+        const auto exact = exact_radiance(scene.receivers, all, scene.rays, environment,
+                                          {.bias = scene.options.bias});
+        const auto traced =
+            compare(all, exact, relight(scene.transfer, environment, scene.shadow_rays()));
         const auto clustered = compare(all, exact, relight(scene.transfer, environment));
         EXPECT_LT(traced.relative_l2, 1e-3);
         EXPECT_LT(traced.relative_l2, 0.1 * clustered.relative_l2);
@@ -86,7 +90,8 @@ TEST(SharpLights, PacketsAddUpEveryLightAboveTheHorizonThatNothingBlocks) {
     std::mt19937 random(1);
     for (int i = 0; i < 37; ++i) {
         const glm::dvec3 w = scenes::random_direction(random);
-        lights.push_back({.direction = w, .irradiance = {.red = 2.0 * w, .green = w, .blue = 0.0 * w}});
+        lights.push_back(
+            {.direction = w, .irradiance = {.red = 2.0 * w, .green = w, .blue = 0.0 * w}});
     }
     const LightPackets packets(lights);
     const ShadowRays rays = scene.shadow_rays();
@@ -96,13 +101,15 @@ TEST(SharpLights, PacketsAddUpEveryLightAboveTheHorizonThatNothingBlocks) {
         double expected = 0.0;
         for (const SharpLight& light : lights)
             if (!scene.rays.occluded(origin, glm::vec3(light.direction)))
-                expected += std::max(0.0, glm::dot(glm::dvec3(n), light.direction)) / std::numbers::pi;
+                expected +=
+                    std::max(0.0, glm::dot(glm::dvec3(n), light.direction)) / std::numbers::pi;
         const glm::dvec3 radiance = packets.radiance(scene.receivers.positions[i], n, rays);
         EXPECT_NEAR(radiance.r, 2.0 * expected, 1e-6);
         EXPECT_NEAR(radiance.g, expected, 1e-6);
         EXPECT_EQ(radiance.b, 0.0);
     }
-    EXPECT_EQ(LightPackets(std::span<const SharpLight>()).radiance({}, {0, 1, 0}, rays), glm::dvec3(0.0));
+    EXPECT_EQ(LightPackets(std::span<const SharpLight>()).radiance({}, {0, 1, 0}, rays),
+              glm::dvec3(0.0));
 }
 
 } // namespace

@@ -13,13 +13,15 @@
 namespace relumine::relight {
 namespace {
 
-/// Whether all receivers of a block that count a cluster face all of a grid of directions in its cell.
+/// Whether all receivers of a block that count a cluster face all of a grid of directions in its
+/// cell.
 bool faces_all(const prt::Transfer& transfer, std::size_t block, std::size_t cluster) {
     constexpr int Steps = 4;
     const prt::Cell& cell = transfer.quadtree.leaves()[cluster];
     const std::size_t end = std::min((block + 1) * prt::BlockSize, transfer.num_receivers());
     for (std::size_t place = block * prt::BlockSize; place < end; ++place)
-        for (int i = 0; transfer.counts.count(place, cluster) > 0 && i < (Steps + 1) * (Steps + 1); ++i) {
+        for (int i = 0; transfer.counts.count(place, cluster) > 0 && i < (Steps + 1) * (Steps + 1);
+             ++i) {
             const double s = (cell.x + static_cast<double>(i % (Steps + 1)) / Steps) * cell.size();
             const double t = (cell.y + static_cast<double>(i / (Steps + 1)) / Steps) * cell.size();
             const glm::vec3 w(cubemap::direction(cell.face, s, t));
@@ -34,8 +36,9 @@ TileWord plain_bits(const prt::Transfer& transfer, std::size_t block, std::size_
     const std::size_t word = transfer.counts.word(block, w);
     bool unclamped = true;
     for (std::uint64_t mixed = transfer.counts.mixed[word]; mixed != 0; mixed &= mixed - 1)
-        unclamped = unclamped &&
-                    faces_all(transfer, block, w * 64 + static_cast<std::size_t>(std::countr_zero(mixed)));
+        unclamped =
+            unclamped &&
+            faces_all(transfer, block, w * 64 + static_cast<std::size_t>(std::countr_zero(mixed)));
     const bool any = transfer.counts.mixed[word] != 0;
     return {.visible = transfer.counts.visible[word] != 0 ? 1u : 0u,
             .clamped = any && !unclamped ? 1u : 0u,

@@ -1,4 +1,5 @@
-// What the thread sanitizer must see through TBB (cmake/tsan): with an argument there is a race between the parts of a loop, without one there is none.
+// What the thread sanitizer must see through TBB (cmake/tsan): with an argument there is a race
+// between the parts of a loop, without one there is none.
 #include <cstddef>
 #include <cstdio>
 #include <numeric>

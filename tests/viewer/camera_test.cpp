@@ -38,7 +38,8 @@ TEST(OrbitCamera, FromTheFrontXIsToTheRightAndYUp) {
 }
 
 TEST(OrbitCamera, RayThroughAPixelMeetsThePointThatIsSeenThere) {
-    const OrbitCamera camera{.target = {0.2f, 0.1f, 0.3f}, .distance = 4.0f, .yaw = 0.7f, .pitch = 0.4f};
+    const OrbitCamera camera{
+        .target = {0.2f, 0.1f, 0.3f}, .distance = 4.0f, .yaw = 0.7f, .pitch = 0.4f};
     const glm::vec3 point(0.6f, -0.4f, 0.9f);
     const Ray ray = ray_through(camera, Viewport, seen_at(camera, point));
     EXPECT_LT(glm::length(glm::cross(ray.direction, glm::normalize(point - ray.origin))), 1e-4f);
@@ -72,9 +73,10 @@ TEST(PanelLayout, PanelsFillTheWindowWithoutOverlaps) {
                 layout.environment, layout.layers, layout.status};
             for (int y = 0; y < height; y += 7)
                 for (int x = 0; x < width; x += 13)
-                    EXPECT_LE(std::count_if(panels.begin(), panels.end(),
-                                            [&](const PixelRectangle& p) { return p.contains(x, y); }),
-                              1);
+                    EXPECT_LE(
+                        std::count_if(panels.begin(), panels.end(),
+                                      [&](const PixelRectangle& p) { return p.contains(x, y); }),
+                        1);
             EXPECT_EQ(layout.environment.x + layout.environment.width, width);
             EXPECT_EQ(layout.status.y + layout.status.height, height);
         }

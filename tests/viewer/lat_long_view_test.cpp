@@ -32,7 +32,8 @@ TEST(LatLong, LinesOverTheSeamHaveNoJumps) {
     std::vector<glm::dvec3> circle;
     for (int i = 0; i <= 100; ++i) {
         const double angle = 2.0 * 3.14159265358979 * i / 100.0;
-        circle.push_back(glm::normalize(glm::dvec3(0.3 * std::cos(angle), 0.3 * std::sin(angle), -1.0)));
+        circle.push_back(
+            glm::normalize(glm::dvec3(0.3 * std::cos(angle), 0.3 * std::sin(angle), -1.0)));
     }
     const std::vector<glm::dvec2> uv = unrolled(circle);
     for (std::size_t i = 1; i < uv.size(); ++i)

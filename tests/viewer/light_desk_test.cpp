@@ -18,7 +18,8 @@ protected:
         return {editor_.radiance().begin(), editor_.radiance().end()};
     }
     static cubemap::LightLayer disc(const glm::dvec3& direction) {
-        return {.name = "Disc", .region = cubemap::Disc{.direction = direction, .radius_degrees = 10.0}};
+        return {.name = "Disc",
+                .region = cubemap::Disc{.direction = direction, .radius_degrees = 10.0}};
     }
     [[nodiscard]] glm::dvec3 direction_of(std::size_t index) const {
         return std::get<cubemap::Disc>(desk_.layers()[index].region).direction;

@@ -11,14 +11,18 @@ namespace {
 using cubemap::Region;
 
 std::vector<Region> all_kinds() {
-    return {cubemap::Disc{.direction = {1, 2, 3}, .radius_degrees = 12.0},
-            cubemap::Rectangle{
-                .direction = {-2, 1, 1}, .width_degrees = 50.0, .height_degrees = 20.0, .roll_degrees = 30.0},
-            cubemap::Rectangle{.direction = {0, 1, 0}, .width_degrees = 30.0, .height_degrees = 40.0},
-            cubemap::Lasso{.points = {{1, 0, 0}, {1, 0.5, 0}, {1, 0.4, 0.5}}},
-            cubemap::Stroke{
-                .points = {{0, 0, 1}, {0.2, 0.1, 1}, {0.4, 0, 1}}, .radius_degrees = 3.0, .softness = 0.0},
-            cubemap::Stroke{.points = {{0, -1, 0.1}}, .radius_degrees = 8.0, .softness = 0.0}};
+    return {
+        cubemap::Disc{.direction = {1, 2, 3}, .radius_degrees = 12.0},
+        cubemap::Rectangle{.direction = {-2, 1, 1},
+                           .width_degrees = 50.0,
+                           .height_degrees = 20.0,
+                           .roll_degrees = 30.0},
+        cubemap::Rectangle{.direction = {0, 1, 0}, .width_degrees = 30.0, .height_degrees = 40.0},
+        cubemap::Lasso{.points = {{1, 0, 0}, {1, 0.5, 0}, {1, 0.4, 0.5}}},
+        cubemap::Stroke{.points = {{0, 0, 1}, {0.2, 0.1, 1}, {0.4, 0, 1}},
+                        .radius_degrees = 3.0,
+                        .softness = 0.0},
+        cubemap::Stroke{.points = {{0, -1, 0.1}}, .radius_degrees = 8.0, .softness = 0.0}};
 }
 
 TEST(Outline, SeparatesWhatIsCoveredFromWhatIsNot) {
@@ -40,7 +44,8 @@ TEST(Outline, SeparatesWhatIsCoveredFromWhatIsNot) {
 }
 
 TEST(Grip, TellsBodyRimAndNothing) {
-    const Region disc = cubemap::Disc{.direction = {0, 0, 1}, .radius_degrees = 20.0, .softness = 1.0};
+    const Region disc =
+        cubemap::Disc{.direction = {0, 0, 1}, .radius_degrees = 20.0, .softness = 1.0};
     const auto at = [](double degrees) {
         return turned(glm::dvec3(0, 0, 1), degrees);
     };
@@ -70,9 +75,9 @@ TEST(Resized, FollowsThePointer) {
                                 turned(front, 10.5), turned(front, 25.5));
     EXPECT_NEAR(std::get<cubemap::Disc>(disc).radius_degrees, 25.0, 1e-9);
     // The side of a box at +X, held in its middle: only the width changes.
-    const Region box =
-        resized(cubemap::Rectangle{.direction = front, .width_degrees = 20.0, .height_degrees = 30.0},
-                turned(front, 10.0), turned(front, 20.0));
+    const Region box = resized(
+        cubemap::Rectangle{.direction = front, .width_degrees = 20.0, .height_degrees = 30.0},
+        turned(front, 10.0), turned(front, 20.0));
     EXPECT_NEAR(std::get<cubemap::Rectangle>(box).width_degrees, 40.0, 1e-9);
     EXPECT_NEAR(std::get<cubemap::Rectangle>(box).height_degrees, 30.0, 1e-9);
 }
@@ -80,7 +85,8 @@ TEST(Resized, FollowsThePointer) {
 TEST(Resized, StaysValidHoweverFar) {
     for (const Region& region : all_kinds())
         for (const glm::dvec3& to : {-middle(region), middle(region), glm::dvec3(0, 1, 0)})
-            EXPECT_NO_THROW(cubemap::validate(resized(region, outline(region)[3], to))) << region.index();
+            EXPECT_NO_THROW(cubemap::validate(resized(region, outline(region)[3], to)))
+                << region.index();
 }
 
 TEST(Turned, FrontGoesToPlusX) {
@@ -90,8 +96,8 @@ TEST(Turned, FrontGoesToPlusX) {
         EXPECT_LT(angle_between(turned(middle(region), 40.0), middle(there)), 1e-6);
         for (const glm::dvec3& w : outline(region)) {
             const glm::dvec3 inwards = w + 0.02 * middle(region);
-            EXPECT_NEAR(cubemap::coverage(region, inwards), cubemap::coverage(there, turned(inwards, 40.0)),
-                        1e-6);
+            EXPECT_NEAR(cubemap::coverage(region, inwards),
+                        cubemap::coverage(there, turned(inwards, 40.0)), 1e-6);
         }
     }
 }

@@ -32,8 +32,8 @@ TEST(Script, ReadsCommandsCommentsAndQuotedNames) {
 TEST(Script, RefusesWhatItDoesNotKnowWithTheLine) {
     for (const std::string line :
          {"dance", "wait", "wait x", "wait nan", "undo 1", "drag_layer Key", "drag_layer Key 1,2",
-          "drag_layer Key 0,0,0", "drag_layer Key 1,2,3,4", "drag_layer \"Key 1,2,3", "click_mesh 1",
-          "screenshot", "screenshot \"\""}) {
+          "drag_layer Key 0,0,0", "drag_layer Key 1,2,3,4", "drag_layer \"Key 1,2,3",
+          "click_mesh 1", "screenshot", "screenshot \"\""}) {
         try {
             static_cast<void>(parse_script("wait 1\n" + line, "some.script"));
             ADD_FAILURE() << line;

@@ -1,4 +1,5 @@
-// The window as a user has it, on a display without a screen: a script drags a light, the pictures show what it lights.
+// The window as a user has it, on a display without a screen: a script drags a light, the pictures
+// show what it lights.
 #include <array>
 #include <cstdlib>
 #include <filesystem>
@@ -29,8 +30,10 @@ class WindowTest : public testing::Test {
 protected:
     void SetUp() override {
         if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0)
-            GTEST_SKIP() << "needs xvfb-run (Debian packages xvfb and xauth): no window is tested here";
-        std::string pattern = (std::filesystem::temp_directory_path() / "relumine-view-XXXXXX").string();
+            GTEST_SKIP()
+                << "needs xvfb-run (Debian packages xvfb and xauth): no window is tested here";
+        std::string pattern =
+            (std::filesystem::temp_directory_path() / "relumine-view-XXXXXX").string();
         ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
         folder_ = pattern;
 
@@ -39,11 +42,12 @@ protected:
         const prt::RayScene rays(mesh);
         const prt::PrecomputeOptions options{
             .tolerance = 0.03f, .face_resolution = 64, .bias = prt::automatic_bias(mesh)};
-        prt::save_scene(
-            folder_ / "scene.prt",
-            {.mesh = mesh,
-             .transfer = prt::precompute(receivers, rays, options),
-             .settings = {.tolerance = options.tolerance, .face_resolution = 64, .bias = options.bias}});
+        prt::save_scene(folder_ / "scene.prt",
+                        {.mesh = mesh,
+                         .transfer = prt::precompute(receivers, rays, options),
+                         .settings = {.tolerance = options.tolerance,
+                                      .face_resolution = 64,
+                                      .bias = options.bias}});
         // Bluish above, so that the background tells where up is.
         cubemap::CubeMap environment(32, glm::vec3(0.05f));
         for (std::uint32_t y = 0; y < 32; ++y)
@@ -61,17 +65,19 @@ protected:
     /// Exit code of `relumine view` with a script; its words are in out.txt and err.txt.
     [[nodiscard]] int play(const std::string& script) const {
         std::ofstream(folder_ / "script") << script;
-        // The program's words and exit code are kept inside: xvfb-run may fail to remove its own folder when a program ends soon.
-        std::ofstream(folder_ / "run") << fmt::format("'{}' view scene.prt env.exr --script script --size "
-                                                      "{}x{} --exposure 0 --json >out.txt 2>err.txt\n"
-                                                      "echo $? >code.txt\n",
-                                                      RELUMINE_BINARY, Width, Height);
+        // The program's words and exit code are kept inside: xvfb-run may fail to remove its own
+        // folder when a program ends soon.
+        std::ofstream(folder_ / "run")
+            << fmt::format("'{}' view scene.prt env.exr --script script --size "
+                           "{}x{} --exposure 0 --json >out.txt 2>err.txt\n"
+                           "echo $? >code.txt\n",
+                           RELUMINE_BINARY, Width, Height);
         std::filesystem::remove(folder_ / "code.txt");
-        const std::string command =
-            fmt::format("cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
-                        "TSAN_OPTIONS=\"$TSAN_OPTIONS ignore_noninstrumented_modules=1\" xvfb-run -a -s "
-                        "'-screen 0 1280x1024x24' sh run >xvfb.txt 2>&1",
-                        folder_.string());
+        const std::string command = fmt::format(
+            "cd '{}' && LIBGL_ALWAYS_SOFTWARE=1 ASAN_OPTIONS=detect_leaks=0 "
+            "TSAN_OPTIONS=\"$TSAN_OPTIONS ignore_noninstrumented_modules=1\" xvfb-run -a -s "
+            "'-screen 0 1280x1024x24' sh run >xvfb.txt 2>&1",
+            folder_.string());
         static_cast<void>(std::system(command.c_str()));
         int code = -1;
         std::ifstream(folder_ / "code.txt") >> code;
@@ -91,8 +97,10 @@ protected:
         const float depth = glm::dot(from_eye, axes.forward);
         const float x = glm::dot(from_eye, axes.right) / glm::dot(axes.right, axes.right) / depth;
         const float y = glm::dot(from_eye, axes.up) / glm::dot(axes.up, axes.up) / depth;
-        return {viewport_.x + static_cast<int>((0.5f + 0.5f * x) * static_cast<float>(viewport_.width)),
-                viewport_.y + static_cast<int>((0.5f - 0.5f * y) * static_cast<float>(viewport_.height))};
+        return {viewport_.x +
+                    static_cast<int>((0.5f + 0.5f * x) * static_cast<float>(viewport_.width)),
+                viewport_.y +
+                    static_cast<int>((0.5f - 0.5f * y) * static_cast<float>(viewport_.height))};
     }
     /// Green, the mean of 5 x 5 pixels.
     [[nodiscard]] static float brightness(const cubemap::Picture::Level& picture,
@@ -100,17 +108,19 @@ protected:
         float sum = 0.0f;
         for (int y = at[1] - 2; y <= at[1] + 2; ++y)
             for (int x = at[0] - 2; x <= at[0] + 2; ++x)
-                sum +=
-                    picture.pixels[static_cast<std::size_t>(y) * picture.width + static_cast<std::size_t>(x)]
-                        .g;
+                sum += picture
+                           .pixels[static_cast<std::size_t>(y) * picture.width +
+                                   static_cast<std::size_t>(x)]
+                           .g;
         return sum / 25.0f;
     }
     /// Whether two pictures agree bit by bit in a part of the window.
-    [[nodiscard]] static bool equal(const cubemap::Picture::Level& a, const cubemap::Picture::Level& b,
-                                    const PixelRectangle& part) {
+    [[nodiscard]] static bool equal(const cubemap::Picture::Level& a,
+                                    const cubemap::Picture::Level& b, const PixelRectangle& part) {
         for (int y = part.y; y < part.y + part.height; ++y)
             for (int x = part.x; x < part.x + part.width; ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * a.width + static_cast<std::size_t>(x);
+                const std::size_t i =
+                    static_cast<std::size_t>(y) * a.width + static_cast<std::size_t>(x);
                 if (a.pixels[i] != b.pixels[i])
                     return false;
             }
@@ -153,10 +163,12 @@ TEST_F(WindowTest, ADraggedDiscLightsTheOtherSideAndUndoBringsItBack) {
     EXPECT_GT(brightness(before, pixel_of(right_)), 3.0f * brightness(before, pixel_of(left_)));
     EXPECT_GT(brightness(after, pixel_of(left_)), 3.0f * brightness(after, pixel_of(right_)));
     // Behind the mesh nothing has changed, nor in the tools over it.
-    const PixelRectangle corner{.x = viewport_.x, .y = viewport_.y, .width = viewport_.width, .height = 8};
+    const PixelRectangle corner{
+        .x = viewport_.x, .y = viewport_.y, .width = viewport_.width, .height = 8};
     EXPECT_TRUE(equal(before, after, corner));
     EXPECT_TRUE(equal(before, after, panel_layout(Width, Height).scene_tools));
-    // The environment's picture shows the disc where it is now: +X left of the centre, -X right of it.
+    // The environment's picture shows the disc where it is now: +X left of the centre, -X right of
+    // it.
     const PixelRectangle map = panel_layout(Width, Height).environment;
     const std::array left_in_map = {map.x + map.width * 29 / 100, map.y + map.height * 48 / 100};
     const std::array right_in_map = {map.x + map.width * 71 / 100, map.y + map.height * 48 / 100};
@@ -184,30 +196,37 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
                                "screenshot heat.exr\n"
                                "drag_mesh 200 250 300 250\n"
                                "screenshot turned.exr\n",
-                               on_map({1, 0.2, 0.3}), on_map({-1, 0.2, 0.3}), on_sphere[0], on_sphere[1])),
+                               on_map({1, 0.2, 0.3}), on_map({-1, 0.2, 0.3}), on_sphere[0],
+                               on_sphere[1])),
               0)
         << words("err.txt");
     const cubemap::LightLayers saved = cubemap::load_layers(folder_ / "saved.json");
     ASSERT_EQ(saved.layers.size(), 1u);
-    EXPECT_LT(angle_between(std::get<cubemap::Disc>(saved.layers[0].region).direction, {-1, 0.2, 0.3}), 2.0);
+    EXPECT_LT(
+        angle_between(std::get<cubemap::Disc>(saved.layers[0].region).direction, {-1, 0.2, 0.3}),
+        2.0);
 
     const cubemap::Picture::Level moved = picture("moved.exr");
     EXPECT_GT(brightness(moved, pixel_of(left_)), 1.5f * brightness(moved, pixel_of(right_)));
     const cubemap::Picture::Level heat = picture("heat.exr");
     EXPECT_FALSE(equal(moved, heat, map));
-    const PixelRectangle upper{
-        .x = viewport_.x, .y = viewport_.y, .width = viewport_.width, .height = viewport_.height / 8};
+    const PixelRectangle upper{.x = viewport_.x,
+                               .y = viewport_.y,
+                               .width = viewport_.width,
+                               .height = viewport_.height / 8};
     EXPECT_TRUE(equal(moved, heat, upper));
     EXPECT_FALSE(equal(heat, picture("turned.exr"), viewport_));
 }
 
 TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
     const PixelRectangle map = panel_layout(Width, Height).environment;
-    cubemap::save_environment(folder_ / "picture.exr", cubemap::CubeMap(8, glm::vec3(3.0f, 2.0f, 1.0f)),
+    cubemap::save_environment(folder_ / "picture.exr",
+                              cubemap::CubeMap(8, glm::vec3(3.0f, 2.0f, 1.0f)),
                               cubemap::Layout::LatLong);
     const auto box = [&](double x0, double y0, double x1, double y1) {
         return fmt::format("{} {} {} {}", std::lround(map.x + x0 * map.width),
-                           std::lround(map.y + y0 * map.height), std::lround(map.x + x1 * map.width),
+                           std::lround(map.y + y0 * map.height),
+                           std::lround(map.x + x1 * map.width),
                            std::lround(map.y + y1 * map.height));
     };
     // The dialogue is in the window's middle; its second button makes a layer.
@@ -249,7 +268,8 @@ TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
     EXPECT_EQ(patch.path, "picture.exr") << "relative to the file";
     EXPECT_EQ(saved.base, "env.exr");
     const cubemap::Picture::Level lasso = picture("lasso.exr");
-    EXPECT_FALSE(equal(lasso, picture("asks.exr"), viewport_)) << "the dialogue dims what is behind it";
+    EXPECT_FALSE(equal(lasso, picture("asks.exr"), viewport_))
+        << "the dialogue dims what is behind it";
     const cubemap::Picture::Level layer = picture("layer.exr");
     EXPECT_GT(brightness(layer, {map.x + map.width / 2, map.y + map.height * 46 / 100}),
               brightness(lasso, {map.x + map.width / 2, map.y + map.height * 46 / 100}));
@@ -278,13 +298,15 @@ TEST_F(WindowTest, SavedLayersFindTheirPicturesFromAnotherFolder) {
     EXPECT_EQ(std::get<cubemap::ImagePatch>(saved.layers[0].effect).path, "../picture.exr");
     EXPECT_EQ(play("add_image missing.exr\n"), 1);
     EXPECT_EQ(play("add_image env.png\n"), 1);
-    EXPECT_EQ(words("err.txt"),
-              "relumine: script line 1: env.png: expected .exr or .hdr for an image layer, got '.png'\n");
+    EXPECT_EQ(
+        words("err.txt"),
+        "relumine: script line 1: env.png: expected .exr or .hdr for an image layer, got '.png'\n");
 }
 
 TEST_F(WindowTest, AScriptThatFailsEndsWithOneLine) {
     EXPECT_EQ(play("drag_layer Nobody 1,0,0\n"), 1);
-    EXPECT_EQ(words("err.txt"), "relumine: script line 1: expected the name of a layer, got 'Nobody'\n");
+    EXPECT_EQ(words("err.txt"),
+              "relumine: script line 1: expected the name of a layer, got 'Nobody'\n");
     EXPECT_EQ(play("open missing.exr\n"), 1);
     EXPECT_NE(words("err.txt").find("missing.exr"), std::string::npos);
 }

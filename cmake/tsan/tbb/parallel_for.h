@@ -1,6 +1,7 @@
-// Stands before TBB's header in builds for the thread sanitizer, which does not see inside Debian's TBB. The marks here tell it what TBB promises: what
-// comes before a loop happens before each of its parts, and each part before what comes after the loop. Nothing is promised
-// between parts, so races between them are found.
+// Stands before TBB's header in builds for the thread sanitizer, which does not see inside Debian's
+// TBB. The marks here tell it what TBB promises: what comes before a loop happens before each of
+// its parts, and each part before what comes after the loop. Nothing is promised between parts, so
+// races between them are found.
 #pragma once
 
 #include_next <tbb/parallel_for.h>
@@ -17,7 +18,8 @@ struct LoopMarks {
     char after = 0;
 };
 
-/// What TBB copies from thread to thread, by which the sanitizer would already be misled: it does not watch this.
+/// What TBB copies from thread to thread, by which the sanitizer would already be misled: it does
+/// not watch this.
 template<class Body>
 struct MarkedBody {
     const Body* body;
@@ -55,7 +57,8 @@ namespace tbb {
 
 template<class Range, class Body, class... Partitioner>
 void marked_parallel_for(const Range& range, const Body& body, const Partitioner&... partitioner) {
-    relumine::tsan::mark(body, [&](const auto& marked) { parallel_for(range, marked, partitioner...); });
+    relumine::tsan::mark(body,
+                         [&](const auto& marked) { parallel_for(range, marked, partitioner...); });
 }
 
 template<std::integral Index, class Body>

@@ -88,13 +88,15 @@ TEST(ClippedSun, MeasuredEnvironments) {
     for (const Known& known :
          {Known{"latlong/venice_1k.hdr", true}, Known{"debevec/beach_cross.hdr", true},
           Known{"latlong/sunset_1k.hdr", false}, Known{"openexr/KernerEnvLatLong.exr", false},
-          Known{"debevec/uffizi_latlong_1200.hdr", false}, Known{"debevec/kitchen_cross.hdr", false},
-          Known{"debevec/stpeters_cross.hdr", false}, Known{"debevec/galileo_cross.hdr", false},
-          Known{"latlong/studio_1k.hdr", false}, Known{"openexr/WavyLinesLatLong.exr", false}}) {
+          Known{"debevec/uffizi_latlong_1200.hdr", false},
+          Known{"debevec/kitchen_cross.hdr", false}, Known{"debevec/stpeters_cross.hdr", false},
+          Known{"debevec/galileo_cross.hdr", false}, Known{"latlong/studio_1k.hdr", false},
+          Known{"openexr/WavyLinesLatLong.exr", false}}) {
         const std::filesystem::path path = data_file(known.file);
         if (path.empty())
             GTEST_SKIP() << "no data folder";
-        EXPECT_EQ(check(load_environment(path, {.fix_bad_pixels = true})).has_value(), known.is_clipped)
+        EXPECT_EQ(check(load_environment(path, {.fix_bad_pixels = true})).has_value(),
+                  known.is_clipped)
             << known.file;
     }
 }

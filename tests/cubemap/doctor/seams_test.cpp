@@ -18,7 +18,8 @@ void paint_world(EnvironmentImage& image) {
     std::mt19937 generator(7);
     std::uniform_real_distribution<float> grain(0.9f, 1.1f);
     paint(image, [&](const glm::dvec3& w) {
-        const double hills = std::sin(5.0 * w.x + 1.0) * std::cos(7.0 * w.z) + 0.5 * std::sin(11.0 * w.y);
+        const double hills =
+            std::sin(5.0 * w.x + 1.0) * std::cos(7.0 * w.z) + 0.5 * std::sin(11.0 * w.y);
         return glm::vec3(static_cast<float>(std::exp(hills))) * grain(generator);
     });
 }
@@ -38,7 +39,8 @@ EnvironmentImage world(Layout layout, Sampling sampling, std::uint32_t size) {
     if (sampling == Sampling::Borders && layout == Layout::LatLong) {
         // Shared samples are the same, grain and all.
         for (std::uint32_t y = 0; y < image.height; ++y)
-            image.pixels[(y + 1) * std::size_t{image.width} - 1] = image.pixels[y * std::size_t{image.width}];
+            image.pixels[(y + 1) * std::size_t{image.width} - 1] =
+                image.pixels[y * std::size_t{image.width}];
     }
     return image;
 }
@@ -51,7 +53,8 @@ TEST(Seams, GoodMapsHaveNone) {
             EXPECT_THAT(places(world(Layout::LatLong, sampling, size)), testing::IsEmpty()) << size;
         for (const std::uint32_t size : {8u, 32u, 129u}) {
             EXPECT_THAT(places(world(Layout::Cube, sampling, size)), testing::IsEmpty()) << size;
-            EXPECT_THAT(places(world(Layout::VerticalCross, sampling, size)), testing::IsEmpty()) << size;
+            EXPECT_THAT(places(world(Layout::VerticalCross, sampling, size)), testing::IsEmpty())
+                << size;
         }
     }
     for (const Layout layout : {Layout::LatLong, Layout::Cube, Layout::VerticalCross}) {
@@ -60,7 +63,8 @@ TEST(Seams, GoodMapsHaveNone) {
         image.pixels.assign(image.pixels.size(), glm::vec3(3.0f));
         EXPECT_THAT(places(image), testing::IsEmpty());
         // A light that an edge, the seam or the pole cuts.
-        for (const glm::dvec3& to_light : {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1), glm::dvec3(1, 0, 1)}) {
+        for (const glm::dvec3& to_light :
+             {glm::dvec3(0, 1, 0), glm::dvec3(0, 0, -1), glm::dvec3(1, 0, 1)}) {
             paint(image, [&](const glm::dvec3& w) {
                 return glm::vec3(glm::dot(w, glm::normalize(to_light)) > 0.99 ? 100.0f : 1.0f);
             });
@@ -70,7 +74,8 @@ TEST(Seams, GoodMapsHaveNone) {
 }
 
 TEST(Seams, WrapAround) {
-    // A sky whose left third is exposed a quarter stop more, blended in the picture's middle but not where it wraps around.
+    // A sky whose left third is exposed a quarter stop more, blended in the picture's middle but
+    // not where it wraps around.
     EnvironmentImage image = world(Layout::LatLong, Sampling::TexelCentres, 128);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         const auto x = static_cast<double>(i % image.width) / image.width;
@@ -94,12 +99,14 @@ TEST(Seams, Poles) {
             EXPECT_THAT(places(image), testing::ElementsAre(row)) << gain;
         }
     }
-    // A picture that does not shrink to a point at its top: as a map it shows a hundred things in one direction.
+    // A picture that does not shrink to a point at its top: as a map it shows a hundred things in
+    // one direction.
     EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 128);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        image.pixels[i] = glm::vec3(std::exp2(
-            static_cast<float>(2.0 * std::sin(static_cast<double>(i % 256) * 2.0 * 3.14159265 / 256.0))));
-    EXPECT_THAT(places(image), testing::ElementsAre("top row around the pole", "bottom row around the pole"));
+        image.pixels[i] = glm::vec3(std::exp2(static_cast<float>(
+            2.0 * std::sin(static_cast<double>(i % 256) * 2.0 * 3.14159265 / 256.0))));
+    EXPECT_THAT(places(image),
+                testing::ElementsAre("top row around the pole", "bottom row around the pole"));
 }
 
 TEST(Seams, OneFaceUnlikeTheOthers) {
@@ -108,28 +115,32 @@ TEST(Seams, OneFaceUnlikeTheOthers) {
     for (std::size_t y = 0; y < 64; ++y)
         for (std::size_t x = 0; x < y; ++x) // mirrored at its diagonal
             std::swap(image.pixels[PositiveY + y * 64 + x], image.pixels[PositiveY + x * 64 + y]);
-    EXPECT_THAT(places(image), testing::UnorderedElementsAre("edge of +X and +Y", "edge of -X and +Y",
-                                                             "edge of +Y and +Z", "edge of +Y and -Z"));
+    EXPECT_THAT(places(image),
+                testing::UnorderedElementsAre("edge of +X and +Y", "edge of -X and +Y",
+                                              "edge of +Y and +Z", "edge of +Y and -Z"));
     // One face exposed half a stop more.
     image = world(Layout::VerticalCross, Sampling::TexelCentres, 64);
     const FaceCells cells(image.layout, image.width, image.height);
     for (std::uint32_t y = 0; y < 64; ++y)
         for (std::uint32_t x = 0; x < 64; ++x)
             image.pixels[cells.pixel(Face::NegativeZ, x, y)] *= 3.0f;
-    EXPECT_THAT(places(image), testing::UnorderedElementsAre("edge of +X and -Z", "edge of -X and -Z",
-                                                             "edge of +Y and -Z", "edge of -Y and -Z"));
+    EXPECT_THAT(places(image),
+                testing::UnorderedElementsAre("edge of +X and -Z", "edge of -X and -Z",
+                                              "edge of +Y and -Z", "edge of -Y and -Z"));
 }
 
 TEST(Seams, MeasuredEnvironmentsHaveNone) {
     for (const char* file :
-         {"latlong/sunset_1k.hdr", "latlong/venice_1k.hdr", "latlong/studio_1k.hdr", "latlong/ennis_256.hdr",
-          "latlong/grace_256.hdr", "latlong/mitsuba_museum_512.exr", "latlong/blender_interior_1k.exr",
-          "openexr/KernerEnvCube.exr", "openexr/KernerEnvLatLong.exr", "openexr/WavyLinesCube.exr",
-          "debevec/grace_cross.hdr", "debevec/kitchen_cross.hdr", "debevec/uffizi_latlong_1200.hdr"}) {
+         {"latlong/sunset_1k.hdr", "latlong/venice_1k.hdr", "latlong/studio_1k.hdr",
+          "latlong/ennis_256.hdr", "latlong/grace_256.hdr", "latlong/mitsuba_museum_512.exr",
+          "latlong/blender_interior_1k.exr", "openexr/KernerEnvCube.exr",
+          "openexr/KernerEnvLatLong.exr", "openexr/WavyLinesCube.exr", "debevec/grace_cross.hdr",
+          "debevec/kitchen_cross.hdr", "debevec/uffizi_latlong_1200.hdr"}) {
         const std::filesystem::path path = data_file(file);
         if (path.empty())
             GTEST_SKIP() << "no data folder";
-        EXPECT_THAT(places(load_environment(path, {.fix_bad_pixels = true})), testing::IsEmpty()) << file;
+        EXPECT_THAT(places(load_environment(path, {.fix_bad_pixels = true})), testing::IsEmpty())
+            << file;
     }
 }
 

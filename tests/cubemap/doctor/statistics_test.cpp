@@ -70,7 +70,8 @@ TEST(Statistics, LeavesBadPixelsOut) {
 }
 
 TEST(Statistics, BlackEnvironment) {
-    const EnvironmentStatistics result = statistics(black_image(Layout::LatLong, Sampling::TexelCentres, 8));
+    const EnvironmentStatistics result =
+        statistics(black_image(Layout::LatLong, Sampling::TexelCentres, 8));
     EXPECT_EQ(result.max_luminance, 0.0);
     EXPECT_EQ(result.min_positive_luminance, 0.0);
     EXPECT_EQ(result.dynamic_range_ev, 0.0);

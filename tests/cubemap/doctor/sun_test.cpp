@@ -21,12 +21,13 @@ glm::vec3 sky(const glm::dvec3& w) {
 }
 
 /// The sky with a uniform disc over it; pixels at its rim get their covered part.
-EnvironmentImage sky_with_disc(EnvironmentImage image, const glm::dvec3& to_disc, double radius_degrees,
-                               const glm::vec3& radiance) {
+EnvironmentImage sky_with_disc(EnvironmentImage image, const glm::dvec3& to_disc,
+                               double radius_degrees, const glm::vec3& radiance) {
     paint(image, [&](const glm::dvec3& w) {
         // Softened over a tenth of the radius in place of exact coverage.
         const double angle = std::acos(std::clamp(glm::dot(w, to_disc), -1.0, 1.0)) / Degree;
-        const double covered = std::clamp((radius_degrees - angle) / (0.1 * radius_degrees) + 0.5, 0.0, 1.0);
+        const double covered =
+            std::clamp((radius_degrees - angle) / (0.1 * radius_degrees) + 0.5, 0.0, 1.0);
         return sky(w) + static_cast<float>(covered) * radiance;
     });
     return image;
@@ -36,11 +37,13 @@ double angle_degrees(const glm::dvec3& a, const glm::dvec3& b) {
     return 2.0 * std::asin(std::min(0.5 * glm::distance(a, b), 1.0)) / Degree;
 }
 
-/// Directions at places where layouts break: +Z is a lat-long's centre, -Z its seam, +-Y its poles; edges and corners of faces.
+/// Directions at places where layouts break: +Z is a lat-long's centre, -Z its seam, +-Y its poles;
+/// edges and corners of faces.
 std::vector<glm::dvec3> difficult_directions() {
-    std::vector<glm::dvec3> directions = {{0, 0, 1},  {0, 0, -1}, {1e-3, 0, -1}, {0, 1, 0},      {0.01, 1, 0},
-                                          {0, -1, 0}, {1, 0, 1},  {1, 1, 0},     {1, 1, 1},      {-1, 1, -1},
-                                          {-1, 0, 1}, {0, 1, -1}, {-1, -1, 1},   {0.3, 0.5, 0.2}};
+    std::vector<glm::dvec3> directions = {{0, 0, 1},    {0, 0, -1},     {1e-3, 0, -1}, {0, 1, 0},
+                                          {0.01, 1, 0}, {0, -1, 0},     {1, 0, 1},     {1, 1, 0},
+                                          {1, 1, 1},    {-1, 1, -1},    {-1, 0, 1},    {0, 1, -1},
+                                          {-1, -1, 1},  {0.3, 0.5, 0.2}};
     for (glm::dvec3& w : directions)
         w = glm::normalize(w);
     return directions;
@@ -63,14 +66,14 @@ TEST(Sun, DiscFoundAnywhereInEveryLayout) {
     for (const Case& c : Cases) {
         const EnvironmentImage black = black_image(c.layout, c.sampling, c.size);
         for (const glm::dvec3& w : difficult_directions()) {
-            SCOPED_TRACE(testing::Message() << name(c.layout) << ' ' << c.size << " towards " << w.x << ' '
-                                            << w.y << ' ' << w.z);
+            SCOPED_TRACE(testing::Message() << name(c.layout) << ' ' << c.size << " towards " << w.x
+                                            << ' ' << w.y << ' ' << w.z);
             const EnvironmentImage image = sky_with_disc(black, w, radius, radiance);
             // What was drawn, a disc of some 18 or 70 pixels, is known exactly.
             glm::dvec3 drawn(0.0);
             for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
-                drawn += glm::dvec3(image.pixels[index] - sky(place.direction)) * place.solid_angle *
-                         std::max(0.0, glm::dot(place.direction, w));
+                drawn += glm::dvec3(image.pixels[index] - sky(place.direction)) *
+                         place.solid_angle * std::max(0.0, glm::dot(place.direction, w));
             });
             const SunSearch found = find_sun(image);
             ASSERT_TRUE(found.sun) << found.why_none;
@@ -90,7 +93,8 @@ TEST(Sun, OnePixel) {
         EnvironmentImage image = black_image(c.layout, c.sampling, c.size);
         paint(image, sky);
         const EnvironmentImage without = image;
-        // Corners, edges, poles and a few in between. Cells of a cross that show nothing come out as black and are not listed.
+        // Corners, edges, poles and a few in between. Cells of a cross that show nothing come out
+        // as black and are not listed.
         std::vector<std::pair<std::size_t, PixelPlace>> places;
         for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
             if (index % 3989 == 0 || index == image.pixels.size() - 1)
@@ -121,7 +125,8 @@ TEST(Sun, OnePixel) {
 TEST(Sun, OnePixelOfACoarseMap) {
     EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 32);
     paint(image, sky);
-    for (const std::size_t index : {0u, 63u, 64u * 10u, 64u * 10u + 63u, 64u * 31u + 5u, 64u * 8u + 30u}) {
+    for (const std::size_t index :
+         {0u, 63u, 64u * 10u, 64u * 10u + 63u, 64u * 31u + 5u, 64u * 8u + 30u}) {
         EnvironmentImage lit = image;
         const auto rows = detail::lat_long_rows(shape_of(image));
         const double solid_angle = rows[index / 64].height * 2.0 * std::numbers::pi / 64;
@@ -138,14 +143,15 @@ TEST(Sun, CubeMapAsImage) {
     map.at(Face::PositiveY, 0, 63) = glm::vec3(1e5f); // a corner
     const SunSearch found = find_sun(map);
     ASSERT_TRUE(found.sun);
-    EXPECT_LT(glm::distance(found.sun->direction, texel_direction(Face::PositiveY, 0, 63, 64)), 1e-9);
+    EXPECT_LT(glm::distance(found.sun->direction, texel_direction(Face::PositiveY, 0, 63, 64)),
+              1e-9);
     EXPECT_NEAR(found.sun->irradiance.x, (1e5 - 1.0) * texel_solid_angles(64).back(), 1e-3);
 }
 
 TEST(Sun, PixelsTellTheSky) {
     const glm::dvec3 w = glm::normalize(glm::dvec3(0.3, 0.6, -1.0));
-    const EnvironmentImage image =
-        sky_with_disc(black_image(Layout::LatLong, Sampling::TexelCentres, 256), w, 1.5, glm::vec3(1e4f));
+    const EnvironmentImage image = sky_with_disc(
+        black_image(Layout::LatLong, Sampling::TexelCentres, 256), w, 1.5, glm::vec3(1e4f));
     const SunSearch found = find_sun(image);
     ASSERT_TRUE(found.sun);
     const glm::vec3 expected = sky(w);
@@ -189,8 +195,8 @@ TEST(Sun, NoneWhereThereIsNone) {
 
 TEST(Sun, AHotPixelIsNoRival) {
     const glm::dvec3 w = glm::normalize(glm::dvec3(1.0, 0.5, 0.0));
-    EnvironmentImage image =
-        sky_with_disc(black_image(Layout::LatLong, Sampling::TexelCentres, 256), w, 1.5, glm::vec3(1e4f));
+    EnvironmentImage image = sky_with_disc(
+        black_image(Layout::LatLong, Sampling::TexelCentres, 256), w, 1.5, glm::vec3(1e4f));
     image.pixels[512 * 200 + 30] = glm::vec3(6e4f); // brighter, but one pixel
     const SunSearch found = find_sun(image);
     ASSERT_TRUE(found.sun) << found.why_none;
@@ -206,12 +212,13 @@ TEST(Sun, MeasuredEnvironments) {
          {Known{"latlong/sunset_1k.hdr", true}, Known{"latlong/blender_sunset_1k.exr", true},
           Known{"openexr/KernerEnvLatLong.exr", true}, Known{"debevec/grace_cross.hdr", false},
           Known{"debevec/stpeters_cross.hdr", false}, Known{"latlong/venice_1k.hdr", false},
-          Known{"debevec/uffizi_latlong_1200.hdr", false}, Known{"debevec/kitchen_cross.hdr", false},
-          Known{"latlong/studio_1k.hdr", false}}) {
+          Known{"debevec/uffizi_latlong_1200.hdr", false},
+          Known{"debevec/kitchen_cross.hdr", false}, Known{"latlong/studio_1k.hdr", false}}) {
         const std::filesystem::path path = data_file(known.file);
         if (path.empty())
             GTEST_SKIP() << "no data folder";
-        EXPECT_EQ(find_sun(load_environment(path, {.fix_bad_pixels = true})).sun.has_value(), known.has_sun)
+        EXPECT_EQ(find_sun(load_environment(path, {.fix_bad_pixels = true})).sun.has_value(),
+                  known.has_sun)
             << known.file;
     }
 }

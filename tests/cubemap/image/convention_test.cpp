@@ -1,4 +1,5 @@
-// Conventions of other programs, each written down here a second time, from the program's own lookup.
+// Conventions of other programs, each written down here a second time, from the program's own
+// lookup.
 #include "cubemap/image/convention.h"
 
 #include <cmath>
@@ -18,15 +19,17 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// A coloured light on each axis and a white mark that no mirror image or turn of the sphere leaves in place.
+/// A coloured light on each axis and a white mark that no mirror image or turn of the sphere leaves
+/// in place.
 glm::vec3 radiance(const glm::dvec3& w) {
-    const std::array<std::pair<glm::dvec3, glm::dvec3>, 7> lights = {{{{1, 0, 0}, {1, 0, 0}},
-                                                                      {{-1, 0, 0}, {0, 1, 1}},
-                                                                      {{0, 1, 0}, {0, 1, 0}},
-                                                                      {{0, -1, 0}, {1, 0, 1}},
-                                                                      {{0, 0, 1}, {0, 0, 1}},
-                                                                      {{0, 0, -1}, {1, 1, 0}},
-                                                                      {{0.48, 0.64, 0.6}, {1, 1, 1}}}};
+    const std::array<std::pair<glm::dvec3, glm::dvec3>, 7> lights = {
+        {{{1, 0, 0}, {1, 0, 0}},
+         {{-1, 0, 0}, {0, 1, 1}},
+         {{0, 1, 0}, {0, 1, 0}},
+         {{0, -1, 0}, {1, 0, 1}},
+         {{0, 0, 1}, {0, 0, 1}},
+         {{0, 0, -1}, {1, 1, 0}},
+         {{0.48, 0.64, 0.6}, {1, 1, 1}}}};
     glm::dvec3 sum(0.02);
     for (const auto& [direction, colour] : lights)
         sum += colour * std::exp(20.0 * (glm::dot(w, direction) - 1.0));
@@ -102,7 +105,8 @@ std::vector<Known> known() {
          [](double u, double v) {
              return from_z_up(spherical(Pi * v, Pi - 2.0 * Pi * u, 2));
          }},
-        // Cycles: d = 2 sqrt(-(y - 1) / 2); u = (x / d + 1) / 2 and upwards (z / d + 1) / 2. So with p = (2u - 1, 1 - 2v): y = 2 |p|^2 - 1.
+        // Cycles: d = 2 sqrt(-(y - 1) / 2); u = (x / d + 1) / 2 and upwards (z / d + 1) / 2. So
+        // with p = (2u - 1, 1 - 2v): y = 2 |p|^2 - 1.
         {"blender", Layout::MirrorBall,
          [](double u, double v) {
              const double out =
@@ -120,11 +124,14 @@ std::vector<Known> known() {
                                std::sin(Pi * v) * std::sin(angle));
          }},
         // Cube textures are looked up at (flipEnvMap x, y, z) with flipEnvMap = -1.
-        {"threejs", Layout::Cube, stacked([](const glm::dvec3& w) { return glm::dvec3(-w.x, w.y, w.z); })},
+        {"threejs", Layout::Cube,
+         stacked([](const glm::dvec3& w) { return glm::dvec3(-w.x, w.y, w.z); })},
         {"opengl", Layout::Cube, stacked([](const glm::dvec3& w) { return w; })},
         // The same lookup with left-handed coordinates.
-        {"directx", Layout::Cube, stacked([](const glm::dvec3& w) { return glm::dvec3(w.x, w.y, -w.z); })},
-        // EqualAreaSquareToSphere() for one quadrant at a time: r = 1 - |d|, phi = pi/4 ((v - u) / r + 1).
+        {"directx", Layout::Cube,
+         stacked([](const glm::dvec3& w) { return glm::dvec3(w.x, w.y, -w.z); })},
+        // EqualAreaSquareToSphere() for one quadrant at a time: r = 1 - |d|, phi = pi/4 ((v - u) /
+        // r + 1).
         {"pbrt", Layout::Octahedral,
          [](double u, double v) {
              const double x = std::abs(2.0 * u - 1.0), y = std::abs(2.0 * v - 1.0), d = 1.0 - x - y;
@@ -140,11 +147,13 @@ std::vector<Known> known() {
 /// The picture that makes a program see the lights.
 EnvironmentImage painted(const Known& each, std::uint32_t face_resolution) {
     const ImageSize size = natural_size(each.layout, face_resolution);
-    EnvironmentImage image = black_image(each.layout, Sampling::TexelCentres, size.width, size.height);
+    EnvironmentImage image =
+        black_image(each.layout, Sampling::TexelCentres, size.width, size.height);
     for (std::uint32_t y = 0; y < size.height; ++y) {
         for (std::uint32_t x = 0; x < size.width; ++x) {
             const double u = (x + 0.5) / size.width, v = (y + 0.5) / size.height;
-            image.pixels[std::size_t{y} * size.width + x] = radiance(glm::normalize(each.lookup(u, v)));
+            image.pixels[std::size_t{y} * size.width + x] =
+                radiance(glm::normalize(each.lookup(u, v)));
         }
     }
     return image;
@@ -154,7 +163,8 @@ TEST(Convention, EveryOneIsTested) {
     for (const Convention& convention : conventions()) {
         bool found = false;
         for (const Known& each : known())
-            found = found || (each.name == convention.name && each.layout == convention.usual_layout);
+            found =
+                found || (each.name == convention.name && each.layout == convention.usual_layout);
         EXPECT_TRUE(found) << convention.name;
         EXPECT_TRUE(convention.reads(convention.usual_layout));
         EXPECT_EQ(find_convention(convention.name), &convention);
@@ -168,14 +178,16 @@ TEST(Convention, LightsComeFromWhereTheProgramSeesThem) {
         EnvironmentImage image = painted(each, 48);
         if (convention.swaps_z_faces)
             swap_z_faces(image);
-        const EnvironmentImage cube = convert(image, {Layout::Cube, Sampling::TexelCentres, 24, 144},
-                                              {.world_from_source = convention.world_from(each.layout)});
+        const EnvironmentImage cube =
+            convert(image, {Layout::Cube, Sampling::TexelCentres, 24, 144},
+                    {.world_from_source = convention.world_from(each.layout)});
         double largest = 0.0;
         for_each_pixel(shape_of(cube), [&](std::size_t i, const PixelPlace& place) {
             // The last ring of the ball is 16 degrees wide.
             if (each.layout == Layout::MirrorBall && place.direction.z < -0.9)
                 return;
-            largest = std::max<double>(largest, glm::distance(cube.pixels[i], radiance(place.direction)));
+            largest =
+                std::max<double>(largest, glm::distance(cube.pixels[i], radiance(place.direction)));
         });
         EXPECT_LT(largest, 0.06) << each.name << ' ' << name(each.layout);
     }
@@ -187,8 +199,8 @@ TEST(Convention, WrittenPicturesAreThoseTheProgramsWouldSee) {
     for (const Known& each : known()) {
         const Convention& convention = *find_convention(each.name);
         const EnvironmentImage expected = painted(each, 32);
-        EnvironmentImage written =
-            convert(cube, shape_of(expected), {.world_from_target = convention.world_from(each.layout)});
+        EnvironmentImage written = convert(
+            cube, shape_of(expected), {.world_from_target = convention.world_from(each.layout)});
         if (convention.swaps_z_faces)
             swap_z_faces(written);
         double sum = 0.0, weight = 0.0;
@@ -206,7 +218,9 @@ TEST(Convention, OpenGlsCubeIsOpenExrsWithZNegatedAndItsFacesExchanged) {
         const std::size_t exchanged = face < 4 ? face : 9 - face;
         for (const glm::dvec2& p : {glm::dvec2(0.2, 0.9), {0.7, 0.4}}) {
             const glm::dvec3 ours = cube_point(AllFaces[exchanged], p.x, p.y);
-            EXPECT_LT(glm::distance(opengl_face(face, p.x, p.y), glm::dvec3(ours.x, ours.y, -ours.z)), 1e-15);
+            EXPECT_LT(
+                glm::distance(opengl_face(face, p.x, p.y), glm::dvec3(ours.x, ours.y, -ours.z)),
+                1e-15);
         }
     }
 }
@@ -220,10 +234,12 @@ TEST(Convention, CubesAndLatLongsChangeHandsWithoutLosingABit) {
         for (const EnvironmentImage* image : {&cube, &lat_long}) {
             if (!convention.reads(image->layout))
                 continue;
-            EnvironmentImage there = convert(*image, shape_of(*image),
-                                             {.world_from_target = convention.world_from(image->layout)});
+            EnvironmentImage there =
+                convert(*image, shape_of(*image),
+                        {.world_from_target = convention.world_from(image->layout)});
             const EnvironmentImage back =
-                convert(there, shape_of(*image), {.world_from_source = convention.world_from(image->layout)});
+                convert(there, shape_of(*image),
+                        {.world_from_source = convention.world_from(image->layout)});
             EXPECT_EQ(back.pixels, image->pixels) << convention.name;
         }
     }

@@ -30,20 +30,23 @@ EnvironmentImage grey(Layout layout, Sampling sampling, std::uint32_t width, std
 TEST(Environment, LayoutsAreToldByTheirProportions) {
     const TemporaryFolder folder;
     const auto layout_of = [&](std::uint32_t width, std::uint32_t height) {
-        write(folder / "a.hdr", encode_hdr(grey(Layout::LatLong, Sampling::TexelCentres, width, height)));
+        write(folder / "a.hdr",
+              encode_hdr(grey(Layout::LatLong, Sampling::TexelCentres, width, height)));
         const EnvironmentImage image = load_environment(folder / "a.hdr");
         EXPECT_EQ(image.sampling, Sampling::TexelCentres);
         return std::pair{image.layout, image.assumptions};
     };
-    EXPECT_EQ(layout_of(20, 10),
-              std::pair(Layout::LatLong,
-                        std::string("2:1 image without envmap attribute, samples at texel centres")));
+    EXPECT_EQ(
+        layout_of(20, 10),
+        std::pair(Layout::LatLong,
+                  std::string("2:1 image without envmap attribute, samples at texel centres")));
     EXPECT_EQ(layout_of(5, 30).first, Layout::Cube);
     EXPECT_EQ(layout_of(12, 16).first, Layout::VerticalCross);
     EXPECT_EQ(message_of([&] { (void)layout_of(10, 10); }),
-              (folder / "a.hdr").string() + ": expected --layout angular, mirrorball or octahedral for a "
-                                            "square picture (or a 2:1 lat-long, a 1:6 or 6:1 "
-                                            "cube, a 3:4 or 4:3 cross), got 10x10");
+              (folder / "a.hdr").string() +
+                  ": expected --layout angular, mirrorball or octahedral for a "
+                  "square picture (or a 2:1 lat-long, a 1:6 or 6:1 "
+                  "cube, a 3:4 or 4:3 cross), got 10x10");
 }
 
 TEST(Environment, TheAttributeDecidesLayoutAndSampling) {
@@ -85,11 +88,10 @@ protected:
 };
 
 TEST_F(BadPixelsTest, AreRefusedWithCountAndPosition) {
-    EXPECT_EQ(
-        message_of([&] { (void)load_environment(path_); }),
-        path_.string() +
-            ": expected finite radiance >= 0, got 3 NaN/Inf and 1 negative pixels, first at (3, 1); use "
-            "--fix-env");
+    EXPECT_EQ(message_of([&] { (void)load_environment(path_); }),
+              path_.string() + ": expected finite radiance >= 0, got 3 NaN/Inf and 1 negative "
+                               "pixels, first at (3, 1); use "
+                               "--fix-env");
 }
 
 TEST_F(BadPixelsTest, AreFixedWhenAskedFor) {
@@ -142,13 +144,15 @@ TEST(Environment, SavedFilesReadBackToTheSamePowerAndPicture) {
             EXPECT_EQ(image.sampling, with_attribute ? Sampling::Borders : Sampling::TexelCentres);
             const CubeMap back = resample(image, 32);
             // RGBE has 8 bits, and the sun is most of this power.
-            EXPECT_NEAR(total_power(back).x / total_power(map).x, 1.0, extension == ".hdr" ? 3e-3 : 1e-5);
+            EXPECT_NEAR(total_power(back).x / total_power(map).x, 1.0,
+                        extension == ".hdr" ? 3e-3 : 1e-5);
             // Away from the sun the picture is smooth, so it must come back.
-            for (const Face face :
-                 {Face::NegativeX, Face::PositiveY, Face::NegativeY, Face::PositiveZ, Face::NegativeZ}) {
+            for (const Face face : {Face::NegativeX, Face::PositiveY, Face::NegativeY,
+                                    Face::PositiveZ, Face::NegativeZ}) {
                 for (std::uint32_t y = 2; y < 30; ++y) {
                     for (std::uint32_t x = 2; x < 30; ++x)
-                        ASSERT_LT(glm::distance(back.at(face, x, y), map.at(face, x, y)), 0.03f) << extension;
+                        ASSERT_LT(glm::distance(back.at(face, x, y), map.at(face, x, y)), 0.03f)
+                            << extension;
                 }
             }
             std::filesystem::remove(path);
@@ -169,13 +173,16 @@ TEST(Environment, UnwritablePathsAreNamedAndNothingIsLeft) {
     const TemporaryFolder folder;
     const CubeMap map(4, glm::vec3(-1.0f));
     EXPECT_EQ(message_of([&] { save_environment(folder / "a.png", map); }),
-              (folder / "a.png").string() + ": expected a name that ends in .exr or .hdr, got '.png'");
-    EXPECT_NE(
-        message_of([&] { save_environment(folder / "none/a.exr", map); }).find("none/a.exr: cannot write"),
-        std::string::npos);
-    EXPECT_NE(
-        message_of([&] { save_environment(folder / "a.hdr", map); }).find("a.hdr: expected radiance from 0"),
-        std::string::npos);
+              (folder / "a.png").string() +
+                  ": expected a name that ends in .exr or .hdr, got '.png'");
+    EXPECT_NE(message_of([&] {
+                  save_environment(folder / "none/a.exr", map);
+              }).find("none/a.exr: cannot write"),
+              std::string::npos);
+    EXPECT_NE(message_of([&] {
+                  save_environment(folder / "a.hdr", map);
+              }).find("a.hdr: expected radiance from 0"),
+              std::string::npos);
     EXPECT_EQ(folder.num_files(), 0u);
 }
 
@@ -193,7 +200,8 @@ TEST(Environment, FilesThatAreNoneAreRefused) {
 
 TEST(Environment, TheFormatIsToldByTheContent) {
     const TemporaryFolder folder;
-    write(folder / "really_hdr.exr", encode_hdr(grey(Layout::LatLong, Sampling::TexelCentres, 20, 10)));
+    write(folder / "really_hdr.exr",
+          encode_hdr(grey(Layout::LatLong, Sampling::TexelCentres, 20, 10)));
     EXPECT_EQ(load_environment(folder / "really_hdr.exr").width, 20u);
 }
 
@@ -211,9 +219,11 @@ TEST(EnvironmentData, DamagedFilesAreRefusedAtOnceInOneLine) {
     }
     // As what they are, they load.
     const LoadOptions anyway{.layout = Layout::LatLong, .refuse_bad_pixels = false};
-    EXPECT_EQ(load_environment(data_file("robustness/BrightRingsNanInf.exr"), anyway).bad_pixels.count(),
-              12u);
-    const BadPixels bad = load_environment(data_file("robustness/AllHalfValues.exr"), anyway).bad_pixels;
+    EXPECT_EQ(
+        load_environment(data_file("robustness/BrightRingsNanInf.exr"), anyway).bad_pixels.count(),
+        12u);
+    const BadPixels bad =
+        load_environment(data_file("robustness/AllHalfValues.exr"), anyway).bad_pixels;
     EXPECT_EQ(bad.num_nan + bad.num_infinite, 2048u);
     EXPECT_EQ(bad.num_negative, 31743u) << "all negative halfs but -0, NaN and infinity";
 }
@@ -222,7 +232,9 @@ TEST(EnvironmentData, NegativePixelsOfRealFilesAreCounted) {
     const auto path = data_file("latlong/blender_studio_1k.exr");
     if (path.empty())
         GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
-    EXPECT_NE(message_of([&] { (void)load_environment(path); }).find("got 0 NaN/Inf and 3 negative pixels"),
+    EXPECT_NE(message_of([&] {
+                  (void)load_environment(path);
+              }).find("got 0 NaN/Inf and 3 negative pixels"),
               std::string::npos);
     EXPECT_EQ(load_environment(path, {.fix_bad_pixels = true}).bad_pixels.num_negative, 3u);
 }

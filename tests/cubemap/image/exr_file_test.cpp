@@ -41,7 +41,8 @@ std::vector<glm::vec3> whole_numbers(int width = Width, int height = Height) {
 struct Channel {
     std::string name;
     Imf::PixelType type = Imf::FLOAT;
-    int component = 0; ///< of the pixels; the channel's content
+    /// Of the pixels; the channel's content
+    int component = 0;
 };
 
 /// Values in each channel's own type, kept while they are written.
@@ -60,14 +61,16 @@ public:
                 floats_[c].push_back(value);
                 uints_[c].push_back(static_cast<unsigned>(value));
             }
-            char* base = channels[c].type == Imf::HALF    ? reinterpret_cast<char*>(halves_[c].data())
-                         : channels[c].type == Imf::FLOAT ? reinterpret_cast<char*>(floats_[c].data())
-                                                          : reinterpret_cast<char*>(uints_[c].data());
+            char* base = channels[c].type == Imf::HALF ? reinterpret_cast<char*>(halves_[c].data())
+                         : channels[c].type == Imf::FLOAT
+                             ? reinterpret_cast<char*>(floats_[c].data())
+                             : reinterpret_cast<char*>(uints_[c].data());
             const std::ptrdiff_t size = channels[c].type == Imf::HALF ? 2 : 4;
             base -= (window.min.x + static_cast<std::ptrdiff_t>(window.min.y) * width) * size;
             list.insert(channels[c].name, Imf::Channel(channels[c].type));
-            buffer.insert(channels[c].name, Imf::Slice(channels[c].type, base, static_cast<std::size_t>(size),
-                                                       static_cast<std::size_t>(size * width)));
+            buffer.insert(channels[c].name,
+                          Imf::Slice(channels[c].type, base, static_cast<std::size_t>(size),
+                                     static_cast<std::size_t>(size * width)));
         }
     }
     Imf::FrameBuffer buffer;
@@ -103,7 +106,8 @@ std::string refusal(const fs::path& path) {
 float tolerance_of(int compression) {
     if (compression == Imf::B44_COMPRESSION || compression == Imf::B44A_COMPRESSION)
         return 0.2f;
-    return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 0.05f : 0.0f;
+    return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 0.05f
+                                                                                        : 0.0f;
 }
 
 void expect_near(const std::vector<glm::vec3>& actual, const std::vector<glm::vec3>& expected,
@@ -128,17 +132,20 @@ TEST(ExrFile, EveryCompressionAndTypeScanlineAndTiled) {
             write_scanlines(folder / "lines.exr", rgb(type), whole_numbers(), header);
             expect_near(decode(folder / "lines.exr").pixels, whole_numbers(), tolerance);
 
-            for (const Imf::LevelMode mode : {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
+            for (const Imf::LevelMode mode :
+                 {Imf::ONE_LEVEL, Imf::MIPMAP_LEVELS, Imf::RIPMAP_LEVELS}) {
                 Imf::Header tiled = header;
                 tiled.setTileDescription(Imf::TileDescription(32, 16, mode));
-                const Buffers buffers(rgb(type), whole_numbers(), tiled.dataWindow(), tiled.channels());
+                const Buffers buffers(rgb(type), whole_numbers(), tiled.dataWindow(),
+                                      tiled.channels());
                 {
                     Imf::TiledOutputFile file((folder / "tiles.exr").c_str(), tiled);
                     file.setFrameBuffer(buffers.buffer);
                     for (int y = 0; y < file.numYLevels(); ++y) {
                         for (int x = 0; x < file.numXLevels(); ++x) {
                             if (file.isValidLevel(x, y))
-                                file.writeTiles(0, file.numXTiles(x) - 1, 0, file.numYTiles(y) - 1, x, y);
+                                file.writeTiles(0, file.numXTiles(x) - 1, 0, file.numYTiles(y) - 1,
+                                                x, y);
                         }
                     }
                 }
@@ -196,14 +203,16 @@ TEST(ExrFile, TheOnlyLayerWithColourIsTaken) {
     for (const Channel& channel : rgb(Imf::FLOAT, "ground."))
         channels.push_back(channel);
     write_scanlines(folder / "b.exr", channels, whole_numbers(), Imf::Header(Width, Height));
-    EXPECT_NE(refusal(folder / "b.exr").find("expected channels R, G and B, or Y, got depth.Z, ground.B"),
-              std::string::npos)
+    EXPECT_NE(
+        refusal(folder / "b.exr").find("expected channels R, G and B, or Y, got depth.Z, ground.B"),
+        std::string::npos)
         << refusal(folder / "b.exr");
 }
 
 TEST(ExrFile, LuminanceIsGrey) {
     const TemporaryFolder folder;
-    write_scanlines(folder / "a.exr", {{"Y", Imf::FLOAT, 0}}, whole_numbers(), Imf::Header(Width, Height));
+    write_scanlines(folder / "a.exr", {{"Y", Imf::FLOAT, 0}}, whole_numbers(),
+                    Imf::Header(Width, Height));
     const ImageFile image = decode(folder / "a.exr");
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
         ASSERT_EQ(image.pixels[i], glm::vec3(whole_numbers()[i].x));
@@ -214,7 +223,8 @@ TEST(ExrFile, LuminanceAndChromaAreConverted) {
     const TemporaryFolder folder;
     for (const Imath::V2i& offset : {Imath::V2i(0, 0), Imath::V2i(-6, 10)}) {
         Imf::Header header(80, 40);
-        header.dataWindow() = header.displayWindow() = Imath::Box2i(offset, offset + Imath::V2i(79, 39));
+        header.dataWindow() = header.displayWindow() =
+            Imath::Box2i(offset, offset + Imath::V2i(79, 39));
         {
             Imf::RgbaOutputFile file((folder / "a.exr").c_str(), header, Imf::WRITE_YC);
             const std::vector<Imf::Rgba> pixels(80 * 40, Imf::Rgba(0.8f, 0.4f, 0.2f));
@@ -273,10 +283,13 @@ TEST(ExrFile, AttributesAreReported) {
 
 TEST(ExrFile, TheFirstPartWithColourIsTaken) {
     const TemporaryFolder folder;
-    std::array<Imf::Header, 3> headers = {Imf::Header(8, 8), Imf::Header(Width, Height), Imf::Header(4, 4)};
+    std::array<Imf::Header, 3> headers = {Imf::Header(8, 8), Imf::Header(Width, Height),
+                                          Imf::Header(4, 4)};
     const std::vector<glm::vec3> small(64, glm::vec3(1.0f));
-    const Buffers depth({{"Z", Imf::FLOAT, 0}}, small, headers[0].dataWindow(), headers[0].channels());
-    const Buffers colour(rgb(Imf::FLOAT), whole_numbers(), headers[1].dataWindow(), headers[1].channels());
+    const Buffers depth({{"Z", Imf::FLOAT, 0}}, small, headers[0].dataWindow(),
+                        headers[0].channels());
+    const Buffers colour(rgb(Imf::FLOAT), whole_numbers(), headers[1].dataWindow(),
+                         headers[1].channels());
     const Buffers other(rgb(Imf::FLOAT), small, headers[2].dataWindow(), headers[2].channels());
     for (std::size_t i = 0; i < 3; ++i) {
         headers[i].setName("part" + std::to_string(i));
@@ -323,7 +336,8 @@ TEST(ExrFile, AConstantPictureInAnyCompressionIsNoBomb) {
         Imf::FrameBuffer buffer;
         for (const char* channel : {"R", "G", "B"}) {
             header.channels().insert(channel, Imf::Channel(Imf::HALF));
-            buffer.insert(channel, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(line.data()), 2, 0));
+            buffer.insert(channel,
+                          Imf::Slice(Imf::HALF, reinterpret_cast<char*>(line.data()), 2, 0));
         }
         if (compression == Imf::NO_COMPRESSION || compression == Imf::B44_COMPRESSION ||
             compression == Imf::RLE_COMPRESSION)
@@ -338,7 +352,8 @@ TEST(ExrFile, AConstantPictureInAnyCompressionIsNoBomb) {
 }
 
 TEST(ExrFile, DeclaredSizesBeyondTheFileAreRefusedAtOnce) {
-    std::vector<std::byte> bytes = encode_exr(black_image(Layout::LatLong, Sampling::TexelCentres, 16));
+    std::vector<std::byte> bytes =
+        encode_exr(black_image(Layout::LatLong, Sampling::TexelCentres, 16));
     // The data window's maximum follows the attribute's name, type and size, and its minimum.
     const std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
     const std::size_t at =
@@ -354,23 +369,30 @@ TEST(ExrFile, DeclaredSizesBeyondTheFileAreRefusedAtOnce) {
 
 TEST(ExrFile, WhatTheHeaderDeclaresIsInTheFileOrRefused) {
     const TemporaryFolder folder;
-    const std::vector<std::byte> good = encode_exr(black_image(Layout::LatLong, Sampling::Borders, 18));
+    const std::vector<std::byte> good =
+        encode_exr(black_image(Layout::LatLong, Sampling::Borders, 18));
     const std::string text(reinterpret_cast<const char*>(good.data()), good.size());
-    // Puts a number at an offset behind an attribute's name; both ways in say what is wrong, before memory is allocated.
-    const auto expect_refused = [&](std::string_view attribute, std::size_t offset, std::uint32_t value,
-                                    std::string_view reason) {
+    // Puts a number at an offset behind an attribute's name; both ways in say what is wrong, before
+    // memory is allocated.
+    const auto expect_refused = [&](std::string_view attribute, std::size_t offset,
+                                    std::uint32_t value, std::string_view reason) {
         std::vector<std::byte> bad = good;
         std::memcpy(&bad[text.find(attribute) + attribute.size() + offset], &value, sizeof value);
         const std::string message = message_of([&] { (void)decode_exr(bad, "name"); });
         EXPECT_NE(message.find(reason), std::string::npos) << message;
         std::ofstream(folder / "bad.exr", std::ios::binary)
-            .write(reinterpret_cast<const char*>(bad.data()), static_cast<std::streamsize>(bad.size()));
-        EXPECT_NE(message_of([&] { (void)exr_size(folder / "bad.exr"); }).find(reason), std::string::npos);
+            .write(reinterpret_cast<const char*>(bad.data()),
+                   static_cast<std::streamsize>(bad.size()));
+        EXPECT_NE(message_of([&] { (void)exr_size(folder / "bad.exr"); }).find(reason),
+                  std::string::npos);
     };
     using std::string_view_literals::operator""sv;
-    expect_refused("screenWindowWidth\0float\0"sv, 0, 0x70000000, "an attribute of 1879048192 bytes");
-    expect_refused("screenWindowWidth\0float\0"sv, 0, 0xffffffff, "an attribute of 4294967295 bytes");
-    expect_refused("dataWindow\0box2i\0"sv, 4 + 12, 0x7ffffffe, "a table of 134217728 or more chunks");
+    expect_refused("screenWindowWidth\0float\0"sv, 0, 0x70000000,
+                   "an attribute of 1879048192 bytes");
+    expect_refused("screenWindowWidth\0float\0"sv, 0, 0xffffffff,
+                   "an attribute of 4294967295 bytes");
+    expect_refused("dataWindow\0box2i\0"sv, 4 + 12, 0x7ffffffe,
+                   "a table of 134217728 or more chunks");
     expect_refused("dataWindow\0box2i\0"sv, 4 + 8, 0x7ffffffe, "blocks of 412316860224 bytes");
 }
 
@@ -383,7 +405,8 @@ TEST(ExrFile, TruncationsAreRefusedAndCorruptionsDoNoHarm) {
     Imf::Header tiled(20, 10);
     tiled.compression() = Imf::PIZ_COMPRESSION;
     tiled.setTileDescription(Imf::TileDescription(8, 8, Imf::MIPMAP_LEVELS));
-    const Buffers buffers(rgb(Imf::HALF), whole_numbers(20, 10), tiled.dataWindow(), tiled.channels());
+    const Buffers buffers(rgb(Imf::HALF), whole_numbers(20, 10), tiled.dataWindow(),
+                          tiled.channels());
     {
         Imf::TiledOutputFile file((folder / "tiles.exr").c_str(), tiled);
         file.setFrameBuffer(buffers.buffer);

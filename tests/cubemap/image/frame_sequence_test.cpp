@@ -32,7 +32,9 @@ protected:
     }
     ~Frames() override { fs::remove_all(folder_); }
 
-    [[nodiscard]] std::string in(const std::string& name) const { return (folder_ / name).string(); }
+    [[nodiscard]] std::string in(const std::string& name) const {
+        return (folder_ / name).string();
+    }
     void touch(const std::string& name) const { std::ofstream(folder_ / name) << "x"; }
     /// A cross of R = 2, all of one radiance.
     void frame(const std::string& name, float radiance, std::uint32_t resolution = 2) const {
@@ -75,13 +77,15 @@ TEST(FramePattern, NamesAndNumbersAreInverse) {
 
 TEST(FramePattern, NamesThatAreNoFrames) {
     const auto pattern = FramePattern::parse("f.%04d.exr");
-    for (const char* name : {"f.007.exr", "f.00007.exr", "f.-001.exr", "f.+001.exr", "f.0x07.exr", "f..exr",
-                             "g.0007.exr", "f.0007.exr2", "f.99999999999999999999.exr", ""})
+    for (const char* name :
+         {"f.007.exr", "f.00007.exr", "f.-001.exr", "f.+001.exr", "f.0x07.exr", "f..exr",
+          "g.0007.exr", "f.0007.exr2", "f.99999999999999999999.exr", ""})
         EXPECT_FALSE(pattern->number(name)) << name;
 }
 
 TEST(FramePattern, TextsWithoutAPlace) {
-    for (const char* text : {"f.exr", "f.%s.exr", "f.%4d.exr", "100%.exr", "%", "folder.%04d/f.exr"})
+    for (const char* text :
+         {"f.exr", "f.%s.exr", "f.%4d.exr", "100%.exr", "%", "folder.%04d/f.exr"})
         EXPECT_FALSE(FramePattern::parse(text)) << text;
     EXPECT_THROW(static_cast<void>(FramePattern::parse("%02d.##.exr")), std::runtime_error);
 }
@@ -95,8 +99,8 @@ TEST(FrameRange, Texts) {
     EXPECT_FALSE(range.contains(16));
     EXPECT_FALSE(range.contains(205));
     EXPECT_EQ(FrameRange::parse("7").last, 7);
-    for (const char* text : {"", "-", "1-", "-5", "5-1", "1-2x0", "1-2x", "3x2", "1-2-3", "a", "1-2x3x4",
-                             "1 - 2", "99999999999999999999"})
+    for (const char* text : {"", "-", "1-", "-5", "5-1", "1-2x0", "1-2x", "3x2", "1-2-3", "a",
+                             "1-2x3x4", "1 - 2", "99999999999999999999"})
         EXPECT_THROW(static_cast<void>(FrameRange::parse(text)), std::runtime_error) << text;
 }
 
@@ -138,7 +142,8 @@ TEST_F(Frames, AGlobTakesWhatIsThere) {
     EXPECT_THAT(numbers(frames), ElementsAre(1, 2));
     EXPECT_EQ(frames[0].path, in("a_v2.exr"));
     EXPECT_THROW(static_cast<void>(find_frames(in("none*.exr"))), std::runtime_error);
-    EXPECT_THROW(static_cast<void>(find_frames(in("shot*.exr"), FrameRange{100, 200})), std::runtime_error);
+    EXPECT_THROW(static_cast<void>(find_frames(in("shot*.exr"), FrameRange{100, 200})),
+                 std::runtime_error);
 }
 
 TEST_F(Frames, OneFileIsASequence) {
@@ -154,7 +159,8 @@ TEST_F(Frames, SixFilesPerFrame) {
             EnvironmentImage image;
             image.width = image.height = 4;
             image.pixels.assign(16, glm::vec3(static_cast<float>(number + 1)));
-            files::OutputFile file(in("f." + std::to_string(number) + "." + std::string(face) + ".exr"));
+            files::OutputFile file(
+                in("f." + std::to_string(number) + "." + std::string(face) + ".exr"));
             file.write(encode_exr(image));
             file.commit();
         }
@@ -199,10 +205,11 @@ TEST_F(Frames, AnotherSizeIsRefusedBeforeAnyFrameIsLoaded) {
     frame("f.1.exr", 1.0f, 3);
     int num_loaded = 0;
     EXPECT_EQ(message_of([&] {
-                  const FrameSequence sequence(find_frames(in("f.%d.exr")), [&](const fs::path& path) {
-                      ++num_loaded;
-                      return load_environment(path);
-                  });
+                  const FrameSequence sequence(find_frames(in("f.%d.exr")),
+                                               [&](const fs::path& path) {
+                                                   ++num_loaded;
+                                                   return load_environment(path);
+                                               });
               }),
               in("f.1.exr") + ": expected 6x8 as the first frame, " + in("f.0.exr") + ", got 9x12");
     EXPECT_EQ(num_loaded, 0);
@@ -225,7 +232,8 @@ TEST(ReadAhead, MakesOneAheadAndNoMore) {
         std::size_t index;
         std::atomic<int>* alive;
         Value(std::size_t i, std::atomic<int>* counter) : index(i), alive(counter) { ++*alive; }
-        Value(Value&& other) noexcept : index(other.index), alive(std::exchange(other.alive, nullptr)) {}
+        Value(Value&& other) noexcept
+            : index(other.index), alive(std::exchange(other.alive, nullptr)) {}
         Value& operator=(Value&&) = delete;
         ~Value() {
             if (alive != nullptr)
@@ -246,8 +254,8 @@ TEST(ReadAhead, MakesOneAheadAndNoMore) {
 }
 
 TEST(ReadAhead, NeverMakesTwoAtOnceInAnyOrder) {
-    // Nothing guards the list: only that one is made at a time does, and the thread sanitizer looks on. Other threads are slow,
-    // so that whoever does not wait for them is seen without it, too.
+    // Nothing guards the list: only that one is made at a time does, and the thread sanitizer looks
+    // on. Other threads are slow, so that whoever does not wait for them is seen without it, too.
     std::vector<std::size_t> made;
     {
         const std::thread::id caller = std::this_thread::get_id();

@@ -32,22 +32,25 @@ std::string refusal(const std::string& text) {
 const std::string Header = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n";
 
 TEST(HdrFile, FlatPixelsHaveTheirValues) {
-    const ImageFile image = decode(Header + "-Y 1 +X 2\n" + pixel(128, 64, 255, 129) + pixel(1, 2, 3, 0));
-    EXPECT_EQ(image.pixels, (std::vector<glm::vec3>{{1.0f, 0.5f, 255.0f / 128.0f}, {0.0f, 0.0f, 0.0f}}));
+    const ImageFile image =
+        decode(Header + "-Y 1 +X 2\n" + pixel(128, 64, 255, 129) + pixel(1, 2, 3, 0));
+    EXPECT_EQ(image.pixels,
+              (std::vector<glm::vec3>{{1.0f, 0.5f, 255.0f / 128.0f}, {0.0f, 0.0f, 0.0f}}));
 }
 
 TEST(HdrFile, OldRunsRepeatThePixelBefore) {
-    const ImageFile image = decode(Header + "-Y 1 +X 300\n" + pixel(128, 0, 0, 129) + pixel(1, 1, 1, 42) +
-                                   pixel(1, 1, 1, 1) + pixel(0, 128, 0, 129));
+    const ImageFile image = decode(Header + "-Y 1 +X 300\n" + pixel(128, 0, 0, 129) +
+                                   pixel(1, 1, 1, 42) + pixel(1, 1, 1, 1) + pixel(0, 128, 0, 129));
     ASSERT_EQ(image.pixels.size(), 300u);
     EXPECT_EQ(image.pixels[298], glm::vec3(1.0f, 0.0f, 0.0f));
     EXPECT_EQ(image.pixels[299], glm::vec3(0.0f, 1.0f, 0.0f));
 }
 
 TEST(HdrFile, ExposureAndColorCorrectionAreDividedOut) {
-    const ImageFile image = decode("#?RGBE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\nSOFTWARE=x\nEXPOSURE= 4.0\n"
-                                   "COLORCORR= 1 0.5 2\n\n-Y 1 +X 1\n" +
-                                   pixel(128, 128, 128, 132));
+    const ImageFile image =
+        decode("#?RGBE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=2\nSOFTWARE=x\nEXPOSURE= 4.0\n"
+               "COLORCORR= 1 0.5 2\n\n-Y 1 +X 1\n" +
+               pixel(128, 128, 128, 132));
     EXPECT_EQ(image.pixels[0], glm::vec3(1.0f, 2.0f, 0.5f));
     EXPECT_EQ(image.remarks.size(), 1u);
 }
@@ -74,12 +77,14 @@ TEST(HdrFile, OtherContentIsRefusedByName) {
               "name: expected a size that an environment can have, got 8x0");
     EXPECT_EQ(refusal(Header + "hello\nabcd"),
               "name: expected a resolution line such as -Y 512 +X 1024, got 'hello'");
-    EXPECT_EQ(refusal(Header + "-Y 2 +X 1\nabcd"), "name: expected 2 rows, got a file that ends in row 1");
+    EXPECT_EQ(refusal(Header + "-Y 2 +X 1\nabcd"),
+              "name: expected 2 rows, got a file that ends in row 1");
     EXPECT_EQ(refusal("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nEXPOSURE=0\n\n-Y 1 +X 1\nabcd"),
               "name: expected a positive exposure, got 0");
     EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=nan\n\n-Y 1 +X 1\nabcd"), "");
     EXPECT_NE(refusal("#?RADIANCE\nEXPOSURE=x\n\n-Y 1 +X 1\nabcd"), "");
-    EXPECT_NE(refusal(Header + "-Y 1 +X 2\n" + pixel(1, 1, 1, 1) + "abcd"), "") << "a repetition of nothing";
+    EXPECT_NE(refusal(Header + "-Y 1 +X 2\n" + pixel(1, 1, 1, 1) + "abcd"), "")
+        << "a repetition of nothing";
     EXPECT_NE(refusal(Header + "-Y 1 +X 8\n" + std::string("\2\2\0\10\0\0\0\0\0\0\0\0\0", 13)), "")
         << "a run of no pixels";
 }
@@ -90,8 +95,8 @@ EnvironmentImage random_image(std::uint32_t width, std::uint32_t height) {
     std::uniform_real_distribution<float> exponent(-6.0f, 5.0f);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
         // Stretches of equal pixels, so that there are runs to encode.
-        image.pixels[i] =
-            i % 50 > 15 && i > 0 ? image.pixels[i - 1] : glm::vec3(std::pow(10.0f, exponent(generator)));
+        image.pixels[i] = i % 50 > 15 && i > 0 ? image.pixels[i - 1]
+                                               : glm::vec3(std::pow(10.0f, exponent(generator)));
         image.pixels[i].y *= 0.5f;
     }
     return image;
@@ -111,7 +116,8 @@ TEST(HdrFile, RoundTripIsRoundedToNearest) {
             sum += std::log(largest);
             sum_back += std::log(back.pixels[i].x);
         }
-        EXPECT_NEAR((sum_back - sum) / static_cast<double>(image.pixels.size()), 0.0, 2e-3) << "no bias";
+        EXPECT_NEAR((sum_back - sum) / static_cast<double>(image.pixels.size()), 0.0, 2e-3)
+            << "no bias";
     }
 }
 
@@ -134,7 +140,8 @@ TEST(HdrFile, RefusesToWriteWhatItCannotHold) {
 TEST(HdrFile, TruncationsAreRefusedAndCorruptionsDoNoHarm) {
     const std::vector<std::byte> good = encode_hdr(random_image(40, 20));
     for (std::size_t length = 0; length < good.size(); ++length)
-        ASSERT_NE(message_of([&] { (void)decode_hdr(std::span(good).first(length), "name"); }), "") << length;
+        ASSERT_NE(message_of([&] { (void)decode_hdr(std::span(good).first(length), "name"); }), "")
+            << length;
     for (std::size_t i = 0; i < good.size(); ++i) {
         for (const int flip : {0x01, 0x80, 0xff}) {
             std::vector<std::byte> bad = good;

@@ -12,7 +12,8 @@ namespace relumine::cubemap {
 namespace {
 
 TEST(ImageLayout, CellBordersOfBothSamplings) {
-    EXPECT_EQ(cell_borders(4, Sampling::TexelCentres), (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
+    EXPECT_EQ(cell_borders(4, Sampling::TexelCentres),
+              (std::vector<double>{0.0, 0.25, 0.5, 0.75, 1.0}));
     EXPECT_EQ(cell_borders(3, Sampling::Borders), (std::vector<double>{0.0, 0.25, 0.75, 1.0}));
     EXPECT_EQ(cell_borders(2, Sampling::Borders), (std::vector<double>{0.0, 0.5, 1.0}));
     EXPECT_EQ(cell_borders(1, Sampling::Borders), (std::vector<double>{0.0, 1.0}));
@@ -32,7 +33,8 @@ TEST(ImageLayout, PixelsOfEveryLayoutTileTheSphere) {
                     ASSERT_NEAR(glm::length(place.direction), 1.0, 1e-14);
                     sum += place.solid_angle;
                 });
-                EXPECT_NEAR(sum / (4.0 * std::numbers::pi), 1.0, 1e-10) << name(layout) << " " << size;
+                EXPECT_NEAR(sum / (4.0 * std::numbers::pi), 1.0, 1e-10)
+                    << name(layout) << " " << size;
             }
         }
     }
@@ -44,7 +46,8 @@ TEST(ImageLayout, LatLongSamplesOnBordersAgreeWithOpenExr) {
     for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
         const Imath::V2f pixel(static_cast<float>(index % 64), static_cast<float>(index / 64));
         const Imath::V3f theirs = Imf::LatLongMap::direction(window, pixel);
-        ASSERT_NEAR(glm::distance(place.direction, glm::dvec3(theirs.x, theirs.y, theirs.z)), 0.0, 1e-6);
+        ASSERT_NEAR(glm::distance(place.direction, glm::dvec3(theirs.x, theirs.y, theirs.z)), 0.0,
+                    1e-6);
     });
 }
 
@@ -64,20 +67,24 @@ TEST(ImageLayout, LatLongLooksAtPositiveZWithPositiveXOnTheLeft) {
     });
 }
 
-/// The table that was measured against angular-map probes of the same places: cell (row, column), direction, image right, image up.
+/// The table that was measured against angular-map probes of the same places: cell (row, column),
+/// direction, image right, image up.
 TEST(ImageLayout, CrossCellsLieAsMeasured) {
     struct Cell {
         std::size_t row, column;
         glm::dvec3 direction, right, up;
     };
-    const std::array<Cell, 6> table = {
-        Cell{0, 1, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}},   Cell{1, 0, {-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
-        Cell{1, 1, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}},  Cell{1, 2, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
-        Cell{2, 1, {0, -1, 0}, {1, 0, 0}, {0, 0, -1}}, Cell{3, 1, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}}};
+    const std::array<Cell, 6> table = {Cell{0, 1, {0, 1, 0}, {1, 0, 0}, {0, 0, 1}},
+                                       Cell{1, 0, {-1, 0, 0}, {0, 0, -1}, {0, 1, 0}},
+                                       Cell{1, 1, {0, 0, -1}, {1, 0, 0}, {0, 1, 0}},
+                                       Cell{1, 2, {1, 0, 0}, {0, 0, 1}, {0, 1, 0}},
+                                       Cell{2, 1, {0, -1, 0}, {1, 0, 0}, {0, 0, -1}},
+                                       Cell{3, 1, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}}};
     const EnvironmentImage image = black_image(Layout::VerticalCross, Sampling::TexelCentres, 3);
     std::vector<glm::dvec3> directions(image.pixels.size(), glm::dvec3(0.0));
-    for_each_pixel(shape_of(image),
-                   [&](std::size_t index, const PixelPlace& place) { directions[index] = place.direction; });
+    for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
+        directions[index] = place.direction;
+    });
     std::size_t num_used = 0;
     for (const glm::dvec3& direction : directions)
         num_used += direction == glm::dvec3(0.0) ? 0u : 1u;

@@ -53,7 +53,8 @@ glm::vec3 seen(const CubeMap& map, const glm::dvec3& direction) {
 
 TEST(LayerComposite, GoesInOrder) {
     const CubeMap base(16, glm::vec3(1.0f));
-    const LightLayer emit{.name = "emit", .region = Disc{.radius_degrees = 30.0}, .effect = Emit{{1, 2, 3}}};
+    const LightLayer emit{
+        .name = "emit", .region = Disc{.radius_degrees = 30.0}, .effect = Emit{{1, 2, 3}}};
     const LightLayer gain{
         .name = "gain", .region = Disc{.radius_degrees = 40.0}, .effect = Gain{2.0f, {1, 1, 0.5f}}};
     EXPECT_EQ(seen(composite(base, std::array{emit, gain}), {0, 0, 1}), glm::vec3(4, 6, 4));
@@ -65,7 +66,8 @@ TEST(LayerComposite, LeavesOutWhatIsOff) {
     const CubeMap base = random_map(16, 1);
     std::vector<LightLayer> layers = random_layers(4, 2);
     layers[1].on = layers[2].on = false;
-    EXPECT_TRUE(same_bits(composite(base, layers), composite(base, std::array{layers[0], layers[3]})));
+    EXPECT_TRUE(
+        same_bits(composite(base, layers), composite(base, std::array{layers[0], layers[3]})));
     layers[0].on = layers[3].on = false;
     EXPECT_TRUE(same_bits(composite(base, layers), base));
     EXPECT_TRUE(touched_texels(layers[0], 16).empty());
@@ -73,8 +75,10 @@ TEST(LayerComposite, LeavesOutWhatIsOff) {
 
 TEST(LayerComposite, GainIsInStops) {
     const CubeMap base(8, glm::vec3(3.0f));
-    LightLayer layer{
-        .name = "a", .gain_ev = 2.0, .region = Disc{.radius_degrees = 180.0}, .effect = Emit{{1, 2, 3}}};
+    LightLayer layer{.name = "a",
+                     .gain_ev = 2.0,
+                     .region = Disc{.radius_degrees = 180.0},
+                     .effect = Emit{{1, 2, 3}}};
     EXPECT_EQ(seen(composite(base, std::span(&layer, 1)), {1, 0, 0}), glm::vec3(7, 11, 15));
     layer.effect = Gain{1.0f, {1.0f, 0.5f, 0.0f}};
     layer.gain_ev = -1.0;
@@ -94,7 +98,8 @@ TEST(LayerComposite, CoverageOfSmallTexelsIsThatOfTheirCentres) {
             for (std::uint32_t i = 0; i < 400; ++i) {
                 const std::uint32_t x = (i * 37) % resolution, y = (i * 101) % resolution;
                 const glm::dvec3 w = texel_direction(face, x, y, resolution);
-                difference += std::abs(static_cast<double>(map.at(face, x, y).x) - coverage(layer.region, w));
+                difference +=
+                    std::abs(static_cast<double>(map.at(face, x, y).x) - coverage(layer.region, w));
             }
         }
         EXPECT_LT(difference / 2400.0, 0.02) << round;
@@ -113,9 +118,9 @@ TEST(LayerComposite, TouchedTexelsHoldEveryChange) {
                           8);
                 for (std::uint32_t y = 0; y < resolution; ++y) {
                     for (std::uint32_t x = 0; x < resolution; ++x) {
-                        const auto holding =
-                            std::count_if(touched.begin(), touched.end(),
-                                          [&](const TexelRectangle& r) { return contains(r, face, x, y); });
+                        const auto holding = std::count_if(
+                            touched.begin(), touched.end(),
+                            [&](const TexelRectangle& r) { return contains(r, face, x, y); });
                         ASSERT_LE(holding, 1);
                         ASSERT_TRUE(holding == 1 || changed.at(face, x, y) == base.at(face, x, y));
                     }
@@ -134,12 +139,13 @@ TEST(LayerComposite, TouchesLittleMoreThanADisc) {
     for (const glm::dvec3& place : Places) {
         const LightLayer layer{.name = "a", .region = Disc{place, 3.0, 0.0}};
         const CubeMap map = composite(CubeMap(resolution), std::span(&layer, 1));
-        const auto num_lit =
-            std::count_if(map.texels.begin(), map.texels.end(), [](const glm::vec3& t) { return t.x > 0; });
+        const auto num_lit = std::count_if(map.texels.begin(), map.texels.end(),
+                                           [](const glm::vec3& t) { return t.x > 0; });
         std::uint64_t num_touched = 0;
         for (const TexelRectangle& r : touched_texels(layer, resolution))
             num_touched += std::uint64_t{r.x1 - r.x0} * (r.y1 - r.y0);
-        // A box about a circle has 1.27 of its area; at a corner, the face's part of a disc is an ellipse's sector.
+        // A box about a circle has 1.27 of its area; at a corner, the face's part of a disc is an
+        // ellipse's sector.
         EXPECT_LT(static_cast<double>(num_touched), 2.0 * static_cast<double>(num_lit));
     }
 }
@@ -205,16 +211,20 @@ TEST(LayerComposite, ThousandsOfEditsLeaveNoTrace) {
 }
 
 TEST(LayerComposite, PlacesPictures) {
-    // Red, green over blue, white: top left, top right, bottom left, bottom right, each of 8 x 8 pixels.
+    // Red, green over blue, white: top left, top right, bottom left, bottom right, each of 8 x 8
+    // pixels.
     std::vector<glm::vec3> pixels;
     for (std::uint32_t i = 0; i < 256; ++i) {
         const bool right = i % 16 >= 8, bottom = i / 16 >= 8;
         pixels.push_back(bottom ? (right ? glm::vec3(1) : glm::vec3(0, 0, 1))
                                 : (right ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
     }
-    ImagePatch patch{"p.exr", std::make_shared<const Picture>(16, 16, pixels), ImagePatch::Blend::Replace};
-    LightLayer layer{
-        .name = "a", .gain_ev = 1.0, .region = Rectangle{{0, 0, -1}, 40.0, 40.0, 0.0, 0.0}, .effect = patch};
+    ImagePatch patch{"p.exr", std::make_shared<const Picture>(16, 16, pixels),
+                     ImagePatch::Blend::Replace};
+    LightLayer layer{.name = "a",
+                     .gain_ev = 1.0,
+                     .region = Rectangle{{0, 0, -1}, 40.0, 40.0, 0.0, 0.0},
+                     .effect = patch};
     const CubeMap base(128, glm::vec3(5.0f));
     CubeMap map = composite(base, std::span(&layer, 1));
     // Looking along -Z, +X is to the right.
@@ -243,12 +253,16 @@ TEST(LayerComposite, PicturesKeepTheirEnergy) {
                                    ImagePatch::Blend::Replace};
             const LightLayer layer{
                 .name = "a", .region = Rectangle{place, 30.0, 30.0, 20.0, 0.0}, .effect = patch};
-            const glm::dvec3 power = total_power(composite(CubeMap(resolution), std::span(&layer, 1)));
+            const glm::dvec3 power =
+                total_power(composite(CubeMap(resolution), std::span(&layer, 1)));
             const double half = std::tan(radians(15.0));
-            EXPECT_NEAR(power.x / (4.0 * std::atan(half * half / std::sqrt(1.0 + 2.0 * half * half))), 1.0,
-                        1e-3);
-            const double x = half * (91.0 / N - 1.0), y = half * (41.0 / N - 1.0), q = 1.0 + x * x + y * y;
-            EXPECT_NEAR(power.y / (1000.0 * 4.0 * half * half / (N * N) / (q * std::sqrt(q))), 1.0, 0.06)
+            EXPECT_NEAR(power.x /
+                            (4.0 * std::atan(half * half / std::sqrt(1.0 + 2.0 * half * half))),
+                        1.0, 1e-3);
+            const double x = half * (91.0 / N - 1.0), y = half * (41.0 / N - 1.0),
+                         q = 1.0 + x * x + y * y;
+            EXPECT_NEAR(power.y / (1000.0 * 4.0 * half * half / (N * N) / (q * std::sqrt(q))), 1.0,
+                        0.06)
                 << resolution;
         }
     }
@@ -259,9 +273,11 @@ TEST(LayerComposite, RefusesWhatDoesNotFit) {
     const LightLayer good{.name = "a"}, bad{.name = "a", .region = Disc{.radius_degrees = -1.0}};
     EXPECT_THROW(composite(base, std::span(&good, 1), all_texels(8), other), std::invalid_argument);
     EXPECT_THROW(composite(base, std::span(&bad, 1), all_texels(8), target), std::invalid_argument);
-    EXPECT_THROW(composite(base, std::span(&good, 1), all_texels(9), target), std::invalid_argument);
+    EXPECT_THROW(composite(base, std::span(&good, 1), all_texels(9), target),
+                 std::invalid_argument);
     const TexelRectangle turned{Face::PositiveX, 5, 0, 4, 8};
-    EXPECT_THROW(composite(base, std::span(&good, 1), std::span(&turned, 1), target), std::invalid_argument);
+    EXPECT_THROW(composite(base, std::span(&good, 1), std::span(&turned, 1), target),
+                 std::invalid_argument);
     EXPECT_TRUE(same_bits(base, target)) << "nothing has changed";
     EXPECT_THROW((void)touched_texels(bad, 8), std::invalid_argument);
     EXPECT_THROW((void)touched_texels(good, 0), std::invalid_argument);
@@ -275,14 +291,16 @@ std::vector<glm::dvec3> wavy_points(int count, bool closed, double waves) {
         const double angle = closed ? 2.0 * std::numbers::pi * t : 2.5 * (t - 0.5);
         const double wave = 0.15 * std::sin(waves * angle);
         if (closed)
-            points.emplace_back((0.6 + wave) * std::cos(angle) + 0.3, (0.6 + wave) * std::sin(angle), 1.0);
+            points.emplace_back((0.6 + wave) * std::cos(angle) + 0.3,
+                                (0.6 + wave) * std::sin(angle), 1.0);
         else
             points.emplace_back(std::sin(angle), wave, std::cos(angle));
     }
     return points;
 }
 
-/// Texel by texel, with all arcs of the region, without any blocks: the composite's shapes narrowed to blocks must be them bit by bit.
+/// Texel by texel, with all arcs of the region, without any blocks: the composite's shapes narrowed
+/// to blocks must be them bit by bit.
 template<typename Region>
 void expect_as_texel_by_texel(const Region& region, std::uint32_t resolution) {
     const std::vector<float> coverage = coverage_map(region, resolution);
@@ -302,11 +320,13 @@ void expect_as_texel_by_texel(const Region& region, std::uint32_t resolution) {
                         case Overlap::All:
                             return 1.0f;
                         default:
-                            return static_cast<float>(mean_coverage(of_kind, grid.plane, grid.cell(x, y)));
+                            return static_cast<float>(
+                                mean_coverage(of_kind, grid.plane, grid.cell(x, y)));
                         }
                     },
                     whole);
-                ASSERT_EQ(coverage[i], expected) << static_cast<int>(face) << ": " << x << ", " << y;
+                ASSERT_EQ(coverage[i], expected)
+                    << static_cast<int>(face) << ": " << x << ", " << y;
                 num_partial += static_cast<std::size_t>(expected > 0.0f && expected < 1.0f);
             }
     }
@@ -318,10 +338,12 @@ TEST(LayerComposite, StrokesAndLassosAreTheSameWithAllTheirArcs) {
         for (const int count : {1, 2, 7, 40, 300})
             for (const double softness : {0.0, 0.4, 1.0})
                 expect_as_texel_by_texel(
-                    Stroke{wavy_points(count, false, 5.0), count > 100 ? 12.0 : 6.0, softness}, resolution);
+                    Stroke{wavy_points(count, false, 5.0), count > 100 ? 12.0 : 6.0, softness},
+                    resolution);
         for (const int count : {3, 12, 150})
             for (const double softness : {0.0, 5.0, 40.0})
-                expect_as_texel_by_texel(Lasso{wavy_points(count, true, 7.0), softness}, resolution);
+                expect_as_texel_by_texel(Lasso{wavy_points(count, true, 7.0), softness},
+                                         resolution);
     }
 }
 

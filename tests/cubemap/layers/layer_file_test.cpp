@@ -48,7 +48,8 @@ protected:
 
 std::string documented_example() {
     std::ifstream page(RELUMINE_DOCS_DIR "/light-layers.md");
-    const std::string text((std::istreambuf_iterator<char>(page)), std::istreambuf_iterator<char>());
+    const std::string text((std::istreambuf_iterator<char>(page)),
+                           std::istreambuf_iterator<char>());
     const std::string open = "```json\n";
     const std::size_t begin = text.find(open) + open.size();
     return text.substr(begin, text.find("```", begin) - begin);
@@ -58,21 +59,27 @@ std::string documented_example() {
 LightLayers everything(const std::filesystem::path& folder) {
     LightLayers all;
     all.base = "maps/night.exr";
-    all.layers = {
-        {.name = "a", .region = Disc{{0.1, 0.2, 0.3}, 1.0 / 3.0, 0.7}, .effect = Emit{{0.1f, 1e-30f, 3e30f}}},
-        {.name = "b \"quoted\" \n",
-         .on = false,
-         .gain_ev = -0.1,
-         .region = Rectangle{{-1, 1e-7, 12345.678}, 179.9, 1e-3, -721.3, 1.0},
-         .effect = Gain{0.3f, {0.7f, 0.0f, 16777217.0f}}},
-        {.name = "c", .region = Lasso{{{1, 0, 0}, {1, 0.1, 0}, {1, 0, 0.1}}, 0.25}, .effect = Emit{}},
-        {.name = "d", .region = Stroke{{{0, 1, 0}}, 90.0, 0.0}, .effect = Gain{}},
-        {.name = "e",
-         .region = Rectangle{},
-         .effect = ImagePatch{"patch.exr", load_picture(folder / "patch.exr"), ImagePatch::Blend::Add}}};
+    all.layers = {{.name = "a",
+                   .region = Disc{{0.1, 0.2, 0.3}, 1.0 / 3.0, 0.7},
+                   .effect = Emit{{0.1f, 1e-30f, 3e30f}}},
+                  {.name = "b \"quoted\" \n",
+                   .on = false,
+                   .gain_ev = -0.1,
+                   .region = Rectangle{{-1, 1e-7, 12345.678}, 179.9, 1e-3, -721.3, 1.0},
+                   .effect = Gain{0.3f, {0.7f, 0.0f, 16777217.0f}}},
+                  {.name = "c",
+                   .region = Lasso{{{1, 0, 0}, {1, 0.1, 0}, {1, 0, 0.1}}, 0.25},
+                   .effect = Emit{}},
+                  {.name = "d", .region = Stroke{{{0, 1, 0}}, 90.0, 0.0}, .effect = Gain{}},
+                  {.name = "e",
+                   .region = Rectangle{},
+                   .effect = ImagePatch{"patch.exr", load_picture(folder / "patch.exr"),
+                                        ImagePatch::Blend::Add}}};
     all.frames = {
         {-1.5,
-         {{"a", "direction", {1, 2, 3}}, {"a", "radiance", {0.1, 0.2, 0.3}}, {"b \"quoted\" \n", "on", {1}}}},
+         {{"a", "direction", {1, 2, 3}},
+          {"a", "radiance", {0.1, 0.2, 0.3}},
+          {"b \"quoted\" \n", "on", {1}}}},
         {0.1, {{"c", "points", {1, 0, 0, 1, 0.2, 0, 1, 0, 0.2}}, {"a", "direction", {0, 2, 3}}}}};
     return all;
 }
@@ -109,7 +116,8 @@ TEST_F(LayerFile, RefusesEveryTruncation) {
     for (std::size_t size = 0; size < text.size(); ++size) {
         const std::string cut = text.substr(0, size);
         const std::size_t last = cut.find_last_not_of(" \n");
-        const auto end = cut.begin() + static_cast<std::ptrdiff_t>(last == std::string::npos ? 0 : last);
+        const auto end =
+            cut.begin() + static_cast<std::ptrdiff_t>(last == std::string::npos ? 0 : last);
         const auto line = static_cast<int>(1 + std::count(cut.begin(), end, '\n'));
         ASSERT_THAT(error(cut), StartsWith(at_line(line) + "expected ")) << size;
     }
@@ -158,10 +166,12 @@ TEST_F(LayerFile, RefusesWhatIsMalformedAndSaysWhere) {
         {with(disc + emit + ",\n\"gain_ev\": 101"), 3, "from -100 to 100, got 101"},
         {with(disc + emit + ",\n\"softness\": -0.1"), 3, "softness from 0 to 1, got -0.1"},
         {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1]"), 6, "of 3 numbers, got 2"},
-        {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1, \"1\"]"), 6, "a number, got \"1\""},
+        {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1, \"1\"]"), 6,
+         "a number, got \"1\""},
         {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1, -1]"), 3,
          "radiance to be finite and at least 0"},
-        {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1, 1e39]"), 3, "radiance to be finite"},
+        {with(disc + ",\n\"effect\": \"emit\",\n\"radiance\": [1, 1, 1e39]"), 3,
+         "radiance to be finite"},
         {with(disc + ",\n\"effect\": \"image\",\n\"path\": \"none.exr\""), 6, "none.exr"},
         {with("\"type\": \"blob\"" + emit), 4, "disc, rectangle, lasso, stroke, got \"blob\""},
         {with("\"type\": \"disc\"" + emit), 3, "expected \"direction\""},
@@ -203,7 +213,8 @@ TEST_F(LayerFile, RefusesBadKeyFrames) {
          "factor to be finite and at least 0, got -1"},
         {"{\"frame\": 0, \"layers\": {}}, {\"frame\": 0, \"layers\": {}}]}",
          "expected a frame after 0, got 0"},
-        {"{\"frame\": 0, \"layers\": {\"a\": {\"points\": [[0,0,1],[0,1,1],[1,0,1]]}}}, {\"frame\": 1, "
+        {"{\"frame\": 0, \"layers\": {\"a\": {\"points\": [[0,0,1],[0,1,1],[1,0,1]]}}}, "
+         "{\"frame\": 1, "
          "\"layers\": "
          "{\"a\": {\"points\": [[0,0,1],[0,1,1],[1,0,1],[1,1,1]]}}}]}",
          "as many points as at frame 0, 3, got 4"}};
@@ -246,7 +257,8 @@ TEST(KeyFrames, InterpolateNumbersAndDirections) {
     LightLayers layers;
     layers.layers = {{.name = "a", .region = Disc{.radius_degrees = 3.0}}, {.name = "b"}};
     layers.frames = {
-        {0.0, {{"a", "direction", {0, 0, 2}}, {"a", "gain_ev", {-1}}, {"a", "radiance", {1, 2, 3}}}},
+        {0.0,
+         {{"a", "direction", {0, 0, 2}}, {"a", "gain_ev", {-1}}, {"a", "radiance", {1, 2, 3}}}},
         {4.0, {{"a", "on", {0}}}},
         {10.0, {{"a", "direction", {1, 0, 0}}, {"a", "radiance", {2, 4, 3}}}},
         {20.0, {{"a", "gain_ev", {3}}, {"a", "on", {1}}}}};
@@ -254,14 +266,16 @@ TEST(KeyFrames, InterpolateNumbersAndDirections) {
         return std::get<Disc>(layers_at(layers, frame)[0].region).direction;
     };
     // A third of a quarter turn, at a third of the way from length 2 to 1.
-    EXPECT_LT(glm::distance(direction(10.0 / 3.0), glm::dvec3(0.5, 0.0, std::sqrt(0.75)) * (5.0 / 3.0)),
-              1e-12);
+    EXPECT_LT(
+        glm::distance(direction(10.0 / 3.0), glm::dvec3(0.5, 0.0, std::sqrt(0.75)) * (5.0 / 3.0)),
+        1e-12);
     EXPECT_EQ(direction(-5.0), glm::dvec3(0, 0, 2));
     EXPECT_EQ(direction(0.0), glm::dvec3(0, 0, 2));
     EXPECT_EQ(direction(10.0), glm::dvec3(1, 0, 0));
     EXPECT_EQ(direction(99.0), glm::dvec3(1, 0, 0));
     EXPECT_EQ(layers_at(layers, 5.0)[0].gain_ev, 0.0) << "over the key frames that do not name it";
-    EXPECT_EQ(std::get<Emit>(layers_at(layers, 5.0)[0].effect).radiance, glm::vec3(1.5f, 3.0f, 3.0f));
+    EXPECT_EQ(std::get<Emit>(layers_at(layers, 5.0)[0].effect).radiance,
+              glm::vec3(1.5f, 3.0f, 3.0f));
     EXPECT_EQ(std::get<Disc>(layers_at(layers, 5.0)[0].region).radius_degrees, 3.0);
     EXPECT_FALSE(layers_at(layers, 4.0)[0].on);
     EXPECT_FALSE(layers_at(layers, 19.9)[0].on);
@@ -271,7 +285,8 @@ TEST(KeyFrames, InterpolateNumbersAndDirections) {
 
 TEST(KeyFrames, TurnThroughOppositeDirectionsAndMovePoints) {
     LightLayers layers;
-    layers.layers = {{.name = "a"}, {.name = "s", .region = Stroke{{{0, 0, 1}, {1, 0, 0}}, 2.0, 0.0}}};
+    layers.layers = {{.name = "a"},
+                     {.name = "s", .region = Stroke{{{0, 0, 1}, {1, 0, 0}}, 2.0, 0.0}}};
     layers.frames = {{0.0, {{"a", "direction", {0, 1, 0}}, {"s", "points", {0, 0, 1, 1, 0, 0}}}},
                      {2.0, {{"a", "direction", {0, -1, 0}}, {"s", "points", {1, 0, 0, 0, 1, 0}}}}};
     const std::vector<LightLayer> half = layers_at(layers, 1.0);

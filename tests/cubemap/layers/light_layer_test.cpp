@@ -50,7 +50,8 @@ TEST(LightLayer, RectangleStandsUprightAndRollsCounterClockwise) {
     Rectangle rolled = wide;
     rolled.roll_degrees = 30.0;
     EXPECT_TRUE(covers(rolled, {0.5 * std::cos(radians(30.0)), 0.5 * std::sin(radians(30.0)), -1}));
-    EXPECT_FALSE(covers(rolled, {0.5 * std::cos(radians(30.0)), -0.5 * std::sin(radians(30.0)), -1}));
+    EXPECT_FALSE(
+        covers(rolled, {0.5 * std::cos(radians(30.0)), -0.5 * std::sin(radians(30.0)), -1}));
     // Straight above and below: its width lies along X.
     for (const double y : {1.0, -1.0}) {
         Rectangle pole = wide;
@@ -148,7 +149,8 @@ TEST(LightLayer, RefusesBadLight) {
     const auto picture = std::make_shared<const Picture>(1, 1, std::vector{glm::vec3(1.0f)});
     refused({.name = "a", .effect = ImagePatch{"p", picture}});
     refused({.name = "a", .region = Rectangle{}, .effect = ImagePatch{"p"}});
-    EXPECT_NO_THROW(validate({.name = "a", .region = Rectangle{}, .effect = ImagePatch{"p", picture}}));
+    EXPECT_NO_THROW(
+        validate({.name = "a", .region = Rectangle{}, .effect = ImagePatch{"p", picture}}));
     EXPECT_THROW((void)coverage(Disc{}, {0, 0, 0}), std::invalid_argument);
 }
 

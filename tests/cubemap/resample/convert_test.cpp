@@ -27,8 +27,10 @@ CubeMap sky(const glm::dvec3& sun) {
 }
 
 struct Loss {
-    double power = 0.0;      ///< relative
-    double irradiance = 0.0; ///< largest over the normals, relative to what that normal had
+    /// relative
+    double power = 0.0;
+    /// Largest over the normals, relative to what that normal had
+    double irradiance = 0.0;
 };
 
 Loss loss(const EnvironmentImage& before, const EnvironmentImage& after) {
@@ -40,7 +42,8 @@ Loss loss(const EnvironmentImage& before, const EnvironmentImage& after) {
     for (const glm::dvec3& normal : even_normals()) {
         const glm::dvec3 had = irradiance(a, normal), has = irradiance(b, normal);
         for (int channel = 0; channel < 3; ++channel)
-            result.irradiance = std::max(result.irradiance, std::abs(has[channel] / had[channel] - 1.0));
+            result.irradiance =
+                std::max(result.irradiance, std::abs(has[channel] / had[channel] - 1.0));
     }
     return result;
 }
@@ -61,11 +64,14 @@ bool is_disc(Layout layout) {
     return layout == Layout::AngularMap || layout == Layout::MirrorBall;
 }
 
-/// The bounds that hold at the size that `env convert` chooses. Three suns at once, one per channel; `./dev bench layouts` has more of them.
+/// The bounds that hold at the size that `env convert` chooses. Three suns at once, one per
+/// channel; `./dev bench layouts` has more of them.
 struct Pair {
     Layout layout, other;
-    std::uint32_t resolution; ///< of `layout`
-    double largest_loss;      ///< of irradiance
+    /// Of `layout`
+    std::uint32_t resolution;
+    /// Of irradiance
+    double largest_loss;
 };
 class ThereAndBack : public testing::TestWithParam<Pair> {};
 
@@ -83,10 +89,12 @@ TEST_P(ThereAndBack, ThroughTheDefaultSizeKeepsPowerAndIrradiance) {
     }
     const ImageSize size = natural_size(layout, resolution);
     const EnvironmentImage image = to_image(map, layout, size.width, size.height);
-    // Smaller pictures stand for those of 16 and are as much smaller on the way: what is lost depends on the ratio.
+    // Smaller pictures stand for those of 16 and are as much smaller on the way: what is lost
+    // depends on the ratio.
     const ImageSize roomy = natural_size(other, resolution * (is_disc(layout) ? 32 : 16));
     const EnvironmentImage back =
-        convert(convert(image, {other, Sampling::TexelCentres, roomy.width, roomy.height}), shape_of(image));
+        convert(convert(image, {other, Sampling::TexelCentres, roomy.width, roomy.height}),
+                shape_of(image));
     const Loss lost = loss(image, back);
     EXPECT_LT(lost.power, 1e-5);
     EXPECT_LT(lost.irradiance, largest_loss);
@@ -98,7 +106,8 @@ Pair pair(Layout layout, Layout other) {
         return {layout, other, is_disc(other) ? 8U : 16U, 5e-5}; // 16: 64 x 32
     if (!is_disc(layout))
         return {layout, other, 4, 2e-4};
-    // Wedges at an angular map's rim are narrower than the pixels of half the size it is given at 16, where 0.1 % holds.
+    // Wedges at an angular map's rim are narrower than the pixels of half the size it is given at
+    // 16, where 0.1 % holds.
     const bool is_too_narrow =
         layout == Layout::AngularMap && (other == Layout::LatLong || other == Layout::Octahedral);
     return {layout, other, 8, is_too_narrow ? 1e-2 : 1e-3};
@@ -107,10 +116,13 @@ Pair pair(Layout layout, Layout other) {
 TEST(Convert, ChoosesRoomySizes) {
     const auto chosen = [](Layout layout, std::uint32_t resolution, Layout other) {
         const ImageSize size = natural_size(layout, resolution);
-        return conversion_size(black_image(layout, Sampling::TexelCentres, size.width, size.height), other);
+        return conversion_size(black_image(layout, Sampling::TexelCentres, size.width, size.height),
+                               other);
     };
-    const auto expect = [&](Layout layout, std::uint32_t resolution, Layout other, std::uint32_t expected) {
-        const ImageSize size = chosen(layout, resolution, other), natural = natural_size(other, expected);
+    const auto expect = [&](Layout layout, std::uint32_t resolution, Layout other,
+                            std::uint32_t expected) {
+        const ImageSize size = chosen(layout, resolution, other),
+                        natural = natural_size(other, expected);
         EXPECT_EQ(size.width, natural.width) << name(layout) << " to " << name(other);
         EXPECT_EQ(size.height, natural.height) << name(layout) << " to " << name(other);
     };
@@ -124,28 +136,30 @@ TEST(Convert, ChoosesRoomySizes) {
     expect(Layout::MirrorBall, 16, Layout::MirrorBall, 16);
 }
 
-INSTANTIATE_TEST_SUITE_P(Convert, ThereAndBack, testing::ValuesIn([] {
-                             std::vector<Pair> pairs;
-                             for (const Layout layout : {Layout::LatLong, Layout::Cube, Layout::AngularMap,
-                                                         Layout::MirrorBall, Layout::Octahedral}) {
-                                 for (const Layout other : AllLayouts) {
-                                     // Crosses and strips are copies of cubes.
-                                     if (layout == other || (has_faces(other) && other != Layout::Cube))
-                                         continue;
-                                     pairs.push_back(pair(layout, other));
-                                 }
-                             }
-                             return pairs;
-                         }()),
-                         [](const auto& pair) {
-                             std::string text = fmt::format("{} through {}", name(pair.param.layout),
-                                                            name(pair.param.other));
-                             std::erase_if(text, [](char letter) { return letter == ' ' || letter == '-'; });
-                             return text;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Convert, ThereAndBack, testing::ValuesIn([] {
+        std::vector<Pair> pairs;
+        for (const Layout layout : {Layout::LatLong, Layout::Cube, Layout::AngularMap,
+                                    Layout::MirrorBall, Layout::Octahedral}) {
+            for (const Layout other : AllLayouts) {
+                // Crosses and strips are copies of cubes.
+                if (layout == other || (has_faces(other) && other != Layout::Cube))
+                    continue;
+                pairs.push_back(pair(layout, other));
+            }
+        }
+        return pairs;
+    }()),
+    [](const auto& pair) {
+        std::string text =
+            fmt::format("{} through {}", name(pair.param.layout), name(pair.param.other));
+        std::erase_if(text, [](char letter) { return letter == ' ' || letter == '-'; });
+        return text;
+    });
 
 TEST(Convert, AtFourTimesTheResolutionPowerIsKeptAndIrradianceNearly) {
-    for (const Layout layout : {Layout::LatLong, Layout::Cube, Layout::AngularMap, Layout::MirrorBall}) {
+    for (const Layout layout :
+         {Layout::LatLong, Layout::Cube, Layout::AngularMap, Layout::MirrorBall}) {
         const Loss lost = there_and_back(layout, Layout::Octahedral, 16, 64, Sun);
         EXPECT_LT(lost.power, 1e-4) << name(layout);
         EXPECT_LT(lost.irradiance, 1e-3) << name(layout);
@@ -185,7 +199,8 @@ TEST(Convert, GrowsSmoothlyAcrossSeams) {
     const EnvironmentImage grown = convert(image, {Layout::Cube, Sampling::TexelCentres, 64, 384});
     double largest = 0.0;
     for_each_pixel(shape_of(grown), [&](std::size_t i, const PixelPlace& place) {
-        largest = std::max<double>(largest, std::abs(grown.pixels[i].x - gradient(place.direction).x));
+        largest =
+            std::max<double>(largest, std::abs(grown.pixels[i].x - gradient(place.direction).x));
     });
     // A texel of 8 is 0.25 wide in the middle of its face: blocks would be off by 0.15.
     EXPECT_LT(largest, 0.06);
@@ -194,7 +209,8 @@ TEST(Convert, GrowsSmoothlyAcrossSeams) {
 TEST(Convert, OtherArrangementsOfFacesAreCopies) {
     EnvironmentImage cube = black_image(Layout::Cube, Sampling::TexelCentres, 5);
     fill_randomly(cube.pixels, 7);
-    for (const Layout layout : {Layout::HorizontalStrip, Layout::VerticalCross, Layout::HorizontalCross}) {
+    for (const Layout layout :
+         {Layout::HorizontalStrip, Layout::VerticalCross, Layout::HorizontalCross}) {
         const ImageSize size = natural_size(layout, 5);
         const EnvironmentImage other =
             convert(cube, {layout, Sampling::TexelCentres, size.width, size.height});
@@ -206,15 +222,17 @@ TEST(Convert, OtherArrangementsOfFacesAreCopies) {
 TEST(Convert, TurnsOfWholePixelsAreCopies) {
     EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 36, 18);
     fill_randomly(image.pixels, 8);
-    const EnvironmentImage turned = convert(image, shape_of(image), {.degrees_about_y = 30.0}); // 3 columns
+    const EnvironmentImage turned =
+        convert(image, shape_of(image), {.degrees_about_y = 30.0}); // 3 columns
     for (std::uint32_t y = 0; y < 18; ++y)
         for (std::uint32_t x = 0; x < 36; ++x)
             EXPECT_EQ(turned.pixels[y * 36 + x], image.pixels[y * 36 + (x + 3) % 36]);
     for (const Layout layout : {Layout::AngularMap, Layout::Octahedral}) {
         EnvironmentImage square = black_image(layout, Sampling::TexelCentres, 12);
         paint(square, [](const glm::dvec3& w) { return glm::vec3(w) + 1.0f; });
-        const EnvironmentImage back = convert(convert(square, shape_of(square), {.degrees_about_y = 180.0}),
-                                              shape_of(square), {.degrees_about_y = 180.0});
+        const EnvironmentImage back =
+            convert(convert(square, shape_of(square), {.degrees_about_y = 180.0}), shape_of(square),
+                    {.degrees_about_y = 180.0});
         if (layout == Layout::Octahedral) {
             EXPECT_EQ(back.pixels, square.pixels);
         }
@@ -227,7 +245,8 @@ TEST(Convert, SamplesOnBordersAreMeansOfTheirCells) {
     fill_randomly(image.pixels, 9);
     for (const Layout layout : {Layout::Cube, Layout::LatLong}) {
         const ImageSize size = natural_size(layout, 13);
-        const EnvironmentImage cube = convert(image, {layout, Sampling::Borders, size.width, size.height});
+        const EnvironmentImage cube =
+            convert(image, {layout, Sampling::Borders, size.width, size.height});
         EXPECT_EQ(cube.sampling, Sampling::Borders);
         EXPECT_NEAR(total_power(cube).x / total_power(image).x, 1.0, 1e-5) << name(layout);
     }
@@ -244,7 +263,8 @@ TEST(Convert, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Convert, RefusesSizesThatDoNotFit) {
     const EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 4);
-    EXPECT_THROW((void)convert(image, {Layout::Cube, Sampling::TexelCentres, 4, 23}), std::invalid_argument);
+    EXPECT_THROW((void)convert(image, {Layout::Cube, Sampling::TexelCentres, 4, 23}),
+                 std::invalid_argument);
     EXPECT_THROW((void)convert(image, {Layout::MirrorBall, Sampling::TexelCentres, 4, 5}),
                  std::invalid_argument);
 }
@@ -256,7 +276,8 @@ TEST(ConvertData, GalileoAsCrossAndAsAngularMapShowsTheSameWorld) {
         GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
     EXPECT_THROW((void)load_environment(probe_file), std::runtime_error); // square
     const CubeMap cross = resample(load_environment(cross_file), 128);
-    const CubeMap probe = resample(load_environment(probe_file, {.layout = Layout::AngularMap}), 128);
+    const CubeMap probe =
+        resample(load_environment(probe_file, {.layout = Layout::AngularMap}), 128);
     const auto correlation = [](const CubeMap& a, const CubeMap& b) {
         double sum_a = 0, sum_b = 0, sum_aa = 0, sum_bb = 0, sum_ab = 0;
         for (std::size_t i = 0; i < a.texels.size(); ++i) {
@@ -268,7 +289,8 @@ TEST(ConvertData, GalileoAsCrossAndAsAngularMapShowsTheSameWorld) {
                std::sqrt((sum_aa - sum_a * sum_a / n) * (sum_bb - sum_b * sum_b / n));
     };
     EXPECT_GT(correlation(cross, probe), 0.97);
-    EXPECT_LT(correlation(cross, turned(probe, {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}})), 0.9); // mirrored
+    EXPECT_LT(correlation(cross, turned(probe, {{-1, 0, 0}, {0, 1, 0}, {0, 0, 1}})),
+              0.9); // mirrored
     EXPECT_LT(correlation(cross, rotated(probe, 90.0)), 0.9);
     for (const glm::dvec3& normal : even_normals())
         EXPECT_NEAR(irradiance(probe, normal).y / irradiance(cross, normal).y, 1.0, 0.05);

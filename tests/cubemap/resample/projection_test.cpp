@@ -1,4 +1,5 @@
-// Angular map, mirror ball and octahedral map: their mathematics, their pixels' patches, and what becomes of light in them.
+// Angular map, mirror ball and octahedral map: their mathematics, their pixels' patches, and what
+// becomes of light in them.
 #include "cubemap/resample/projection.h"
 
 #include <cmath>
@@ -15,7 +16,8 @@ namespace relumine::cubemap {
 namespace {
 
 constexpr double Pi = std::numbers::pi;
-constexpr std::array<Layout, 3> Projected = {Layout::AngularMap, Layout::MirrorBall, Layout::Octahedral};
+constexpr std::array<Layout, 3> Projected = {Layout::AngularMap, Layout::MirrorBall,
+                                             Layout::Octahedral};
 
 void expect_near(const glm::dvec3& a, const glm::dvec3& b, double tolerance = 1e-12) {
     EXPECT_LT(glm::distance(a, b), tolerance)
@@ -66,13 +68,15 @@ TEST(Projection, PointsAndDirectionsAreInverse) {
 TEST(Projection, DensityIsTheSolidAngleOfSmallSquares) {
     for (const Layout layout : Projected) {
         const Projection& picture = *projection(layout);
-        for (const glm::dvec2& point : {glm::dvec2(0.31, 0.42), {0.47, 0.71}, {0.13, 0.55}, {0.62, 0.18}}) {
+        for (const glm::dvec2& point :
+             {glm::dvec2(0.31, 0.42), {0.47, 0.71}, {0.13, 0.55}, {0.62, 0.18}}) {
             constexpr double H = 1e-4;
-            const glm::dvec3 across =
-                picture.direction(point + glm::dvec2(H, 0)) - picture.direction(point - glm::dvec2(H, 0));
-            const glm::dvec3 down =
-                picture.direction(point + glm::dvec2(0, H)) - picture.direction(point - glm::dvec2(0, H));
-            const double turn = glm::dot(glm::cross(across, down), picture.direction(point)) / (4 * H * H);
+            const glm::dvec3 across = picture.direction(point + glm::dvec2(H, 0)) -
+                                      picture.direction(point - glm::dvec2(H, 0));
+            const glm::dvec3 down = picture.direction(point + glm::dvec2(0, H)) -
+                                    picture.direction(point - glm::dvec2(0, H));
+            const double turn =
+                glm::dot(glm::cross(across, down), picture.direction(point)) / (4 * H * H);
             EXPECT_NEAR(std::abs(turn) / picture.density(point), 1.0, 1e-5) << name(layout);
             EXPECT_EQ(turn < 0.0, picture.is_mirrored()) << name(layout);
         }
@@ -91,20 +95,23 @@ TEST(PatchPieces, PixelsTileTheSphereAtEveryResolution) {
 }
 
 TEST(PatchPieces, RimPixelsOfAMirrorBallHaveTheirShareOfTheDisc) {
-    // Equal areas are equal solid angles, so the area of a square's part in the disc is known: here by counting.
+    // Equal areas are equal solid angles, so the area of a square's part in the disc is known: here
+    // by counting.
     constexpr std::uint32_t N = 9;
     PatchPieces pieces(*projection(Layout::MirrorBall), N, N);
     for (std::uint32_t y = 0; y < N; ++y) {
         for (std::uint32_t x = 0; x < N; ++x) {
             double angle = 0.0;
-            pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) { angle += solid_angle(corners); });
+            pieces.visit(
+                x, y, [&](std::span<const glm::dvec3> corners) { angle += solid_angle(corners); });
             constexpr int K = 400;
             int inside = 0;
             for (int i = 0; i < K * K; ++i)
                 inside += glm::distance(glm::dvec2((x + (i % K + 0.5) / K) / N,
                                                    (y + (static_cast<int>(i / K) + 0.5) / K) / N),
                                         glm::dvec2(0.5)) < 0.5;
-            EXPECT_NEAR(angle, 16.0 * inside / (K * K) / (N * N), 16.0 * 2e-3 / (N * N)) << x << ' ' << y;
+            EXPECT_NEAR(angle, 16.0 * inside / (K * K) / (N * N), 16.0 * 2e-3 / (N * N))
+                << x << ' ' << y;
         }
     }
 }
@@ -118,9 +125,11 @@ TEST(ProjectionResample, ConstantsStayAndPowerIsKept) {
                 EXPECT_EQ(texel, glm::vec3(3.0f)) << name(layout);
             fill_randomly(image.pixels, n);
             const CubeMap map = resample(image, 20);
-            EXPECT_NEAR(total_power(map).y / total_power(image).y, 1.0, 2e-5) << name(layout) << ' ' << n;
+            EXPECT_NEAR(total_power(map).y / total_power(image).y, 1.0, 2e-5)
+                << name(layout) << ' ' << n;
             const EnvironmentImage back = to_image(map, layout, n, n);
-            EXPECT_NEAR(total_power(back).y / total_power(map).y, 1.0, 2e-5) << name(layout) << ' ' << n;
+            EXPECT_NEAR(total_power(back).y / total_power(map).y, 1.0, 2e-5)
+                << name(layout) << ' ' << n;
         }
     }
 }

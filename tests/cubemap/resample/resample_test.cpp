@@ -19,8 +19,9 @@ constexpr std::array<Sampling, 2> AllSamplings = {Sampling::TexelCentres, Sampli
 
 std::string label(const EnvironmentImage& image, std::uint32_t resolution) {
     return std::string(name(image.layout)) +
-           (image.sampling == Sampling::Borders ? " borders " : " centres ") + std::to_string(image.width) +
-           "x" + std::to_string(image.height) + " -> " + std::to_string(resolution);
+           (image.sampling == Sampling::Borders ? " borders " : " centres ") +
+           std::to_string(image.width) + "x" + std::to_string(image.height) + " -> " +
+           std::to_string(resolution);
 }
 
 double largest_difference(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b) {
@@ -32,7 +33,8 @@ double largest_difference(const std::vector<glm::vec3>& a, const std::vector<glm
     return largest;
 }
 
-/// The plain way: every pixel is cut into N x N pieces and each goes to the texel that holds a random point of it.
+/// The plain way: every pixel is cut into N x N pieces and each goes to the texel that holds a
+/// random point of it.
 CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, int n) {
     std::vector<glm::dvec3> sums(std::size_t{6} * resolution * resolution, glm::dvec3(0.0));
     std::vector<double> weights(sums.size(), 0.0);
@@ -53,7 +55,8 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
     const std::uint32_t width =
         lat_long ? image.width : FaceCells(image.layout, image.width, image.height).resolution();
     const std::uint32_t height = lat_long ? image.height : width;
-    const auto columns = cell_borders(width, image.sampling), rows = cell_borders(height, image.sampling);
+    const auto columns = cell_borders(width, image.sampling),
+               rows = cell_borders(height, image.sampling);
     for (std::uint32_t f = 0; f < faces; ++f) {
         for (std::uint32_t y = 0; y < height; ++y) {
             for (std::uint32_t x = 0; x < width; ++x) {
@@ -62,10 +65,11 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
                                           : FaceCells(image.layout, image.width, image.height)
                                                 .pixel(AllFaces[f], x, y)];
                 for (int k = 0; k < n * n; ++k) {
-                    const double s =
-                        columns[x] + (columns[x + 1] - columns[x]) * (k % n + jitter(generator)) / n;
-                    const double t =
-                        rows[y] + (rows[y + 1] - rows[y]) * (static_cast<int>(k / n) + jitter(generator)) / n;
+                    const double s = columns[x] + (columns[x + 1] - columns[x]) *
+                                                      (k % n + jitter(generator)) / n;
+                    const double t = rows[y] + (rows[y + 1] - rows[y]) *
+                                                   (static_cast<int>(k / n) + jitter(generator)) /
+                                                   n;
                     const double piece = (columns[x + 1] - columns[x]) * (rows[y + 1] - rows[y]);
                     if (lat_long) {
                         const double longitude = 2.0 * Pi * (0.5 - s), polar = Pi * t;
@@ -89,11 +93,13 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
 TEST(Resample, AgreesWithDenseSupersampling) {
     for (const Layout layout : OldLayouts) {
         for (const Sampling sampling : AllSamplings) {
-            EnvironmentImage image = black_image(layout, sampling, layout == Layout::LatLong ? 9 : 5);
+            EnvironmentImage image =
+                black_image(layout, sampling, layout == Layout::LatLong ? 9 : 5);
             fill_randomly(image.pixels, 3);
             for (const std::uint32_t resolution : {1u, 3u, 4u, 7u}) {
                 const CubeMap expected = supersampled(image, resolution, 100);
-                EXPECT_LT(largest_difference(resample(image, resolution).texels, expected.texels), 4e-3)
+                EXPECT_LT(largest_difference(resample(image, resolution).texels, expected.texels),
+                          4e-3)
                     << label(image, resolution);
             }
         }
@@ -109,10 +115,11 @@ TEST(Resample, ConstantsStayConstant) {
                 for (const std::uint32_t resolution : {1u, 2u, 3u, 16u, 33u, 64u, 256u}) {
                     const CubeMap map = resample(image, resolution);
                     const std::vector<glm::vec3> expected(map.texels.size(), glm::vec3(3.0f));
-                    ASSERT_LT(largest_difference(map.texels, expected), 3e-5) << label(image, resolution);
+                    ASSERT_LT(largest_difference(map.texels, expected), 3e-5)
+                        << label(image, resolution);
                 }
-                const EnvironmentImage back =
-                    to_image(CubeMap(9, glm::vec3(3.0f)), layout, image.width, image.height, sampling);
+                const EnvironmentImage back = to_image(CubeMap(9, glm::vec3(3.0f)), layout,
+                                                       image.width, image.height, sampling);
                 std::vector<glm::vec3> expected(back.pixels.size(), glm::vec3(0.0f));
                 for_each_pixel(shape_of(back), [&](std::size_t index, const PixelPlace&) {
                     expected[index] = glm::vec3(3.0f);
@@ -136,7 +143,8 @@ TEST(Resample, RandomImagesKeepTheirPower) {
                     ASSERT_NEAR(ratio.z, 1.0, 1e-6) << label(image, resolution);
                     CubeMap map(resolution);
                     fill_randomly(map.texels, resolution);
-                    const EnvironmentImage back = to_image(map, layout, image.width, image.height, sampling);
+                    const EnvironmentImage back =
+                        to_image(map, layout, image.width, image.height, sampling);
                     ASSERT_NEAR(total_power(back).y / total_power(map).y, 1.0, 1e-5)
                         << label(image, resolution);
                 }
@@ -145,7 +153,8 @@ TEST(Resample, RandomImagesKeepTheirPower) {
     }
 }
 
-/// Irradiance that a pixel of radiance 1 causes on a surface that all of it is above: n . (vector irradiance).
+/// Irradiance that a pixel of radiance 1 causes on a surface that all of it is above: n . (vector
+/// irradiance).
 glm::dvec3 vector_irradiance(const EnvironmentImage& image, std::size_t pixel) {
     EnvironmentImage one = image;
     one.pixels.assign(image.pixels.size(), glm::vec3(0.0f));
@@ -184,7 +193,8 @@ TEST(Resample, AOnePixelSunKeepsPowerAndIrradiance) {
             for_each_pixel(shape_of(empty), [&](std::size_t index, const PixelPlace& place) {
                 places.emplace_back(index, place);
             });
-            // Corners, edges and centres of the image or its faces, poles and seams, and anything between.
+            // Corners, edges and centres of the image or its faces, poles and seams, and anything
+            // between.
             std::vector<std::size_t> chosen = {0,
                                                size / 2,
                                                size - 1,
@@ -203,9 +213,11 @@ TEST(Resample, AOnePixelSunKeepsPowerAndIrradiance) {
                     const CubeMap map = resample(image, resolution);
                     ASSERT_NEAR(total_power(map).x / (1e5 * place.solid_angle), 1.0, 1e-5)
                         << label(image, resolution) << " pixel " << index;
-                    // A texel only says that the sun is within it: the more texels a pixel spans, the better they say where.
-                    // The pixels beside the poles are slivers thinner than any texel; those on borders are half as wide as others.
-                    const bool is_sliver = layout == Layout::LatLong && std::abs(place.direction.y) > 0.95;
+                    // A texel only says that the sun is within it: the more texels a pixel spans,
+                    // the better they say where. The pixels beside the poles are slivers thinner
+                    // than any texel; those on borders are half as wide as others.
+                    const bool is_sliver =
+                        layout == Layout::LatLong && std::abs(place.direction.y) > 0.95;
                     const double tolerance = is_sliver || resolution < 64    ? 2.0 / resolution
                                              : resolution < 128              ? 6e-3
                                              : sampling == Sampling::Borders ? 2e-3
@@ -215,7 +227,8 @@ TEST(Resample, AOnePixelSunKeepsPowerAndIrradiance) {
                     for (const glm::dvec3& normal : spread_normals(32)) {
                         if (glm::dot(normal, place.direction) < 0.5)
                             continue;
-                        ASSERT_NEAR(irradiance(map, normal).x / glm::dot(normal, exact), 1.0, tolerance)
+                        ASSERT_NEAR(irradiance(map, normal).x / glm::dot(normal, exact), 1.0,
+                                    tolerance)
                             << label(image, resolution) << " pixel " << index;
                     }
                 }
@@ -252,7 +265,8 @@ TEST(Resample, CubeMapsGrowAndShrink) {
     EXPECT_EQ(larger.at(Face::PositiveY, 4, 16), map.at(Face::PositiveY, 1, 5));
     EXPECT_LT(largest_difference(resample(larger, 6).texels, map.texels), 1e-6);
     for (const std::uint32_t resolution : {1u, 4u, 5u, 7u, 64u})
-        EXPECT_NEAR(total_power(resample(map, resolution)).x / total_power(map).x, 1.0, 1e-7) << resolution;
+        EXPECT_NEAR(total_power(resample(map, resolution)).x / total_power(map).x, 1.0, 1e-7)
+            << resolution;
 }
 
 TEST(Resample, AnInfinitePixelSpoilsOnlyTheTexelsUnderIt) {
@@ -274,12 +288,14 @@ TEST(Resample, SmoothPicturesSurviveTheRoundTrip) {
         }
     }
     for (const Sampling sampling : AllSamplings) {
-        EXPECT_LT(largest_difference(resample(to_image(map, Layout::LatLong, 256, 128, sampling), 64).texels,
-                                     map.texels),
+        EXPECT_LT(largest_difference(
+                      resample(to_image(map, Layout::LatLong, 256, 128, sampling), 64).texels,
+                      map.texels),
                   0.02);
-        EXPECT_LT(largest_difference(resample(to_image(map, Layout::Cube, 64, 384, sampling), 64).texels,
-                                     map.texels),
-                  0.02);
+        EXPECT_LT(
+            largest_difference(resample(to_image(map, Layout::Cube, 64, 384, sampling), 64).texels,
+                               map.texels),
+            0.02);
     }
 }
 

@@ -13,7 +13,8 @@
 namespace relumine::prt {
 namespace {
 
-/// Random receivers around one random cell, with planes that hold what is above the horizon and (at random) not blocked.
+/// Random receivers around one random cell, with planes that hold what is above the horizon and (at
+/// random) not blocked.
 struct RandomCell {
     std::vector<glm::vec3> normals;
     std::array<std::vector<std::uint64_t>, SamplesPerCell> planes;
@@ -21,7 +22,8 @@ struct RandomCell {
 
     RandomCell(std::mt19937& random, std::size_t num_receivers) {
         std::uniform_int_distribution<std::uint32_t> place(0, 7);
-        const Cell cell{.face = cubemap::Face::PositiveZ, .level = 3, .x = place(random), .y = place(random)};
+        const Cell cell{
+            .face = cubemap::Face::PositiveZ, .level = 3, .x = place(random), .y = place(random)};
         const auto points = lattice_points(cell);
         std::bernoulli_distribution zero(0.05);
         for (std::size_t i = 0; i < num_receivers; ++i)
@@ -34,7 +36,8 @@ struct RandomCell {
             const int k = kind(random); // no light at all, all light, any
             for (std::size_t l = 0; l < SamplesPerCell; ++l) {
                 const glm::vec3 w = direction(points[l]);
-                for (std::size_t i = word * WordSize; i < std::min((word + 1) * WordSize, num_receivers); ++i)
+                for (std::size_t i = word * WordSize;
+                     i < std::min((word + 1) * WordSize, num_receivers); ++i)
                     if (glm::dot(normals[i], w) > 0.0f && k > 0 && (k == 1 || random() % 2 == 0))
                         planes[l][word] |= std::uint64_t{1} << (i % WordSize);
             }
@@ -57,7 +60,8 @@ std::array<double, SamplesPerCell> plain_squared_distances(const RandomCell& cel
         double mean = 0.0;
         for (std::size_t l = 0; l < SamplesPerCell; ++l) {
             if (cell.lit(l, i))
-                transfer[l] = glm::dot(glm::dvec3(cell.normals[i]), glm::dvec3(cell.samples.directions[l]));
+                transfer[l] =
+                    glm::dot(glm::dvec3(cell.normals[i]), glm::dvec3(cell.samples.directions[l]));
             mean += transfer[l] * SampleWeights[l] / FullCount;
         }
         for (std::size_t l = 0; l < SamplesPerCell; ++l)
@@ -69,14 +73,16 @@ std::array<double, SamplesPerCell> plain_squared_distances(const RandomCell& cel
 TEST(ClusterKernels, SquaredDistancesEqualPlainSumsOnEveryTarget) {
     scenes::on_every_target([] {
         std::mt19937 random(1);
-        for (const std::size_t num_receivers : {1u, 16u, 63u, 64u, 65u, 1000u, 1024u, 1025u, 5000u}) {
+        for (const std::size_t num_receivers :
+             {1u, 16u, 63u, 64u, 65u, 1000u, 1024u, 1025u, 5000u}) {
             const RandomCell cell(random, num_receivers);
             const NormalArrays normals(cell.normals);
             const auto sums = squared_distances(normals, cell.samples);
             const auto expected = plain_squared_distances(cell);
             for (std::size_t l = 0; l < SamplesPerCell; ++l)
-                // A float lane adds up at most 256 terms of one sign: 256 half-units of 2^-24, 1.5e-5. The second term is
-                // for cells that are all equal, where only the terms' own rounding is left.
+                // A float lane adds up at most 256 terms of one sign: 256 half-units of
+                // 2^-24, 1.5e-5. The second term is for cells that are all equal, where only the
+                // terms' own rounding is left.
                 EXPECT_NEAR(sums[l], expected[l],
                             1.5e-5 * expected[l] + 1e-13 * static_cast<double>(num_receivers));
         }
@@ -132,7 +138,8 @@ TEST(ClusterKernels, LeafColumnHoldsTheWeightedCounts) {
                 int expected = 0;
                 for (std::size_t l = 0; l < SamplesPerCell; ++l)
                     expected += cell.lit(l, i) ? weights[l] : 0;
-                ASSERT_EQ(count_in(column, i), expected) << "receiver " << i << " of " << num_receivers;
+                ASSERT_EQ(count_in(column, i), expected)
+                    << "receiver " << i << " of " << num_receivers;
             }
             for (const std::uint64_t word : column.mixed)
                 num_mixed += static_cast<std::size_t>(std::popcount(word));

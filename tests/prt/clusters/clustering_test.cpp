@@ -33,7 +33,8 @@ protected:
     mesh::TriangleMesh mesh_ = scenes::sphere_and_box_on_floor();
     Receivers receivers_ = vertex_receivers(mesh_);
     RayScene rays_{mesh_};
-    PrecomputeOptions options_{.tolerance = 0.028f, .face_resolution = 64, .bias = automatic_bias(mesh_)};
+    PrecomputeOptions options_{
+        .tolerance = 0.028f, .face_resolution = 64, .bias = automatic_bias(mesh_)};
 };
 
 TEST_F(ClusteringTest, AnyRoomForPlanesGivesTheSameBits) {
@@ -74,7 +75,8 @@ TEST_F(ClusteringTest, GoesOnFromEveryCheckpoint) {
 class Lookout final : public Blockers, public Checkpoint {
 public:
     explicit Lookout(const Blockers& blockers) : blockers_(blockers) {}
-    std::uint64_t num_rays = 0; ///< at most, between two looks
+    /// At most, between two looks
+    std::uint64_t num_rays = 0;
     std::size_t num_looks = 0;
 
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,

@@ -24,9 +24,9 @@ TEST(Horizon, IsTheSignOfTheRoundedCosineOnEveryTarget) {
             for (std::uint32_t j = 0; j < n; ++j) {
                 // Half of them at right angles to some normal, where rounding alone decides.
                 const glm::vec3 w = scenes::random_direction(random);
-                patch.add(j % 2 == 0
-                              ? w
-                              : glm::normalize(glm::cross(normals[random() % 200] + glm::vec3(1e-9f), w)));
+                patch.add(j % 2 == 0 ? w
+                                     : glm::normalize(glm::cross(
+                                           normals[random() % 200] + glm::vec3(1e-9f), w)));
             }
             std::vector<std::uint64_t> rays(100, ~std::uint64_t{0});
             directions_above_horizon(arrays, 64, patch, rays);

@@ -16,7 +16,8 @@ std::vector<Cell> all_cells(std::uint32_t level) {
     for (const cubemap::Face face : cubemap::AllFaces)
         for (std::uint32_t y = 0; y < 1u << level; ++y)
             for (std::uint32_t x = 0; x < 1u << level; ++x)
-                cells.push_back({.face = face, .level = static_cast<std::uint8_t>(level), .x = x, .y = y});
+                cells.push_back(
+                    {.face = face, .level = static_cast<std::uint8_t>(level), .x = x, .y = y});
     return cells;
 }
 
@@ -29,8 +30,8 @@ Cell random_cell(std::mt19937& random, std::uint32_t level) {
             .y = place(random)};
 }
 
-// A cube whose edges are cut into n parts has 6 n^2 + 2 grid points, so any point with two names, on a face's edge say, or
-// any two points with one name would show.
+// A cube whose edges are cut into n parts has 6 n^2 + 2 grid points, so any point with two names,
+// on a face's edge say, or any two points with one name would show.
 TEST(Lattice, CellsShareTheirPointsOverEdgesAndCornersOfTheCube) {
     for (std::uint32_t level = 0; level <= 5; ++level) {
         std::set<LatticePoint> points;
@@ -108,7 +109,8 @@ TEST(Lattice, WeightsAreTheTrapezoidRule) {
     double mean = 0.0;
     for (std::size_t i = 0; i < SamplesPerCell; ++i) {
         const std::size_t column = i % 3, row = i / 3;
-        mean += SampleWeights[i] * 0.5 * static_cast<double>(column) * 0.5 * static_cast<double>(row);
+        mean +=
+            SampleWeights[i] * 0.5 * static_cast<double>(column) * 0.5 * static_cast<double>(row);
     }
     EXPECT_EQ(mean / FullCount, 0.25);
 }

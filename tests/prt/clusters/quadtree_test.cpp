@@ -96,9 +96,9 @@ TEST(Quadtree, RefusesBadFlags) {
     std::mt19937 random(3);
     const std::vector<bool> flags = scenes::random_split_flags(random, 5, 0.6);
     for (std::size_t length = 0; length < flags.size(); ++length)
-        EXPECT_THROW(
-            Quadtree(std::vector<bool>(flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(length))),
-            std::invalid_argument);
+        EXPECT_THROW(Quadtree(std::vector<bool>(
+                         flags.begin(), flags.begin() + static_cast<std::ptrdiff_t>(length))),
+                     std::invalid_argument);
 }
 
 TEST(Quadtree, GoesDownToTheDeepestLevelAndNoFurther) {
@@ -124,8 +124,8 @@ TEST(Quadtree, FindLeavesEqualsLookingAtAllLeaves) {
 }
 
 TEST(Quadtree, FindLeavesLeavesOutWhatOnlyTouches) {
-    // Rectangles whose edges lie on cell boundaries: R = 16 is finer than some leaves and coarser than others; R = 12
-    // has boundaries that are no binary fractions beside some that are.
+    // Rectangles whose edges lie on cell boundaries: R = 16 is finer than some leaves and coarser
+    // than others; R = 12 has boundaries that are no binary fractions beside some that are.
     std::mt19937 random(5);
     for (const std::uint32_t r : {16u, 12u}) {
         const Quadtree tree(scenes::random_split_flags(random, 6, 0.7));
@@ -149,8 +149,8 @@ TEST(Quadtree, ASubtreeOwnsARangeOfLeaves) {
     const Quadtree tree(scenes::random_split_flags(random, 6, 0.7));
     for (std::uint32_t y = 0; y < 4; ++y)
         for (std::uint32_t x = 0; x < 4; ++x) {
-            const auto leaves =
-                found(tree, {cubemap::Face::PositiveY, x / 4.0, y / 4.0, (x + 1) / 4.0, (y + 1) / 4.0});
+            const auto leaves = found(
+                tree, {cubemap::Face::PositiveY, x / 4.0, y / 4.0, (x + 1) / 4.0, (y + 1) / 4.0});
             ASSERT_FALSE(leaves.empty());
             EXPECT_EQ(leaves.back() - leaves.front() + 1, leaves.size());
         }

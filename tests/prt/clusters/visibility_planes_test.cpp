@@ -85,9 +85,10 @@ TEST(VisibilityPlanes, TracesEveryDirectionOnce) {
                             [](const auto& entry) { return entry.second == 1; }));
     EXPECT_EQ(planes.num_rays(), counting.rays().size());
     for (const auto& [ray, count] : counting.rays()) { // nothing below the horizon was asked
-        const auto receiver = static_cast<std::size_t>(
-            std::find(setting.origins.begin(), setting.origins.end(), glm::vec3(ray[0], ray[1], ray[2])) -
-            setting.origins.begin());
+        const auto receiver =
+            static_cast<std::size_t>(std::find(setting.origins.begin(), setting.origins.end(),
+                                               glm::vec3(ray[0], ray[1], ray[2])) -
+                                     setting.origins.begin());
         ASSERT_LT(receiver, setting.origins.size());
         EXPECT_GT(glm::dot(setting.normals[receiver], glm::vec3(ray[3], ray[4], ray[5])), -1e-6f);
     }

@@ -56,7 +56,8 @@ VisibleCounts counts_of(const Table& table, std::size_t num_receivers) {
 
 TEST(VisibleCounts, CountEqualsAPlainTable) {
     std::mt19937 random(1);
-    // Around the sizes of a block (16 receivers), a word of leaves (64) and a word of a column (64 blocks).
+    // Around the sizes of a block (16 receivers), a word of leaves (64) and a word of a column (64
+    // blocks).
     for (const std::size_t num_receivers : {1u, 15u, 16u, 17u, 100u, 1023u, 1024u, 1025u, 1100u})
         for (const std::size_t num_leaves : {6u, 63u, 64u, 65u, 130u}) {
             const Table table = random_table(random, num_receivers, num_leaves);
@@ -66,8 +67,8 @@ TEST(VisibleCounts, CountEqualsAPlainTable) {
             for (std::size_t leaf = 0; leaf < num_leaves; ++leaf)
                 for (std::size_t receiver = 0; receiver < num_receivers; ++receiver)
                     ASSERT_EQ(counts.count(receiver, leaf), table[leaf][receiver])
-                        << "receiver " << receiver << " of " << num_receivers << ", leaf " << leaf << " of "
-                        << num_leaves;
+                        << "receiver " << receiver << " of " << num_receivers << ", leaf " << leaf
+                        << " of " << num_leaves;
         }
 }
 
@@ -82,7 +83,8 @@ TEST(VisibleCounts, TilesThenWordsThenBlocksThenLeaves) {
         for (std::size_t first_leaf = 0; first_leaf < table.size(); first_leaf += 64)
             for (std::size_t block = begin; block < end; ++block) {
                 EXPECT_EQ(counts.word(block, first_leaf / 64), word++);
-                for (std::size_t leaf = first_leaf; leaf < std::min(first_leaf + 64, table.size()); ++leaf)
+                for (std::size_t leaf = first_leaf; leaf < std::min(first_leaf + 64, table.size());
+                     ++leaf)
                     if ((column_of(table[leaf]).mixed[block / 64] >> (block % 64) & 1u) != 0)
                         expected.insert(expected.end(), &table[leaf][block * BlockSize],
                                         &table[leaf][block * BlockSize] + BlockSize);
@@ -112,8 +114,10 @@ TEST(VisibleCounts, IndexRefusesContradictions) {
     refused("visible too long", [](VisibleCounts& c) { c.visible.push_back(0); });
     refused("no bits", [](VisibleCounts& c) { c.visible.clear(), c.mixed.clear(); });
     refused("half a block", [](VisibleCounts& c) { c.counts.pop_back(); });
-    refused("a block missing", [](VisibleCounts& c) { c.counts.resize(c.counts.size() - BlockSize); });
-    refused("a block too many", [](VisibleCounts& c) { c.counts.resize(c.counts.size() + BlockSize); });
+    refused("a block missing",
+            [](VisibleCounts& c) { c.counts.resize(c.counts.size() - BlockSize); });
+    refused("a block too many",
+            [](VisibleCounts& c) { c.counts.resize(c.counts.size() + BlockSize); });
     refused("count of 17", [](VisibleCounts& c) { c.counts[c.counts.size() / 2] = 17; });
     refused("count of 255", [](VisibleCounts& c) { c.counts.back() = 255; });
     refused("both classes", [](VisibleCounts& c) { c.visible[0] |= c.mixed[0]; });

@@ -1,5 +1,6 @@
-// The reflection models: symmetric, no more light out than in, and their parts against closed forms. Integrals over the
-// hemisphere are made in double twice, over directions to the light and over half vectors, of the floats that the code yields.
+// The reflection models: symmetric, no more light out than in, and their parts against closed
+// forms. Integrals over the hemisphere are made in double twice, over directions to the light and
+// over half vectors, of the floats that the code yields.
 #include "prt/glossy/brdf.h"
 
 #include <cmath>
@@ -21,7 +22,8 @@ constexpr double Pi = std::numbers::pi;
 const glm::vec3 Up(0.0f, 1.0f, 0.0f);
 
 constexpr float Roughnesses[] = {0.0f, 0.02f, 0.1f, 0.2f, 0.35f, 0.5f, 0.7f, 0.85f, 1.0f};
-constexpr float Exponents[] = {0.0f, 0.01f, 0.3f, 1.0f, 2.0f, 5.0f, 10.0f, 50.0f, 400.0f, 1e4f, 1e6f};
+constexpr float Exponents[] = {0.0f,  0.01f, 0.3f,   1.0f, 2.0f, 5.0f,
+                               10.0f, 50.0f, 400.0f, 1e4f, 1e6f};
 constexpr double EyeDegrees[] = {0.0, 10.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9};
 
 Surface ggx_surface(float roughness) {
@@ -53,15 +55,18 @@ std::string name(const Surface& surface) {
 }
 
 glm::vec3 direction(double polar, double azimuth) {
-    return {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)};
+    return {std::sin(polar) * std::cos(azimuth), std::cos(polar),
+            std::sin(polar) * std::sin(azimuth)};
 }
 
 glm::vec3 eye_at(double degrees) {
     return direction(degrees * Pi / 180.0, 0.3);
 }
 
-/// The lobes of a single light of radiance times solid angle 1 and their colours: BRDF times cosine.
-glm::vec3 reflected(const Surface& surface, const glm::vec3& normal, const glm::vec3& v, const glm::vec3& w) {
+/// The lobes of a single light of radiance times solid angle 1 and their colours: BRDF times
+/// cosine.
+glm::vec3 reflected(const Surface& surface, const glm::vec3& normal, const glm::vec3& v,
+                    const glm::vec3& w) {
     const Lobes<float> lobes = evaluate_lobes(surface, normal, v, w);
     return reflect(surface, {.diffuse = glm::vec3(lobes.diffuse),
                              .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
@@ -69,7 +74,8 @@ glm::vec3 reflected(const Surface& surface, const glm::vec3& normal, const glm::
                              .specular_grazing = glm::vec3(lobes.specular_grazing)});
 }
 
-glm::vec3 brdf(const Surface& surface, const glm::vec3& normal, const glm::vec3& v, const glm::vec3& w) {
+glm::vec3 brdf(const Surface& surface, const glm::vec3& normal, const glm::vec3& v,
+               const glm::vec3& w) {
     return reflected(surface, normal, v, w) / glm::dot(normal, w);
 }
 
@@ -80,23 +86,29 @@ void add(Lobes<double>& sum, const Lobes<float>& lobes, double weight) {
     sum.specular_grazing += weight * double{lobes.specular_grazing};
 }
 
-/// Integral of the lobes over all w: midpoints of a grid uniform in the cosine's square root and the azimuth.
+/// Integral of the lobes over all w: midpoints of a grid uniform in the cosine's square root and
+/// the azimuth.
 Lobes<double> integral_over_lights(const Surface& surface, const glm::vec3& v, int n = 700) {
     Lobes<double> sum;
     for (int i = 0; i < n; ++i) {
-        // The square of a uniform variable: fine steps at the horizon, where sums of grazing angles are.
+        // The square of a uniform variable: fine steps at the horizon, where sums of grazing angles
+        // are.
         const double t = (i + 0.5) / n;
         const double cosine = t * t;
         const double weight = 2.0 * t / n * 2.0 * Pi / n;
         for (int j = 0; j < n; ++j)
-            add(sum, evaluate_lobes(surface, Up, v, direction(std::acos(cosine), 2.0 * Pi * (j + 0.5) / n)),
+            add(sum,
+                evaluate_lobes(surface, Up, v,
+                               direction(std::acos(cosine), 2.0 * Pi * (j + 0.5) / n)),
                 weight);
     }
     return sum;
 }
 
-/// The same over half vectors, dw = 4 (v.h) dh, spaced as a GGX distribution of this alpha has them: exact for any sharpness.
-Lobes<double> integral_over_halves(const Surface& surface, const glm::vec3& eye, double alpha, int n = 700) {
+/// The same over half vectors, dw = 4 (v.h) dh, spaced as a GGX distribution of this alpha has
+/// them: exact for any sharpness.
+Lobes<double> integral_over_halves(const Surface& surface, const glm::vec3& eye, double alpha,
+                                   int n = 700) {
     const glm::dvec3 v(eye);
     Lobes<double> sum;
     for (int i = 0; i < n; ++i) {
@@ -112,7 +124,8 @@ Lobes<double> integral_over_halves(const Surface& surface, const glm::vec3& eye,
             const double v_h = glm::dot(v, h);
             const glm::dvec3 w = 2.0 * v_h * h - v;
             if (v_h > 0.0 && w.y > 0.0)
-                add(sum, evaluate_lobes(surface, Up, eye, glm::vec3(w)), 4.0 * v_h / density / n / n);
+                add(sum, evaluate_lobes(surface, Up, eye, glm::vec3(w)),
+                    4.0 * v_h / density / n / n);
         }
     }
     return sum;
@@ -133,9 +146,10 @@ TEST(Brdf, LightAndEyeMayChangePlaces) {
             const glm::vec3 n = scenes::random_direction(random);
             const glm::vec3 v = scenes::random_direction(random);
             // Every other light is in the highlight.
-            const glm::vec3 w = num_pairs % 2 == 0 ? scenes::random_direction(random)
-                                                   : glm::normalize(2.0f * glm::dot(n, v) * n - v +
-                                                                    0.01f * scenes::random_direction(random));
+            const glm::vec3 w = num_pairs % 2 == 0
+                                    ? scenes::random_direction(random)
+                                    : glm::normalize(2.0f * glm::dot(n, v) * n - v +
+                                                     0.01f * scenes::random_direction(random));
             if (glm::dot(n, v) <= 1e-3f || glm::dot(n, w) <= 1e-3f)
                 continue;
             ++num_pairs;
@@ -155,9 +169,11 @@ TEST(Brdf, NothingIsNegativeOrInfinite) {
             glm::vec3 v = scenes::random_direction(random), w = scenes::random_direction(random);
             // Grazing on one side or both, down to the smallest floats; and from straight behind.
             if (i % 4 == 1 || i % 4 == 2)
-                w = glm::normalize(glm::vec3(w.x, 0.0f, w.z)) + Up * std::pow(10.0f, exponent(random));
+                w = glm::normalize(glm::vec3(w.x, 0.0f, w.z)) +
+                    Up * std::pow(10.0f, exponent(random));
             if (i % 4 == 2)
-                v = glm::normalize(glm::vec3(v.x, 0.0f, v.z)) + Up * std::pow(10.0f, exponent(random));
+                v = glm::normalize(glm::vec3(v.x, 0.0f, v.z)) +
+                    Up * std::pow(10.0f, exponent(random));
             if (i % 4 == 3)
                 v = Up * std::pow(10.0f, exponent(random)) - glm::vec3(w.x, 0.0f, w.z);
             const Lobes<float> lobes = evaluate_lobes(surface, Up, v, w);
@@ -175,24 +191,29 @@ TEST(Brdf, NothingFromBelowTheHorizonOrWithoutANormal) {
     const glm::vec3 below = glm::normalize(glm::vec3(0.3f, -0.1f, 0.0f)), above = eye_at(40.0);
     for (const Surface& surface : all_surfaces()) {
         EXPECT_EQ(reflected(surface, Up, above, below), glm::vec3(0.0f)) << name(surface);
-        EXPECT_EQ(reflected(surface, glm::vec3(0.0f), above, above), glm::vec3(0.0f)) << name(surface);
+        EXPECT_EQ(reflected(surface, glm::vec3(0.0f), above, above), glm::vec3(0.0f))
+            << name(surface);
         // An eye below, as interpolated normals make it, sees no highlight.
         for (const glm::vec3& eye : {below, glm::vec3(1.0f, 0.0f, 0.0f)}) {
             const Lobes<float> lobes = evaluate_lobes(surface, Up, eye, above);
             EXPECT_EQ(lobes.diffuse, above.y * std::numbers::inv_pi_v<float>) << name(surface);
-            EXPECT_EQ(lobes.diffuse_grazing + lobes.specular + lobes.specular_grazing, 0.0f) << name(surface);
+            EXPECT_EQ(lobes.diffuse_grazing + lobes.specular + lobes.specular_grazing, 0.0f)
+                << name(surface);
         }
     }
-    EXPECT_EQ(reflected({}, Up, below, Up), glm::vec3(std::numbers::inv_pi_v<float>)) << "Lambert, any eye";
+    EXPECT_EQ(reflected({}, Up, below, Up), glm::vec3(std::numbers::inv_pi_v<float>))
+        << "Lambert, any eye";
 }
 
-/// Light along the surface from straight behind: v + w rounds to nothing, the half vector is the normal in the limit.
+/// Light along the surface from straight behind: v + w rounds to nothing, the half vector is the
+/// normal in the limit.
 TEST(Brdf, LightFromStraightBehind) {
     const glm::vec3 w(1.0f, 1e-20f, 0.0f), v(-1.0f, 1e-20f, 0.0f);
     for (const float roughness : Roughnesses) {
         const Lobes<float> lobes = evaluate_lobes(ggx_surface(roughness), Up, v, w);
         const float alpha = ggx_alpha(roughness);
-        EXPECT_NEAR(lobes.specular * 4.0f * float(Pi) * alpha * alpha * alpha, 1.0f, 1e-5f) << roughness;
+        EXPECT_NEAR(lobes.specular * 4.0f * float(Pi) * alpha * alpha * alpha, 1.0f, 1e-5f)
+            << roughness;
         EXPECT_NEAR(lobes.specular_grazing, lobes.specular, 1e-5f * lobes.specular) << "white";
         EXPECT_NEAR(lobes.diffuse_grazing, lobes.diffuse, 1e-5f * lobes.diffuse);
     }
@@ -200,7 +221,8 @@ TEST(Brdf, LightFromStraightBehind) {
         EXPECT_LE(evaluate_lobes(blinn_surface(exponent), Up, v, w).specular, 1e-14f) << exponent;
 }
 
-/// Each lobe alone under white light: no more out than in, from any side. Both integrals agree where the first resolves the lobe.
+/// Each lobe alone under white light: no more out than in, from any side. Both integrals agree
+/// where the first resolves the lobe.
 TEST(Brdf, LobesReflectAtMostWhatArrives) {
     for (const Surface& surface : all_surfaces()) {
         if (surface.highlight == Highlight::None)
@@ -214,9 +236,11 @@ TEST(Brdf, LobesReflectAtMostWhatArrives) {
                 continue;
             const Lobes<double> wide = integral_over_lights(surface, v, 250);
             EXPECT_LE(wide.specular, 1.0 + 1e-4) << name(surface) << " at " << degrees;
-            // Along the surface the highlight comes from the tail of the half vectors, where their grid is coarse.
+            // Along the surface the highlight comes from the tail of the half vectors, where their
+            // grid is coarse.
             const double tolerance = degrees > 80.0 ? 0.025 : 3e-3;
-            EXPECT_NEAR(wide.specular, sharp.specular, tolerance) << name(surface) << " at " << degrees;
+            EXPECT_NEAR(wide.specular, sharp.specular, tolerance)
+                << name(surface) << " at " << degrees;
             EXPECT_NEAR(wide.specular_grazing, sharp.specular_grazing, tolerance)
                 << name(surface) << " at " << degrees;
             EXPECT_NEAR(wide.diffuse, 1.0, 1e-4);
@@ -225,11 +249,13 @@ TEST(Brdf, LobesReflectAtMostWhatArrives) {
     }
 }
 
-/// Blinn-Phong's factor: exactly what arrives along the normal, for every exponent; sharp ones lose n.v^2 elsewhere.
+/// Blinn-Phong's factor: exactly what arrives along the normal, for every exponent; sharp ones lose
+/// n.v^2 elsewhere.
 TEST(Brdf, BlinnPhongReflectsAllOnlyAlongTheNormal) {
     for (const float exponent : Exponents) {
         const Surface surface = blinn_surface(exponent);
-        EXPECT_NEAR(integral_over_halves(surface, Up, alpha_of(surface)).specular, 1.0, 2e-3) << exponent;
+        EXPECT_NEAR(integral_over_halves(surface, Up, alpha_of(surface)).specular, 1.0, 2e-3)
+            << exponent;
     }
     for (const double degrees : {30.0, 60.0, 80.0}) {
         const double cosine = std::cos(degrees * Pi / 180.0);
@@ -240,13 +266,16 @@ TEST(Brdf, BlinnPhongReflectsAllOnlyAlongTheNormal) {
     }
 }
 
-/// Roughness 1 has a closed form: D = 1/pi and V = 1 / (2 (n.w + n.v)), so 1 - m ln(1 + 1/m), m = n.v.
+/// Roughness 1 has a closed form: D = 1/pi and V = 1 / (2 (n.w + n.v)), so 1 - m ln(1 + 1/m), m =
+/// n.v.
 TEST(Brdf, WhiteFurnaceOfTheRoughestGgx) {
     for (const double degrees : {0.0, 20.0, 45.0, 70.0, 85.0}) {
         const double m = std::cos(degrees * Pi / 180.0);
         const double expected = 1.0 - m * std::log1p(1.0 / m);
-        EXPECT_NEAR(integral_over_lights(ggx_surface(1.0f), eye_at(degrees)).specular, expected, 1e-4);
-        EXPECT_NEAR(integral_over_halves(ggx_surface(1.0f), eye_at(degrees), 1.0).specular, expected, 1e-3);
+        EXPECT_NEAR(integral_over_lights(ggx_surface(1.0f), eye_at(degrees)).specular, expected,
+                    1e-4);
+        EXPECT_NEAR(integral_over_halves(ggx_surface(1.0f), eye_at(degrees), 1.0).specular,
+                    expected, 1e-3);
     }
 }
 
@@ -255,15 +284,16 @@ TEST(Brdf, WhiteFurnaceOfTheSmoothestGgx) {
     for (const float roughness : {0.0f, 0.01f, 0.0316f})
         for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
             const double fresnel = std::pow(1.0 - std::cos(degrees * Pi / 180.0), 5.0);
-            const Lobes<double> lobes =
-                integral_over_halves(ggx_surface(roughness), eye_at(degrees), double{ggx_alpha(0.0f)});
+            const Lobes<double> lobes = integral_over_halves(
+                ggx_surface(roughness), eye_at(degrees), double{ggx_alpha(0.0f)});
             EXPECT_NEAR(lobes.specular, 1.0, 2e-3) << roughness << " at " << degrees;
             EXPECT_NEAR(lobes.specular_grazing, fresnel, 2e-3) << roughness << " at " << degrees;
         }
 }
 
-/// Whole materials. glTF's diffuse part does not give up all that its highlight takes at grazing views, so its sum is above 1
-/// there: a property of the published formula, pinned so that prt/glossy/brdf.h tells the truth.
+/// Whole materials. glTF's diffuse part does not give up all that its highlight takes at grazing
+/// views, so its sum is above 1 there: a property of the published formula, pinned so that
+/// prt/glossy/brdf.h tells the truth.
 TEST(Brdf, EnergyOfWholeMaterials) {
     double worst = 0.0;
     for (const float roughness : Roughnesses)
@@ -274,7 +304,8 @@ TEST(Brdf, EnergyOfWholeMaterials) {
             const Lobes<double> diffuse = integral_over_lights(surface, eye_at(degrees), 200);
             const auto total = [&](double albedo, double f0) {
                 return albedo * (1.0 - f0) * (diffuse.diffuse - diffuse.diffuse_grazing) +
-                       f0 * (specular.specular - specular.specular_grazing) + specular.specular_grazing;
+                       f0 * (specular.specular - specular.specular_grazing) +
+                       specular.specular_grazing;
             };
             EXPECT_LE(total(0.0, 1.0), 1.0 + 2e-3) << "metal " << roughness << " at " << degrees;
             EXPECT_LE(total(0.0, 0.04), 1.0 + 2e-3) << "black " << roughness << " at " << degrees;
@@ -288,7 +319,8 @@ TEST(Brdf, EnergyOfWholeMaterials) {
     for (const float exponent : Exponents) {
         const Surface surface = blinn_surface(exponent);
         for (const double degrees : EyeDegrees)
-            EXPECT_LE(0.5 * integral_over_halves(surface, eye_at(degrees), alpha_of(surface), 200).specular +
+            EXPECT_LE(0.5 * integral_over_halves(surface, eye_at(degrees), alpha_of(surface), 200)
+                                  .specular +
                           0.5 * 1.0,
                       1.0 + 2e-3);
     }
@@ -319,11 +351,12 @@ TEST(Brdf, FresnelGoesToOneAtGrazingAngles) {
 /// V = G / (4 n.w n.v) as glTF 2.0, Appendix B.3.2 prints it.
 double published_visibility(double n_w, double n_v, double alpha) {
     const double a2 = alpha * alpha;
-    return 0.5 /
-           (n_w * std::sqrt(n_v * n_v * (1.0 - a2) + a2) + n_v * std::sqrt(n_w * n_w * (1.0 - a2) + a2));
+    return 0.5 / (n_w * std::sqrt(n_v * n_v * (1.0 - a2) + a2) +
+                  n_v * std::sqrt(n_w * n_w * (1.0 - a2) + a2));
 }
 
-/// Light and eye in the same place h: S = D(h) V(n.h, n.h) n.h. The integral of D n.h over all h is 1.
+/// Light and eye in the same place h: S = D(h) V(n.h, n.h) n.h. The integral of D n.h over all h
+/// is 1.
 TEST(Brdf, GgxDistributionIsNormalised) {
     for (const float roughness : Roughnesses) {
         const Surface surface = ggx_surface(roughness);
@@ -339,15 +372,16 @@ TEST(Brdf, GgxDistributionIsNormalised) {
             if (h.y <= 0.0f)
                 continue;
             const double specular = double{evaluate_lobes(surface, Up, h, h).specular};
-            const double distribution = specular / (cosine * published_visibility(cosine, cosine, alpha));
+            const double distribution =
+                specular / (cosine * published_visibility(cosine, cosine, alpha));
             sum += distribution * cosine * 2.0 * Pi * std::sin(polar) * d_polar;
         }
         EXPECT_NEAR(sum, 1.0, 1e-3) << roughness;
     }
 }
 
-/// Smith's height-correlated masking and shadowing, as Heitz 2014, Eq. 99 has it: G = 1 / (1 + Lambda(v) + Lambda(w)),
-/// Lambda = (-1 + sqrt(1 + alpha^2 tan^2)) / 2.
+/// Smith's height-correlated masking and shadowing, as Heitz 2014, Eq. 99 has it: G = 1 / (1 +
+/// Lambda(v) + Lambda(w)), Lambda = (-1 + sqrt(1 + alpha^2 tan^2)) / 2.
 TEST(Brdf, GgxMaskingIsSmithsHeightCorrelated) {
     std::mt19937 random(3);
     const auto lambda = [](double cosine, double alpha) {
@@ -373,17 +407,21 @@ TEST(Brdf, GgxMaskingIsSmithsHeightCorrelated) {
         }
 }
 
-/// glTF 2.0, Appendix B.2 and B.3, as they are printed there: metallic-roughness in, f_diffuse + f_specular out.
-glm::dvec3 published_gltf(const glm::dvec3& base, double metallic, double roughness, const glm::dvec3& v,
-                          const glm::dvec3& l) {
+/// glTF 2.0, Appendix B.2 and B.3, as they are printed there: metallic-roughness in, f_diffuse +
+/// f_specular out.
+glm::dvec3 published_gltf(const glm::dvec3& base, double metallic, double roughness,
+                          const glm::dvec3& v, const glm::dvec3& l) {
     const glm::dvec3 h = glm::normalize(l + v), n(Up);
     const glm::dvec3 c_diff = base * (1.0 - metallic);
     const glm::dvec3 f0 = glm::dvec3(0.04) * (1.0 - metallic) + base * metallic;
     const double alpha = roughness * roughness;
-    const glm::dvec3 fresnel = f0 + (glm::dvec3(1.0) - f0) * std::pow(1.0 - std::abs(glm::dot(v, h)), 5.0);
-    const double n_h = glm::dot(n, h), n_l = glm::dot(n, l), n_v = glm::dot(n, v), a2 = alpha * alpha;
+    const glm::dvec3 fresnel =
+        f0 + (glm::dvec3(1.0) - f0) * std::pow(1.0 - std::abs(glm::dot(v, h)), 5.0);
+    const double n_h = glm::dot(n, h), n_l = glm::dot(n, l), n_v = glm::dot(n, v),
+                 a2 = alpha * alpha;
     const double d = a2 / (Pi * std::pow(n_h * n_h * (a2 - 1.0) + 1.0, 2.0));
-    return (glm::dvec3(1.0) - fresnel) * c_diff / Pi + fresnel * published_visibility(n_l, n_v, alpha) * d;
+    return (glm::dvec3(1.0) - fresnel) * c_diff / Pi +
+           fresnel * published_visibility(n_l, n_v, alpha) * d;
 }
 
 TEST(Brdf, ReflectIsTheFormulaOfGltf) {
@@ -402,12 +440,14 @@ TEST(Brdf, ReflectIsTheFormulaOfGltf) {
         w.y = std::abs(w.y);
         if (i % 2 == 0) // in the highlight
             w = glm::normalize(glm::vec3(-v.x, v.y, -v.z) + 0.05f * w);
-        const glm::dvec3 expected = published_gltf(base, metallic, roughness, glm::normalize(glm::dvec3(v)),
-                                                   glm::normalize(glm::dvec3(w))) *
-                                    double{w.y};
+        const glm::dvec3 expected =
+            published_gltf(base, metallic, roughness, glm::normalize(glm::dvec3(v)),
+                           glm::normalize(glm::dvec3(w))) *
+            double{w.y};
         const glm::dvec3 got(reflected(surface, Up, v, w));
         for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(got[c], expected[c], 3e-4 * expected[c] + 1e-7) << roughness << ' ' << metallic;
+            EXPECT_NEAR(got[c], expected[c], 3e-4 * expected[c] + 1e-7)
+                << roughness << ' ' << metallic;
     }
 }
 
@@ -416,7 +456,8 @@ TEST(Brdf, ReflectOfLambertAndBlinnPhong) {
                                     .diffuse_grazing = glm::vec3(8.0f),
                                     .specular = glm::vec3(16.0f, 32.0f, 64.0f),
                                     .specular_grazing = glm::vec3(128.0f)};
-    EXPECT_EQ(reflect({.albedo = glm::vec3(0.5f, 1.0f, 0.25f)}, lobes), glm::vec3(0.5f, 2.0f, 1.0f));
+    EXPECT_EQ(reflect({.albedo = glm::vec3(0.5f, 1.0f, 0.25f)}, lobes),
+              glm::vec3(0.5f, 2.0f, 1.0f));
     EXPECT_EQ(reflect(blinn_surface(10.0f), lobes), glm::vec3(8.5f, 8.5f, 64.0f));
 }
 
@@ -431,7 +472,8 @@ TEST(Brdf, SharpnessIsClamped) {
     EXPECT_GT(peak(ggx_surface(0.0f)), peak(ggx_surface(std::sqrt(1.1f * least))));
     EXPECT_NEAR(peak(ggx_surface(0.0f)) * float(Pi) * least * least * 4.0f * v.y, 1.0f, 1e-2f);
     EXPECT_EQ(peak(blinn_surface(1e30f)), peak(blinn_surface(1e6f)));
-    EXPECT_EQ(peak(blinn_surface(std::numeric_limits<float>::infinity())), peak(blinn_surface(1e6f)));
+    EXPECT_EQ(peak(blinn_surface(std::numeric_limits<float>::infinity())),
+              peak(blinn_surface(1e6f)));
     EXPECT_GT(peak(blinn_surface(1e6f)), peak(blinn_surface(0.9e6f)));
     EXPECT_EQ(blinn_phong_norm(-1.0f), blinn_phong_norm(0.0f));
     EXPECT_NEAR(blinn_phong_norm(0.0f), std::numbers::inv_pi_v<float>, 1e-7f);

@@ -62,8 +62,8 @@ float value_of(const Lobes<float>& lobes, GlossyLobe lobe) {
                                                  : lobes.diffuse_grazing;
 }
 
-/// What a cut is held to: relative L2 distance of its transfer from the lobe times visibility, over the texels of a cube map, and the
-/// difference of their integrals, worst of the receivers.
+/// What a cut is held to: relative L2 distance of its transfer from the lobe times visibility, over
+/// the texels of a cube map, and the difference of their integrals, worst of the receivers.
 struct CutErrors {
     double l2 = 0.0;
     double integral = 0.0;
@@ -77,7 +77,8 @@ CutErrors errors_of(const Receivers& receivers, const Transfer& transfer, const 
     std::map<std::uint32_t, std::array<double, BlockSize>> cut;
     for_cells(transfer.glossy->lobes[static_cast<std::size_t>(lobe)], 0,
               [&](std::uint32_t cell, const std::array<double, BlockSize>& t) { cut[cell] = t; });
-    std::vector<double> squares(num_places), differences(num_places), sums(num_places), cut_sums(num_places);
+    std::vector<double> squares(num_places), differences(num_places), sums(num_places),
+        cut_sums(num_places);
     double reference = 0.0;
     for (const cubemap::Face face : cubemap::AllFaces)
         for (std::uint32_t y = 0; y < FaceResolution; ++y)
@@ -87,7 +88,8 @@ CutErrors errors_of(const Receivers& receivers, const Transfer& transfer, const 
                 const double dw = cubemap::solid_angle(x / r, y / r, (x + 1) / r, (y + 1) / r);
                 const std::array<double, BlockSize>* found = nullptr;
                 for (std::uint8_t level = 0; level <= 7 && found == nullptr; ++level) {
-                    const auto it = cut.find(cell_index({face, level, x >> (7u - level), y >> (7u - level)}));
+                    const auto it =
+                        cut.find(cell_index({face, level, x >> (7u - level), y >> (7u - level)}));
                     found = it == cut.end() ? nullptr : &it->second;
                 }
                 DirectionPacket packet;
@@ -95,11 +97,13 @@ CutErrors errors_of(const Receivers& receivers, const Transfer& transfer, const 
                 packet.set(0, w);
                 for (std::size_t place = 0; place < num_places; ++place) {
                     const std::uint32_t i = transfer.order[place];
-                    const double nothing_blocked = value_of(
-                        evaluate_lobes(receivers.surfaces[i], receivers.normals[i], receivers.to_eye[i], w),
-                        lobe);
-                    const double t =
-                        blockers.occluded(receivers.positions[i], packet, 1) != 0 ? 0.0 : nothing_blocked;
+                    const double nothing_blocked =
+                        value_of(evaluate_lobes(receivers.surfaces[i], receivers.normals[i],
+                                                receivers.to_eye[i], w),
+                                 lobe);
+                    const double t = blockers.occluded(receivers.positions[i], packet, 1) != 0
+                                         ? 0.0
+                                         : nothing_blocked;
                     const double of_cut = found == nullptr ? 0.0 : (*found)[place];
                     reference += dw * nothing_blocked * nothing_blocked;
                     differences[place] += dw * (t - of_cut) * (t - of_cut);
@@ -109,7 +113,8 @@ CutErrors errors_of(const Receivers& receivers, const Transfer& transfer, const 
             }
     CutErrors errors;
     errors.l2 = std::sqrt(std::accumulate(differences.begin(), differences.end(), 0.0) / reference);
-    errors.mean_integral = std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(num_places);
+    errors.mean_integral =
+        std::accumulate(sums.begin(), sums.end(), 0.0) / static_cast<double>(num_places);
     for (std::size_t place = 0; place < num_places; ++place)
         errors.integral = std::max(errors.integral, std::abs(cut_sums[place] - sums[place]));
     return errors;
@@ -122,7 +127,8 @@ TEST(GlossyPrecompute, CutsKeepTheToleranceWithNothingInTheWay) {
                                    Surface{.highlight = Highlight::Ggx, .shape = 1.0f},
                                    Surface{.highlight = Highlight::BlinnPhong, .shape = 60.0f}})
         for (const float tolerance : {0.1f, 0.03f}) {
-            SCOPED_TRACE(testing::Message() << "shape " << surface.shape << " tolerance " << tolerance);
+            SCOPED_TRACE(testing::Message()
+                         << "shape " << surface.shape << " tolerance " << tolerance);
             const Receivers receivers = fan(surface);
             const Transfer transfer = with_glossy(receivers, nothing, tolerance);
             const CutErrors errors = errors_of(receivers, transfer, nothing, GlossyLobe::Specular);
@@ -156,7 +162,8 @@ TEST(GlossyPrecompute, SharperHighlightsTakeFinerCellsNotMore) {
     GlossyStatistics broad;
     const Transfer a =
         with_glossy(fan({.highlight = Highlight::Ggx, .shape = 0.25f}), nothing, 0.05f, &sharp);
-    const Transfer b = with_glossy(fan({.highlight = Highlight::Ggx, .shape = 0.8f}), nothing, 0.05f, &broad);
+    const Transfer b =
+        with_glossy(fan({.highlight = Highlight::Ggx, .shape = 0.8f}), nothing, 0.05f, &broad);
     EXPECT_GT(a.glossy->deepest_level(), b.glossy->deepest_level());
     EXPECT_LT(sharp.num_entries, 6 * broad.num_entries);
 }
@@ -195,13 +202,13 @@ TEST(GlossyPrecompute, GoesOnFromEveryCheckpoint) {
         MemoryCheckpoint checkpoint;
         options.checkpoint = &checkpoint;
         checkpoint.saves_to_live = saves;
-        EXPECT_THROW(static_cast<void>(
-                         precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options)),
+        EXPECT_THROW(static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays,
+                                                         scene.transfer, options)),
                      Killed);
         checkpoint.saves_to_live = static_cast<std::size_t>(-1);
         GlossyStatistics statistics;
-        const GlossyTransfer again =
-            precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options, &statistics);
+        const GlossyTransfer again = precompute_glossy(scene.receivers, scene.diffuse.rays,
+                                                       scene.transfer, options, &statistics);
         EXPECT_EQ(statistics.num_rays, plain.num_rays);
         for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
             EXPECT_EQ(again.lobes[lobe].begin, scene.transfer.glossy->lobes[lobe].begin);
@@ -219,8 +226,9 @@ TEST(GlossyPrecompute, CellsOfABlockNeverOverlap) {
             std::uint64_t end = 0;
             for (std::size_t entry = cuts.begin[block]; entry < cuts.begin[block + 1]; ++entry) {
                 const std::uint32_t level = level_of_index(cuts.cells[entry]);
-                const std::uint64_t first = std::uint64_t{cuts.cells[entry] - num_cells_above(level)}
-                                            << 2 * (MaxLevel - level);
+                const std::uint64_t first =
+                    std::uint64_t{cuts.cells[entry] - num_cells_above(level)}
+                    << 2 * (MaxLevel - level);
                 EXPECT_GE(first, end);
                 end = first + (std::uint64_t{1} << 2 * (MaxLevel - level));
             }
@@ -235,9 +243,9 @@ TEST(GlossyPrecompute, StopsWhenAsked) {
     options.on_progress = [&](double) {
         stop.request_stop();
     };
-    EXPECT_THROW(
-        static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options)),
-        Cancelled);
+    EXPECT_THROW(static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays,
+                                                     scene.transfer, options)),
+                 Cancelled);
 }
 
 TEST(GlossyPrecompute, StopsAtItsLimitAndLeavesACheckpoint) {
@@ -275,9 +283,9 @@ TEST(GlossyPrecompute, ATrialForetellsTheEntries) {
 TEST(GlossyPrecompute, WhatDoesNotFitIsRefused) {
     const scenes::GlossyScene& scene = scenes::glossy_scene();
     const auto refused = [&](const Receivers& receivers, const GlossyOptions& options) {
-        EXPECT_THROW(
-            static_cast<void>(precompute_glossy(receivers, scene.diffuse.rays, scene.transfer, options)),
-            std::invalid_argument);
+        EXPECT_THROW(static_cast<void>(
+                         precompute_glossy(receivers, scene.diffuse.rays, scene.transfer, options)),
+                     std::invalid_argument);
     };
     Receivers no_eye = scene.receivers;
     no_eye.to_eye.clear();

@@ -27,7 +27,8 @@ struct RandomBlock {
             to_eye[i] = scenes::random_direction(random);
             const auto highlight = static_cast<Highlight>(random() % 3);
             surfaces[i] = {.highlight = highlight,
-                           .shape = highlight == Highlight::Ggx ? unit(random) : 200.0f * unit(random)};
+                           .shape =
+                               highlight == Highlight::Ggx ? unit(random) : 200.0f * unit(random)};
             block.set(i, surfaces[i], normals[i], to_eye[i]);
         }
     }
@@ -46,9 +47,9 @@ TEST(LobeKernel, EqualsThePlainLobesOnEveryTarget) {
                 w = scenes::random_direction(generator);
             // And where highlights are: the mirror directions.
             for (std::size_t i = 0; i < 8; ++i)
-                directions[i] =
-                    glm::normalize(2.0f * glm::dot(random.normals[i], random.to_eye[i]) * random.normals[i] -
-                                   random.to_eye[i] + 1e-3f * directions[i]);
+                directions[i] = glm::normalize(
+                    2.0f * glm::dot(random.normals[i], random.to_eye[i]) * random.normals[i] -
+                    random.to_eye[i] + 1e-3f * directions[i]);
             std::vector<BlockSurfaces::Floats> values(directions.size());
             for (const GlossyLobe lobe :
                  {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
@@ -56,9 +57,10 @@ TEST(LobeKernel, EqualsThePlainLobesOnEveryTarget) {
                 for (std::size_t d = 0; d < directions.size(); ++d)
                     for (std::size_t i = 0; i < BlockSize; ++i) {
                         const Lobes<float> plain = random.plain(i, directions[d]);
-                        const float expected = lobe == GlossyLobe::Specular          ? plain.specular
-                                               : lobe == GlossyLobe::SpecularGrazing ? plain.specular_grazing
-                                                                                     : plain.diffuse_grazing;
+                        const float expected = lobe == GlossyLobe::Specular ? plain.specular
+                                               : lobe == GlossyLobe::SpecularGrazing
+                                                   ? plain.specular_grazing
+                                                   : plain.diffuse_grazing;
                         EXPECT_NEAR(values[d][i], expected, 1e-4f * expected + 1e-6f)
                             << "receiver " << i << " direction " << d;
                     }

@@ -1,4 +1,5 @@
-// Surfaces from materials: each model's numbers, textures, vertex colours, and which triangle a vertex listens to.
+// Surfaces from materials: each model's numbers, textures, vertex colours, and which triangle a
+// vertex listens to.
 #include "prt/glossy/surface_sampling.h"
 
 #include <glm/geometric.hpp>
@@ -78,7 +79,8 @@ TEST(SurfaceSampling, TexturesAtBarycentricPlaces) {
     mesh::TriangleMesh mesh = square(material, material);
     mesh.textures = {two_texels({255, 0, 0}, {0, 0, 255}), two_texels({0, 0, 255}, {0, 255, 0})};
     mesh.uvs = {{0.25f, 0.5f}, {0.75f, 0.5f}, {0.25f, 0.5f}, {0.25f, 0.5f}, {0, 0}};
-    // At the second corner of triangle 0: the right texels; half way there from the first: both, evenly.
+    // At the second corner of triangle 0: the right texels; half way there from the first: both,
+    // evenly.
     const Surface corner = surface_at(mesh, 0, {1.0f, 0.0f});
     EXPECT_EQ(corner.shape, 0.5f) << "green is roughness";
     EXPECT_EQ(corner.albedo, glm::vec3(0.0f, 0.0f, 0.5f)) << "blue, metallic, is 0";
@@ -109,8 +111,8 @@ TEST(SurfaceSampling, VerticesListenToTheirLowestTriangle) {
     EXPECT_EQ(surfaces[3].albedo, glm::vec3(0.75f));
     EXPECT_EQ(surfaces[4], Surface{}) << "no triangle";
 
-    const std::vector<Surface> overridden =
-        vertex_surfaces(mesh, [](const mesh::TriangleMesh&, std::uint32_t triangle, const Surface& surface) {
+    const std::vector<Surface> overridden = vertex_surfaces(
+        mesh, [](const mesh::TriangleMesh&, std::uint32_t triangle, const Surface& surface) {
             Surface other = surface;
             if (triangle == 0)
                 other.albedo *= 2.0f;

@@ -45,11 +45,13 @@ TEST(PictureRays, LookingDownMinusZIsUp) {
 }
 
 TEST(PictureRays, RefusesWhatIsNoCamera) {
-    EXPECT_THROW(PictureRays({.eye = {1, 2, 3}, .target = {1, 2, 3}}, 2, 2, 1), std::invalid_argument);
+    EXPECT_THROW(PictureRays({.eye = {1, 2, 3}, .target = {1, 2, 3}}, 2, 2, 1),
+                 std::invalid_argument);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     EXPECT_THROW(PictureRays({.eye = {nan, 2, 3}}, 2, 2, 1), std::invalid_argument);
     for (const float fov : {0.0f, -20.0f, 180.0f, nan})
-        EXPECT_THROW(PictureRays({.eye = {1, 2, 3}, .fov_degrees = fov}, 2, 2, 1), std::invalid_argument);
+        EXPECT_THROW(PictureRays({.eye = {1, 2, 3}, .fov_degrees = fov}, 2, 2, 1),
+                     std::invalid_argument);
     EXPECT_THROW(PictureRays(FrontCamera, 0, 2, 1), std::invalid_argument);
     EXPECT_THROW(PictureRays(FrontCamera, 2, MaxPictureSize + 1, 1), std::invalid_argument);
     EXPECT_THROW(PictureRays(FrontCamera, 2, 2, 0), std::invalid_argument);

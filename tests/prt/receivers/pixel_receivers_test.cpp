@@ -21,11 +21,13 @@ PixelReceivers seen(const mesh::TriangleMesh& mesh, const PixelView& view) {
 
 TEST(PixelReceivers, CoverASpheresSilhouette) {
     const mesh::TriangleMesh sphere = scenes::icosphere(5, 1.0f, {0.3f, -0.2f, 0.1f});
-    const Camera camera{.eye = {0.3f, -0.2f, 4.1f}, .target = {0.3f, -0.2f, 0.1f}, .fov_degrees = 40.0f};
+    const Camera camera{
+        .eye = {0.3f, -0.2f, 4.1f}, .target = {0.3f, -0.2f, 0.1f}, .fov_degrees = 40.0f};
     const PixelReceivers pixels =
         seen(sphere, {.camera = camera, .width = 150, .height = 100, .samples_per_axis = 3});
     // A cone of half-angle asin(1/4) cuts a circle out of the picture's plane.
-    const double radius = std::tan(std::asin(0.25)) / std::tan(20.0 * std::numbers::pi / 180.0) * 50.0;
+    const double radius =
+        std::tan(std::asin(0.25)) / std::tan(20.0 * std::numbers::pi / 180.0) * 50.0;
     const double expected = std::numbers::pi * radius * radius;
     EXPECT_NEAR(static_cast<double>(pixels.receivers.size()) / 9.0, expected, 0.01 * expected);
     EXPECT_EQ(pixels.layout.num_samples(), 150u * 100u * 9u);
@@ -71,8 +73,9 @@ TEST(PixelReceivers, BackFacesTurnTheirNormals) {
 
 TEST(PixelReceivers, AnEyeInsideSeesAllAround) {
     const mesh::TriangleMesh sphere = scenes::icosphere(3, 2.0f, glm::vec3(0.0f));
-    const PixelReceivers pixels =
-        seen(sphere, {.camera = {.eye = {0.1f, 0.2f, 0.0f}, .target = {1, 1, 1}}, .width = 20, .height = 10});
+    const PixelReceivers pixels = seen(
+        sphere,
+        {.camera = {.eye = {0.1f, 0.2f, 0.0f}, .target = {1, 1, 1}}, .width = 20, .height = 10});
     EXPECT_EQ(pixels.receivers.size(), 200u);
     for (std::size_t i = 0; i < 200; ++i)
         EXPECT_GT(glm::dot(pixels.receivers.normals[i], pixels.receivers.to_eye[i]), 0.0f);
@@ -91,7 +94,8 @@ TEST(PixelReceivers, NormalsThatCancelAreTheFaces) {
 
 TEST(PixelReceivers, TheSameForAnyNumberOfThreads) {
     const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
-    const PixelView view{.camera = {.eye = {4, 3, 5}}, .width = 60, .height = 40, .samples_per_axis = 2};
+    const PixelView view{
+        .camera = {.eye = {4, 3, 5}}, .width = 60, .height = 40, .samples_per_axis = 2};
     const PixelReceivers all = seen(mesh, view);
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     const PixelReceivers alone = seen(mesh, view);
@@ -104,9 +108,10 @@ TEST(PixelReceivers, TheSameForAnyNumberOfThreads) {
 
 TEST(PixelReceivers, RefusesViewsOfNothing) {
     const mesh::TriangleMesh floor = scenes::floor_grid(4, 2.0f);
-    EXPECT_THROW(static_cast<void>(seen(
-                     floor, {.camera = {.eye = {0, 3, 0}, .target = {0, 4, 0}}, .width = 8, .height = 8})),
-                 std::invalid_argument);
+    EXPECT_THROW(
+        static_cast<void>(seen(
+            floor, {.camera = {.eye = {0, 3, 0}, .target = {0, 4, 0}}, .width = 8, .height = 8})),
+        std::invalid_argument);
     EXPECT_THROW(static_cast<void>(seen(floor, {.camera = {}, .width = 8, .height = 8})),
                  std::invalid_argument);
     EXPECT_THROW(static_cast<void>(seen(floor, {.camera = {.eye = {0, 3, 0}},

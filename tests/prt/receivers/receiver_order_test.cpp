@@ -20,8 +20,10 @@ Receivers random_receivers(std::size_t n, std::uint32_t seed, float zero_normals
     std::bernoulli_distribution zero(zero_normals);
     Receivers receivers;
     for (std::size_t i = 0; i < n; ++i) {
-        receivers.positions.emplace_back(coordinate(random), coordinate(random), coordinate(random));
-        receivers.normals.push_back(zero(random) ? glm::vec3(0.0f) : scenes::random_direction(random));
+        receivers.positions.emplace_back(coordinate(random), coordinate(random),
+                                         coordinate(random));
+        receivers.normals.push_back(zero(random) ? glm::vec3(0.0f)
+                                                 : scenes::random_direction(random));
     }
     return receivers;
 }
@@ -46,7 +48,8 @@ TEST(ReceiverOrder, IsAPermutationWithZeroNormalsLast) {
 }
 
 /// Mean distance of two receivers of the same block.
-double mean_distance(const std::vector<glm::vec3>& values, const std::vector<std::uint32_t>& order) {
+double mean_distance(const std::vector<glm::vec3>& values,
+                     const std::vector<std::uint32_t>& order) {
     double sum = 0.0;
     std::size_t num_pairs = 0;
     for (std::size_t begin = 0; begin + BlockSize <= order.size(); begin += BlockSize)
@@ -57,8 +60,8 @@ double mean_distance(const std::vector<glm::vec3>& values, const std::vector<std
 }
 
 TEST(ReceiverOrder, PutsNeighboursIntoABlock) {
-    // All face alike: then only the place counts. 256 blocks in a cube of side 10: cubes of side 1.57, in which the mean distance
-    // is 0.66 sides.
+    // All face alike: then only the place counts. 256 blocks in a cube of side 10: cubes of
+    // side 1.57, in which the mean distance is 0.66 sides.
     Receivers receivers = random_receivers(4096, 2, 0.0f);
     receivers.normals.assign(receivers.size(), glm::vec3(0.0f, 1.0f, 0.0f));
     EXPECT_LT(mean_distance(receivers.positions, spatial_order(receivers)), 1.5 * 0.66 * 1.57);
@@ -75,7 +78,8 @@ TEST(ReceiverOrder, PutsThoseThatFaceAlikeIntoABlock) {
 }
 
 TEST(ReceiverOrder, GroupsBeginAtMultiplesOfTheBlock) {
-    // 5 blocks and 3 receivers more, in clouds far from each other of 16 and 3: no block holds parts of two.
+    // 5 blocks and 3 receivers more, in clouds far from each other of 16 and 3: no block holds
+    // parts of two.
     Receivers receivers = random_receivers(5 * BlockSize + 3, 4, 0.0f);
     for (std::size_t i = 0; i < receivers.size(); ++i)
         receivers.positions[i].x =

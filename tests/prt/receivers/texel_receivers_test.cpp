@@ -14,7 +14,8 @@
 namespace relumine::prt {
 namespace {
 
-/// A rectangle of the plane y = 0, x = u and z = 1 - v, so that a texel's column and row are x and z.
+/// A rectangle of the plane y = 0, x = u and z = 1 - v, so that a texel's column and row are x and
+/// z.
 mesh::TriangleMesh rectangle(const glm::vec2& low, const glm::vec2& high) {
     mesh::TriangleMesh mesh;
     mesh.uvs = {{low.x, low.y}, {high.x, low.y}, {low.x, high.y}, {high.x, high.y}};
@@ -37,7 +38,8 @@ mesh::TriangleMesh together(mesh::TriangleMesh first, const mesh::TriangleMesh& 
 }
 
 TEST(TexelReceivers, OfAFullAtlasAreAtTexelCentres) {
-    const TexelReceivers texels = texel_receivers(rectangle({0, 0}, {1, 1}), {.width = 8, .height = 4});
+    const TexelReceivers texels =
+        texel_receivers(rectangle({0, 0}, {1, 1}), {.width = 8, .height = 4});
     ASSERT_EQ(texels.receivers.size(), 32u);
     EXPECT_EQ(texels.report.num_overlapping, 0u); // the diagonal goes through centres
     EXPECT_EQ(texels.report.num_borders, 0u);
@@ -45,7 +47,8 @@ TEST(TexelReceivers, OfAFullAtlasAreAtTexelCentres) {
     for (std::uint32_t i = 0; i < 32; ++i) {
         EXPECT_EQ(texels.layout.texels[i], i);
         const glm::vec3 expected((static_cast<float>(i % 8) + 0.5f) / 8.0f, 0.0f,
-                                 (static_cast<float>(i / 8) + 0.5f) / 4.0f); // the top row is at v = 1
+                                 (static_cast<float>(i / 8) + 0.5f) /
+                                     4.0f); // the top row is at v = 1
         EXPECT_LT(glm::length(texels.receivers.positions[i] - expected), 1e-6f) << i;
         EXPECT_EQ(texels.receivers.normals[i], glm::vec3(0, 1, 0));
     }
@@ -64,7 +67,8 @@ TEST(TexelReceivers, ChartsThatEndOnTexelBordersTouchNoNeighbours) {
 }
 
 TEST(TexelReceivers, TouchedTexelsGetTheNearestPointOfTheChart) {
-    // 2.25 texels wide from column 1.75: it touches columns 1 to 3, and holds the centres of 2 and 3.
+    // 2.25 texels wide from column 1.75: it touches columns 1 to 3, and holds the centres of 2
+    // and 3.
     const TexelReceivers texels =
         texel_receivers(rectangle({0.175f, 0.2f}, {0.4f, 0.5f}), {.width = 10, .height = 10});
     ASSERT_EQ(texels.receivers.size(), 9u);
@@ -88,8 +92,9 @@ TEST(TexelReceivers, AgreeWithBruteForceOnRandomTriangles) {
         mesh.triangles = {{0, 1, 2}};
         mesh.positions.resize(3);
         mesh.normals.resize(3);
-        mesh.uvs = {
-            {place(random), place(random)}, {place(random), place(random)}, {place(random), place(random)}};
+        mesh.uvs = {{place(random), place(random)},
+                    {place(random), place(random)},
+                    {place(random), place(random)}};
         for (std::size_t i = 0; i < 3; ++i)
             mesh.positions[i] = {mesh.uvs[i].x, 0.0f, 1.0f - mesh.uvs[i].y};
         // The nearest of many points of the triangle for each texel, and whether one lies within.
@@ -99,8 +104,8 @@ TEST(TexelReceivers, AgreeWithBruteForceOnRandomTriangles) {
             for (int b = 0; a + b <= Steps; ++b) {
                 const auto s = static_cast<float>(a) / Steps;
                 const auto t = static_cast<float>(b) / Steps;
-                const glm::vec3 p =
-                    (1.0f - s - t) * mesh.positions[0] + s * mesh.positions[1] + t * mesh.positions[2];
+                const glm::vec3 p = (1.0f - s - t) * mesh.positions[0] + s * mesh.positions[1] +
+                                    t * mesh.positions[2];
                 for (std::uint32_t i = 0; i < nearest.size(); ++i) {
                     const double dx = static_cast<double>(p.x) * Size - (i % Size + 0.5);
                     const double dz = static_cast<double>(p.z) * Size - (i / Size + 0.5);
@@ -115,8 +120,9 @@ TEST(TexelReceivers, AgreeWithBruteForceOnRandomTriangles) {
             const std::uint32_t texel = texels.layout.texels[i];
             found[texel] = true;
             const glm::vec3& p = texels.receivers.positions[i];
-            const double distance = std::hypot(static_cast<double>(p.x) * Size - (texel % Size + 0.5),
-                                               static_cast<double>(p.z) * Size - (texel / Size + 0.5));
+            const double distance =
+                std::hypot(static_cast<double>(p.x) * Size - (texel % Size + 0.5),
+                           static_cast<double>(p.z) * Size - (texel / Size + 0.5));
             EXPECT_LE(distance, nearest[texel] + 1e-4) << round << ' ' << texel;
             EXPECT_GE(distance, nearest[texel] - 0.05) << round << ' ' << texel;
             EXPECT_LT(nearest[texel], 0.5 * std::numbers::sqrt2 + 0.03) << round << ' ' << texel;
@@ -153,7 +159,8 @@ TEST(TexelReceivers, UvsOfCornersAreAsGoodAsThoseOfVertices) {
     const mesh::TriangleMesh by_vertex = rectangle({0.1f, 0.2f}, {0.9f, 0.7f});
     mesh::TriangleMesh by_corner = by_vertex;
     for (const mesh::Triangle& t : by_vertex.triangles)
-        by_corner.corner_uvs.push_back({by_vertex.uvs[t[0]], by_vertex.uvs[t[1]], by_vertex.uvs[t[2]]});
+        by_corner.corner_uvs.push_back(
+            {by_vertex.uvs[t[0]], by_vertex.uvs[t[1]], by_vertex.uvs[t[2]]});
     by_corner.uvs.clear();
     const TexelReceivers expected = texel_receivers(by_vertex, {.width = 16, .height = 16});
     const TexelReceivers actual = texel_receivers(by_corner, {.width = 16, .height = 16});
@@ -171,18 +178,22 @@ TEST(TexelReceivers, FlatTrianglesAndThoseOutsideAreCounted) {
     EXPECT_EQ(texels.report.num_outside, 2u);
     mesh.uvs[0] = {-1e30f, 0.0f};
     mesh.uvs[3] = {0.5f, 1e30f};
-    static_cast<void>(texel_receivers(mesh, {.width = 4, .height = 4})); // ends, and reads nothing outside
+    static_cast<void>(
+        texel_receivers(mesh, {.width = 4, .height = 4})); // ends, and reads nothing outside
 }
 
 TEST(TexelReceivers, RefusesMeshesThatHaveNone) {
     mesh::TriangleMesh mesh = rectangle({0.0f, 0.0f}, {1.0f, 1.0f});
-    EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 0, .height = 4})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 0, .height = 4})),
+                 std::invalid_argument);
     EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 16384, .height = 16384})),
                  std::invalid_argument);
     mesh.uvs.assign(4, glm::vec2(0.5f));
-    EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 4, .height = 4})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 4, .height = 4})),
+                 std::invalid_argument);
     mesh.uvs.clear();
-    EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 4, .height = 4})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(texel_receivers(mesh, {.width = 4, .height = 4})),
+                 std::invalid_argument);
 }
 
 } // namespace

@@ -33,8 +33,8 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    [[nodiscard]] CheckpointFile open(bool resume,
-                                      const Fingerprint& fingerprint = {{"mesh", "1"}, {"bias", "2"}}) {
+    [[nodiscard]] CheckpointFile open(bool resume, const Fingerprint& fingerprint = {
+                                                       {"mesh", "1"}, {"bias", "2"}}) {
         return {output_,
                 fingerprint,
                 {.resume = resume,
@@ -61,9 +61,9 @@ protected:
         return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
     }
 
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        (std::string("checkpoint_file_") + testing::UnitTest::GetInstance()->current_test_info()->name());
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       (std::string("checkpoint_file_") +
+                        testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::path output_ = folder_ / "out.prt";
     fs::path checkpoint_ = folder_ / "out.prt.checkpoint";
     std::vector<std::string> problems_;
@@ -116,7 +116,8 @@ TEST_F(CheckpointFileTest, OtherWorkIsRefusedByTheNameOfWhatDiffers) {
     EXPECT_EQ(refusal({{"mesh", "1"}, {"bias", "2"}}), "accepted");
     EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "3"}}).find("(bias 3), got another's (bias 2)"),
               std::string::npos);
-    EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "2"}, {"eye", "4"}}).find("(eye 4)"), std::string::npos);
+    EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "2"}, {"eye", "4"}}).find("(eye 4)"),
+              std::string::npos);
     EXPECT_NE(refusal({{"mesh", "1"}}).find("got one with highlights"), std::string::npos);
     files::save_text(checkpoint_ / "run.json", "{\"mesh\": ");
     EXPECT_NE(refusal({{"mesh", "1"}}).find("run.json: expected a checkpoint, got damaged data"),
@@ -134,7 +135,8 @@ TEST_F(CheckpointFileTest, AnyFlippedBitIsRefused) {
             file.write(bytes);
             file.commit();
             CheckpointFile checkpoint = open(true);
-            EXPECT_THROW(static_cast<void>(checkpoint.load("a", true)), std::runtime_error) << name << i;
+            EXPECT_THROW(static_cast<void>(checkpoint.load("a", true)), std::runtime_error)
+                << name << i;
         }
         files::OutputFile file(checkpoint_ / name);
         file.write(whole);

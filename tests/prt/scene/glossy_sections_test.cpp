@@ -24,15 +24,16 @@ protected:
         scene_.settings.glossy_tolerance = 0.05f;
         scene_.settings.view =
             Camera{.eye = {1.5f, 2.5f, 3.0f}, .target = {0.0f, 0.5f, 0.0f}, .fov_degrees = 30.0f};
-        path_ =
-            std::filesystem::path(testing::TempDir()) /
-            (std::string("glossy_") + testing::UnitTest::GetInstance()->current_test_info()->name() + ".prt");
+        path_ = std::filesystem::path(testing::TempDir()) /
+                (std::string("glossy_") +
+                 testing::UnitTest::GetInstance()->current_test_info()->name() + ".prt");
         save_scene(path_, scene_);
     }
     ~GlossySections() override { std::filesystem::remove(path_); }
 
     /// Loading fails after `change` to one section, and says so.
-    void refused(const std::string& section, const std::function<void(std::vector<std::byte>&)>& change,
+    void refused(const std::string& section,
+                 const std::function<void(std::vector<std::byte>&)>& change,
                  const std::string& reason = "") {
         Sections sections = read_sections(path_);
         change(sections.at(section));
@@ -72,7 +73,8 @@ TEST_F(GlossySections, DamageIsFound) {
     };
     refused("g_specular_b", put(0, std::uint64_t{1}));
     refused("g_specular_b", put(8, ~std::uint64_t{0}));
-    refused("g_spec_grazing_b", [](std::vector<std::byte>& bytes) { bytes.resize(bytes.size() - 8); });
+    refused("g_spec_grazing_b",
+            [](std::vector<std::byte>& bytes) { bytes.resize(bytes.size() - 8); });
     refused("g_specular_v", [](std::vector<std::byte>& bytes) { bytes.pop_back(); });
     refused("g_specular_s", [](std::vector<std::byte>& bytes) { bytes.resize(bytes.size() - 4); });
     // The highest plane of all scales' bytes: exponents that make NaN or infinity.
@@ -81,11 +83,14 @@ TEST_F(GlossySections, DamageIsFound) {
                   std::byte{0xff});
     });
     refused("g_diff_grazing_c", [](std::vector<std::byte>& bytes) { bytes.pop_back(); });
-    // All differences zero: the same cell again and again; all ones: cells beyond the deepest level.
-    refused("g_specular_c",
-            [](std::vector<std::byte>& bytes) { std::fill(bytes.begin(), bytes.end(), std::byte{0}); });
-    refused("g_specular_c",
-            [](std::vector<std::byte>& bytes) { std::fill(bytes.begin(), bytes.end(), std::byte{0xfe}); });
+    // All differences zero: the same cell again and again; all ones: cells beyond the deepest
+    // level.
+    refused("g_specular_c", [](std::vector<std::byte>& bytes) {
+        std::fill(bytes.begin(), bytes.end(), std::byte{0});
+    });
+    refused("g_specular_c", [](std::vector<std::byte>& bytes) {
+        std::fill(bytes.begin(), bytes.end(), std::byte{0xfe});
+    });
 }
 
 TEST_F(GlossySections, AnEyeIsNeeded) {

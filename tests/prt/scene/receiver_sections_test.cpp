@@ -31,11 +31,12 @@ void precompute(Scene& scene) {
 Scene pixel_scene() {
     Scene scene;
     scene.mesh = scenes::box(glm::vec3(-1.0f), glm::vec3(1.0f));
-    PixelReceivers pixels = pixel_receivers(scene.mesh, RayScene(scene.mesh),
-                                            {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f},
-                                             .width = 11,
-                                             .height = 7,
-                                             .samples_per_axis = 3});
+    PixelReceivers pixels =
+        pixel_receivers(scene.mesh, RayScene(scene.mesh),
+                        {.camera = {.eye = {3.1f, 2.2f, 4.3f}, .fov_degrees = 33.3f},
+                         .width = 11,
+                         .height = 7,
+                         .samples_per_axis = 3});
     scene.receivers = std::move(pixels.receivers);
     scene.layout = std::move(pixels.layout);
     precompute(scene);
@@ -98,13 +99,14 @@ protected:
     void refused(const Sections& good, const std::string& name, std::size_t index,
                  const Element& element) const {
         refused(good, "'" + name + "'", [&](Sections& sections) {
-            std::memcpy(sections.at(name).data() + index * sizeof(Element), &element, sizeof(Element));
+            std::memcpy(sections.at(name).data() + index * sizeof(Element), &element,
+                        sizeof(Element));
         });
     }
 
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        ("receiver_sections_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       ("receiver_sections_" +
+                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "scene.prt";
 };
 
@@ -132,8 +134,8 @@ TEST_F(ReceiverSectionsTest, PlainVerticesAddNothing) {
     std::vector<std::string> names;
     for (const auto& [name, bytes] : read_sections(file_))
         names.push_back(name);
-    EXPECT_EQ(names, (std::vector<std::string>{"counts", "mixed", "normals", "order", "positions", "quadtree",
-                                               "settings", "triangles", "visible"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"counts", "mixed", "normals", "order", "positions",
+                                               "quadtree", "settings", "triangles", "visible"}));
     const Scene loaded = load_scene(file_);
     EXPECT_EQ(loaded.layout, ReceiverLayout(VertexLayout{}));
     expect_same(loaded.receivers, scene.receivers);
@@ -166,7 +168,8 @@ TEST_F(ReceiverSectionsTest, RefusesToSaveWhatDoesNotBelongTogether) {
     refused_by([](Scene& s) { std::get<PixelLayout>(s.layout).samples.pop_back(); });
     refused_by([](Scene& s) { std::get<PixelLayout>(s.layout).samples.back() = 11 * 7 * 9; });
     refused_by([](Scene& s) {
-        std::swap(std::get<PixelLayout>(s.layout).samples[0], std::get<PixelLayout>(s.layout).samples[1]);
+        std::swap(std::get<PixelLayout>(s.layout).samples[0],
+                  std::get<PixelLayout>(s.layout).samples[1]);
     });
     refused_by([](Scene& s) { s.layout = VertexLayout{}; });
     refused_by([](Scene& s) { s.transfer.order.pop_back(); });
@@ -177,8 +180,8 @@ TEST_F(ReceiverSectionsTest, MissingAndShortSections) {
     add_surfaces(scene);
     save_scene(file_, scene);
     const Sections good = read_sections(file_);
-    for (const char* name : {"layout_mask", "r_positions", "r_normals", "r_triangles", "r_barycentric",
-                             "r_specular", "r_highlight", "r_shape"})
+    for (const char* name : {"layout_mask", "r_positions", "r_normals", "r_triangles",
+                             "r_barycentric", "r_specular", "r_highlight", "r_shape"})
         refused(good, std::string("expected a section '") + name + "', got none",
                 [&](Sections& s) { s.erase(name); });
     for (const char* name : {"layout_mask", "r_positions", "r_normals", "r_to_eye", "r_triangles",
@@ -203,8 +206,8 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     save_scene(file_, scene);
     const Sections good = read_sections(file_);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (const char* name :
-         {"r_positions", "r_normals", "r_to_eye", "r_albedo", "r_specular", "r_shape", "r_barycentric"}) {
+    for (const char* name : {"r_positions", "r_normals", "r_to_eye", "r_albedo", "r_specular",
+                             "r_shape", "r_barycentric"}) {
         refused(good, name, 5, nan);
         refused(good, name, 4, std::numeric_limits<float>::infinity());
     }
@@ -228,8 +231,9 @@ TEST_F(ReceiverSectionsTest, LayoutsThatAreNone) {
     save_scene(file_, pixel_scene());
     const Sections good = read_sections(file_);
     const auto layout = [&](const std::string& text, const std::string& reason = "'layout'") {
-        refused(good, reason,
-                [&](Sections& s) { s.at("layout") = bytes_of(std::vector<char>(text.begin(), text.end())); });
+        refused(good, reason, [&](Sections& s) {
+            s.at("layout") = bytes_of(std::vector<char>(text.begin(), text.end()));
+        });
     };
     const auto pixels = [](const std::string& changed, const std::string& value) {
         std::string text = "{\"kind\": \"pixels\"";
@@ -243,9 +247,10 @@ TEST_F(ReceiverSectionsTest, LayoutsThatAreNone) {
             text += ", \"" + name + "\": " + (name == changed ? value : content);
         return text + "}";
     };
-    for (const char* text : {"", "{}", "[]", "7", "null", "{\"kind\": 3}", "{\"kind\": \"vertices\"}",
-                             "{\"kind\": \"texels\"}", "{\"kind\": \"texels\", \"width\": 0, \"height\": 4}",
-                             "{\"kind\": \"texels\", \"width\": 4294967296, \"height\": 4}"})
+    for (const char* text :
+         {"", "{}", "[]", "7", "null", "{\"kind\": 3}", "{\"kind\": \"vertices\"}",
+          "{\"kind\": \"texels\"}", "{\"kind\": \"texels\", \"width\": 0, \"height\": 4}",
+          "{\"kind\": \"texels\", \"width\": 4294967296, \"height\": 4}"})
         layout(text);
     for (const char* name : {"width", "height", "samples_per_axis"})
         for (const char* value : {"0", "-1", "1.5", "4000000000", "\"7\"", "null"})

@@ -63,7 +63,8 @@ Scene tiny_scene() {
 bool same(const Scene& a, const Scene& b) {
     const SceneSettings &s = a.settings, &t = b.settings;
     return a.mesh.positions == b.mesh.positions && a.mesh.triangles == b.mesh.triangles &&
-           a.mesh.normals == b.mesh.normals && a.mesh.colors == b.mesh.colors && a.mesh.uvs == b.mesh.uvs &&
+           a.mesh.normals == b.mesh.normals && a.mesh.colors == b.mesh.colors &&
+           a.mesh.uvs == b.mesh.uvs &&
            a.transfer.quadtree.split_flags() == b.transfer.quadtree.split_flags() &&
            a.transfer.order == b.transfer.order && a.transfer.normals == b.transfer.normals &&
            a.transfer.counts.num_receivers == b.transfer.counts.num_receivers &&
@@ -72,8 +73,9 @@ bool same(const Scene& a, const Scene& b) {
            a.transfer.counts.mixed == b.transfer.counts.mixed &&
            a.transfer.counts.mixed_before == b.transfer.counts.mixed_before &&
            a.transfer.counts.counts == b.transfer.counts.counts && s.tolerance == t.tolerance &&
-           s.epsilon == t.epsilon && s.min_level == t.min_level && s.face_resolution == t.face_resolution &&
-           s.bias == t.bias && s.floor_vertices == t.floor_vertices && s.source == t.source &&
+           s.epsilon == t.epsilon && s.min_level == t.min_level &&
+           s.face_resolution == t.face_resolution && s.bias == t.bias &&
+           s.floor_vertices == t.floor_vertices && s.source == t.source &&
            s.source_hash == t.source_hash;
 }
 
@@ -86,9 +88,9 @@ protected:
         scenes::expect_refused(file_, reason, [&] { static_cast<void>(load_scene(file_)); });
     }
 
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        ("scene_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       ("scene_file_" +
+                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "scene.prt";
 };
 
@@ -132,8 +134,8 @@ TEST_F(SceneFileTest, EveryCorruptByteIsRefusedOrHarmless) {
     const std::vector<std::byte> bytes = files::read(file_);
     std::mt19937 random(2);
     for (std::size_t i = 0; i < bytes.size(); ++i)
-        for (const unsigned change :
-             {1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 255u, 1u + static_cast<unsigned>(random() % 255u)}) {
+        for (const unsigned change : {1u, 2u, 4u, 8u, 16u, 32u, 64u, 128u, 255u,
+                                      1u + static_cast<unsigned>(random() % 255u)}) {
             scenes::put_byte(file_, i, bytes[i] ^ static_cast<std::byte>(change));
             try {
                 EXPECT_TRUE(same(load_scene(file_), scene)) << "byte " << i;
@@ -185,7 +187,8 @@ TEST_F(ForgedSceneTest, MissingSections) {
     for (const auto& [name, bytes] : good_) {
         if (name == "colors" || name == "uvs")
             continue; // these two may be absent
-        refused("expected a section '" + name + "', got none", [&, n = name](Sections& s) { s.erase(n); });
+        refused("expected a section '" + name + "', got none",
+                [&, n = name](Sections& s) { s.erase(n); });
     }
     Sections sections = good_;
     sections.erase("colors");
@@ -220,9 +223,11 @@ TEST_F(ForgedSceneTest, SizesThatContradictEachOther) {
 }
 
 TEST_F(ForgedSceneTest, IndicesAndNumbersOutOfRange) {
-    const auto num_vertices = static_cast<std::uint32_t>(good_.at("positions").size() / sizeof(glm::vec3));
+    const auto num_vertices =
+        static_cast<std::uint32_t>(good_.at("positions").size() / sizeof(glm::vec3));
     for (const std::uint32_t index : {num_vertices, ~0u})
-        refused<std::uint32_t>("'triangles'", "triangles", [&](auto& t) { t[t.size() / 2] = index; });
+        refused<std::uint32_t>("'triangles'", "triangles",
+                               [&](auto& t) { t[t.size() / 2] = index; });
     for (const float value :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
         refused<glm::vec3>("'positions'", "positions", [&](auto& p) { p[7].y = value; });
@@ -281,7 +286,8 @@ TEST_F(ForgedSceneTest, SettingsThatAreNone) {
             {"floor_vertices", "0"}, {"source", "\"\""}, {"source_hash", "\"00ff\""}};
         std::string text;
         for (auto& [key, content] : members)
-            text += (text.empty() ? "{\"" : ", \"") + key + "\": " + (key == name ? value : content);
+            text +=
+                (text.empty() ? "{\"" : ", \"") + key + "\": " + (key == name ? value : content);
         return text + "}";
     };
     settings(with("tolerance", "\"much\""));
@@ -324,7 +330,8 @@ TEST_F(SceneFileTest, TheCheckNamesWhatIsUnsound) {
         how(scene);
         scenes::expect_refused(file_, reason, [&] { check_scene(scene, file_); });
     };
-    unsound("normals of length 1 or 0, got element 7", [](Scene& s) { s.mesh.normals[7] *= 1.01f; });
+    unsound("normals of length 1 or 0, got element 7",
+            [](Scene& s) { s.mesh.normals[7] *= 1.01f; });
     unsound("colours >= 0, got element 3", [](Scene& s) {
         std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
         s.mesh.colors[3].g = -1.0f;
@@ -332,7 +339,8 @@ TEST_F(SceneFileTest, TheCheckNamesWhatIsUnsound) {
     const auto with_colours = [](Scene& s) {
         std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
     };
-    const auto setting = [&](const std::string& reason, const std::function<void(SceneSettings&)>& how) {
+    const auto setting = [&](const std::string& reason,
+                             const std::function<void(SceneSettings&)>& how) {
         unsound(reason, [&](Scene& s) {
             with_colours(s);
             how(s.settings);
@@ -364,7 +372,8 @@ TEST_F(SceneFileTest, NothingToLoad) {
 
 TEST_F(SceneFileTest, FileHashIsXxHash64OfTheBytes) {
     std::ofstream(file_) << "abc";
-    EXPECT_EQ(file_hash(file_), 0x44bc2cf5ad770999u); // published test value of XXH64("abc", seed 0)
+    EXPECT_EQ(file_hash(file_),
+              0x44bc2cf5ad770999u); // published test value of XXH64("abc", seed 0)
     EXPECT_THROW(static_cast<void>(file_hash(folder_ / "nothing")), std::runtime_error);
 }
 

@@ -28,15 +28,16 @@ protected:
 
     void write(const std::vector<std::byte>& bytes) const {
         std::ofstream(file_, std::ios::binary)
-            .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+            .write(reinterpret_cast<const char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()));
     }
     void expect_refused(const std::string& reason) const {
         scenes::expect_refused(file_, reason, [&] { static_cast<void>(read_sections(file_)); });
     }
 
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        ("section_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       ("section_file_" +
+                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "scene.prt";
 };
 
@@ -103,7 +104,8 @@ TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
     write_sections(file_, {{"abc", text("hello")}});
     const std::vector<std::byte> bytes = files::read(file_);
     EXPECT_EQ(std::memcmp(bytes.data(), "RELUMINE", 8), 0);
-    const std::vector<std::byte> little_endian(bytes.begin() + ByteOrderAt, bytes.begin() + VersionAt);
+    const std::vector<std::byte> little_endian(bytes.begin() + ByteOrderAt,
+                                               bytes.begin() + VersionAt);
     EXPECT_EQ(little_endian, (std::vector{std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}}));
     EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), 2u);
     EXPECT_EQ(value_at<std::uint64_t>(bytes, FileSizeAt), bytes.size());
@@ -185,7 +187,8 @@ TEST_F(SectionFileTest, SaysWhatIsWrong) {
     std::mt19937 random(2);
     for (int round = 0; round < 200; ++round) {
         std::vector<std::byte> garbage(random() % 500);
-        std::generate(garbage.begin(), garbage.end(), [&] { return static_cast<std::byte>(random()); });
+        std::generate(garbage.begin(), garbage.end(),
+                      [&] { return static_cast<std::byte>(random()); });
         if (round % 2 == 0 && garbage.size() > 8)
             std::memcpy(garbage.data(), "RELUMINE", 8);
         write(garbage);
@@ -205,7 +208,8 @@ TEST_F(SectionFileTest, RefusesForgedTables) {
         write(bad);
         expect_refused("");
     };
-    for (const std::uint64_t value : {std::uint64_t{1} << 40, ~std::uint64_t{0}, ~std::uint64_t{0} - 40}) {
+    for (const std::uint64_t value :
+         {std::uint64_t{1} << 40, ~std::uint64_t{0}, ~std::uint64_t{0} - 40}) {
         forged([&](auto& b) { put(b, HeaderSize + OffsetAt, value); });
         forged([&](auto& b) { put(b, HeaderSize + StoredSizeAt, value); });
         forged([&](auto& b) { put(b, HeaderSize + SizeAt, value); });
@@ -216,8 +220,9 @@ TEST_F(SectionFileTest, RefusesForgedTables) {
         put(b, NumSectionsAt, std::uint32_t{1}), put(b, HeaderSize + OffsetAt, std::uint64_t{0});
     });
     // Two sections of one name.
-    forged(
-        [](auto& b) { std::copy_n(b.begin() + HeaderSize, EntrySize, b.begin() + HeaderSize + EntrySize); });
+    forged([](auto& b) {
+        std::copy_n(b.begin() + HeaderSize, EntrySize, b.begin() + HeaderSize + EntrySize);
+    });
     // Content that is not zstd, rightly signed.
     forged([](auto& b) {
         const auto offset = value_at<std::uint64_t>(b, HeaderSize + OffsetAt);
@@ -237,7 +242,8 @@ TEST_F(SectionFileTest, WhatIsHardlyBelievableIsReadPiecewise) {
     std::vector<std::byte> lie = files::read(file_);
     const auto offset = value_at<std::uint64_t>(lie, HeaderSize + OffsetAt);
     const std::uint64_t claimed = 0x60000000; // 1.5 GB
-    // zstd's magic number, a frame header with nothing but the size in four bytes, five bytes of one last raw block.
+    // zstd's magic number, a frame header with nothing but the size in four bytes, five bytes of
+    // one last raw block.
     std::vector<std::byte> frame = text(std::string("\x28\xb5\x2f\xfd\xa0????\x29\0\0hello", 17));
     put(frame, 5, static_cast<std::uint32_t>(claimed));
     frame.resize(20000); // so that the ratio is below the largest
@@ -258,7 +264,8 @@ TEST_F(SectionFileTest, UnwritablePlacesLeaveNothing) {
     fs::create_directories(folder_ / "folder.prt");
     const fs::path folder = folder_ / "folder.prt";
     scenes::expect_refused(folder, "cannot write", [&] { write_sections(folder, examples()); });
-    EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder_), fs::recursive_directory_iterator()),
+    EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder_),
+                            fs::recursive_directory_iterator()),
               1);
 }
 

@@ -64,7 +64,8 @@ struct Tally {
     std::size_t num_blocked = 0;
 };
 
-/// Blocks of receivers of all sizes through patches of all widths, patch by patch and direction by direction: the very bits of the ray tracer.
+/// Blocks of receivers of all sizes through patches of all widths, patch by patch and direction by
+/// direction: the very bits of the ray tracer.
 Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& origins,
               const std::vector<glm::vec3>& normals, std::uint32_t seed, int rounds) {
     const RayScene rays(mesh);
@@ -73,7 +74,8 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
     std::mt19937 random(seed);
     Tally tally;
     for (int round = 0; round < rounds; ++round) {
-        const std::size_t size = std::min<std::size_t>(origins.size(), 1 + random() % ReceiverBlock::MaxSize);
+        const std::size_t size =
+            std::min<std::size_t>(origins.size(), 1 + random() % ReceiverBlock::MaxSize);
         const std::size_t first = random() % (origins.size() - size + 1);
         const glm::vec3 hint = round % 5 == 0 ? glm::vec3(0.0f) : normals[first];
         const DirectionPatch patch = any_patch(random);
@@ -120,13 +122,15 @@ mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, float scale, const glm::
 
 /// A fine floor, which becomes two triangles, with things on it that touch and pierce it.
 mesh::TriangleMesh things_on_a_floor() {
-    mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(33, 4.0f),
-                                             scenes::icosphere(3, 0.5f, glm::vec3(0.2f, 0.4f, -0.1f)));
-    mesh = scenes::joined(mesh, scenes::box(glm::vec3(-1.0f, 0.0f, 0.25f), glm::vec3(-0.5f, 1.0f, 0.75f)));
+    mesh::TriangleMesh mesh = scenes::joined(
+        scenes::floor_grid(33, 4.0f), scenes::icosphere(3, 0.5f, glm::vec3(0.2f, 0.4f, -0.1f)));
+    mesh = scenes::joined(
+        mesh, scenes::box(glm::vec3(-1.0f, 0.0f, 0.25f), glm::vec3(-0.5f, 1.0f, 0.75f)));
     return scenes::joined(mesh, scenes::icosphere(1, 0.3f, glm::vec3(1.0f, 1.0f, 1.0f)));
 }
 
-/// A plane of squares whose right edge goes over into a bent sheet: the flat part merges, the seam has T-junctions.
+/// A plane of squares whose right edge goes over into a bent sheet: the flat part merges, the seam
+/// has T-junctions.
 mesh::TriangleMesh flat_sheet_that_bends() {
     mesh::TriangleMesh mesh = scenes::floor_grid(17, 2.0f);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -167,9 +171,10 @@ TEST(BeamScene, AnswersAsTheRayTracerDoesAmongRandomTriangles) {
 
 TEST(BeamScene, AnswersAsTheRayTracerDoesWhereSurfacesMeet) {
     compare_at_vertices(flat_sheet_that_bends(), 6, 2000);
-    compare_at_vertices(scenes::joined(flat_sheet_that_bends(), scenes::box(glm::vec3(-0.9f, 0.0f, -0.9f),
-                                                                            glm::vec3(0.0f, 0.5f, 0.0f))),
-                        7, 2000);
+    compare_at_vertices(
+        scenes::joined(flat_sheet_that_bends(),
+                       scenes::box(glm::vec3(-0.9f, 0.0f, -0.9f), glm::vec3(0.0f, 0.5f, 0.0f))),
+        7, 2000);
     // From the vertices themselves, without a lift: every ray starts on the edges of six triangles.
     const mesh::TriangleMesh mesh = things_on_a_floor();
     compare(mesh, mesh.positions, mesh.normals, 8, 1500);
@@ -187,11 +192,15 @@ TEST(BeamScene, AnswersAsTheRayTracerDoesAtAnyScaleAndPlace) {
 TEST(BeamScene, TreatsDegenerateTrianglesAsTheRayTracerDoes) {
     mesh::TriangleMesh mesh = things_on_a_floor();
     const auto n = static_cast<std::uint32_t>(mesh.num_vertices());
-    mesh.positions.insert(mesh.positions.end(),
-                          {{0, 1, 0}, {1, 2, 1}, {0.5f, 1.5f, 0.5f}, {0, 1, 0}, {0.5f, 1.5f, 0.50001f}});
+    mesh.positions.insert(
+        mesh.positions.end(),
+        {{0, 1, 0}, {1, 2, 1}, {0.5f, 1.5f, 0.5f}, {0, 1, 0}, {0.5f, 1.5f, 0.50001f}});
     mesh.normals.resize(mesh.positions.size(), glm::vec3(0, 1, 0));
-    for (const mesh::Triangle& triangle :
-         {mesh::Triangle{n, n, n}, {n, n + 1, n}, {n, n + 1, n + 2}, {n, n + 3, n + 1}, {n, n + 1, n + 4}})
+    for (const mesh::Triangle& triangle : {mesh::Triangle{n, n, n},
+                                           {n, n + 1, n},
+                                           {n, n + 1, n + 2},
+                                           {n, n + 3, n + 1},
+                                           {n, n + 1, n + 4}})
         mesh.triangles.push_back(triangle);
     compare_at_vertices(mesh, 12, 1000);
 }
@@ -223,23 +232,27 @@ TEST(BeamScene, AsksTheRayTracerOnlyWhereItMust) {
             std::vector<glm::vec3> lifted;
             for (std::size_t i = 0; i < std::min(origins.size(), ReceiverBlock::MaxSize); ++i)
                 lifted.push_back(origins[i] + glm::vec3(0.0137f, 0.001f, 0.0071f)); // off the edges
-            const DirectionPatch patch = lattice_patch({.face = cubemap::Face::PositiveY,
-                                                        .level = 4,
-                                                        .x = static_cast<std::uint32_t>(random() % 16),
-                                                        .y = static_cast<std::uint32_t>(random() % 16)},
-                                                       8);
+            const DirectionPatch patch =
+                lattice_patch({.face = cubemap::Face::PositiveY,
+                               .level = 4,
+                               .x = static_cast<std::uint32_t>(random() % 16),
+                               .y = static_cast<std::uint32_t>(random() % 16)},
+                              8);
             std::vector<std::uint64_t> lit(lifted.size(), all_of(patch));
             num_rays += 64 * lifted.size();
             beams.clear_blocked({lifted, {0, 1, 0}}, patch, lit);
         }
         EXPECT_GT(num_rays, 1000000u);
-        EXPECT_LT(static_cast<double>(counting.rays().size()), 0.01 * static_cast<double>(num_rays));
+        EXPECT_LT(static_cast<double>(counting.rays().size()),
+                  0.01 * static_cast<double>(num_rays));
     }
 }
 
-// What the doubts of a fine mesh far from its receivers are: triangles a thousand times smaller than their distance.
+// What the doubts of a fine mesh far from its receivers are: triangles a thousand times smaller
+// than their distance.
 TEST(BeamScene, AsksTheRayTracerRarelyOnFineMeshes) {
-    const mesh::TriangleMesh fine = scenes::icosphere(6, 1.0f, glm::vec3(0.0f, 0.0f, 20.0f)); // edges of 0.02
+    const mesh::TriangleMesh fine =
+        scenes::icosphere(6, 1.0f, glm::vec3(0.0f, 0.0f, 20.0f)); // edges of 0.02
     const RayScene rays(fine);
     const scenes::CountingBlockers counting(rays);
     const BeamScene beams(fine, counting, 0);
@@ -251,7 +264,8 @@ TEST(BeamScene, AsksTheRayTracerRarelyOnFineMeshes) {
     for (int round = 0; round < 20; ++round) {
         DirectionPatch patch;
         while (!patch.full())
-            patch.add(glm::normalize(glm::vec3(0.0f, 0.0f, 20.0f) + scenes::random_direction(random)));
+            patch.add(
+                glm::normalize(glm::vec3(0.0f, 0.0f, 20.0f) + scenes::random_direction(random)));
         std::vector<std::uint64_t> lit(origins.size(), all_of(patch)), expected = lit;
         beams.clear_blocked({origins, {0, 0, 1}}, patch, lit);
         rays.clear_blocked({origins, {0, 0, 1}}, patch, expected);

@@ -15,7 +15,8 @@ namespace {
 
 using Corners = std::array<glm::dvec3, 3>;
 
-/// The least distance of the half-line's points from the triangle's, among those of fine grids on both.
+/// The least distance of the half-line's points from the triangle's, among those of fine grids on
+/// both.
 double sampled_distance(const Corners& corners, const glm::dvec3& w) {
     constexpr int Steps = 60;
     double least = 1e9;

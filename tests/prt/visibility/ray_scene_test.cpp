@@ -23,8 +23,8 @@ struct PlainHit {
     glm::dvec2 barycentric{0.0};
 };
 
-/// Moeller and Trumbore's intersection in double with every triangle; `doubtful` when the ray passes an edge of one so
-/// closely that rounding decides.
+/// Moeller and Trumbore's intersection in double with every triangle; `doubtful` when the ray
+/// passes an edge of one so closely that rounding decides.
 PlainHit plain_closest_hit(const mesh::TriangleMesh& mesh, const glm::dvec3& origin,
                            const glm::dvec3& direction, double close, bool& doubtful) {
     PlainHit closest;
@@ -78,7 +78,8 @@ TEST(RayScene, PacketsAnswerAsSingleRaysDo) {
     for (int round = 0; round < 3000; ++round) {
         const glm::vec3 origin(coordinate(random), coordinate(random), coordinate(random));
         const float spread = round % 3 == 0 ? 0.01f : round % 3 == 1 ? 0.3f : 5.0f;
-        const DirectionPacket packet = packet_around(random, scenes::random_direction(random), spread);
+        const DirectionPacket packet =
+            packet_around(random, scenes::random_direction(random), spread);
         const std::uint32_t active = random() & 0xffffu;
         const std::uint32_t blocked = scene.occluded(origin, packet, active);
         EXPECT_EQ(blocked & ~active, 0u);
@@ -95,9 +96,11 @@ TEST(RayScene, PacketsAnswerAsSingleRaysDo) {
     EXPECT_GT(num_free, 5000u);
 }
 
-/// Rays against the soup scaled and moved; `close` is the width of an edge in barycentric coordinates inside of which float
-/// rounding may decide, `accuracy` the distance error allowed in units of the soup.
-void compare_with_every_triangle(float scale, const glm::vec3& offset, double close, double accuracy) {
+/// Rays against the soup scaled and moved; `close` is the width of an edge in barycentric
+/// coordinates inside of which float rounding may decide, `accuracy` the distance error allowed in
+/// units of the soup.
+void compare_with_every_triangle(float scale, const glm::vec3& offset, double close,
+                                 double accuracy) {
     const mesh::TriangleMesh soup = transformed(scenes::triangle_soup(80, 3), scale, offset);
     const RayScene scene(soup);
     std::mt19937 random(4);
@@ -128,15 +131,16 @@ void compare_with_every_triangle(float scale, const glm::vec3& offset, double cl
 }
 
 TEST(RayScene, ClosestHitIsThatOfTryingEveryTriangle) {
-    // Float geometry of size 1: 2^-24 over the sine of grazing angles and of thin triangles, hence 1e-3.
+    // Float geometry of size 1: 2^-24 over the sine of grazing angles and of thin triangles, hence
+    // 1e-3.
     compare_with_every_triangle(1.0f, glm::vec3(0.0f), 1e-3, 1e-3);
 }
 
 TEST(RayScene, TinyAndHugeCoordinates) {
     compare_with_every_triangle(1e-7f, glm::vec3(0.0f), 1e-3, 1e-3);
     compare_with_every_triangle(1e7f, glm::vec3(0.0f), 1e-3, 1e-3);
-    // A scene of size 1e4 about a point 1e7 from the origin, where floats are 1 apart; ray and triangle are both exact floats
-    // and Embree works with their differences.
+    // A scene of size 1e4 about a point 1e7 from the origin, where floats are 1 apart; ray and
+    // triangle are both exact floats and Embree works with their differences.
     compare_with_every_triangle(1e4f, glm::vec3(1e7f, -1e7f, 1e7f), 1e-3, 1e-3);
 }
 
@@ -169,14 +173,16 @@ TEST(RayScene, TrianglesBlockFromBothSides) {
     const std::optional<Hit> hit = scene.closest_hit({0, 2, 0}, {0, -1, 0});
     ASSERT_TRUE(hit);
     EXPECT_EQ(hit->distance, 2.0f);
-    EXPECT_EQ(scene.closest_hit({0, 2, 0}, {0, -4, 0})->distance, 0.5f); // in units of the direction's length
+    EXPECT_EQ(scene.closest_hit({0, 2, 0}, {0, -4, 0})->distance,
+              0.5f); // in units of the direction's length
 }
 
 TEST(RayScene, DegenerateTrianglesBlockNothingAndHarmNothing) {
     mesh::TriangleMesh mesh = scenes::triangle_soup(40, 6);
     const RayScene without(mesh);
     const auto n = static_cast<std::uint32_t>(mesh.num_vertices());
-    mesh.positions.insert(mesh.positions.end(), {{0, 0, 0}, {1, 1, 1}, {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
+    mesh.positions.insert(mesh.positions.end(),
+                          {{0, 0, 0}, {1, 1, 1}, {0.5f, 0.5f, 0.5f}, {0, 0, 0}});
     mesh.triangles.push_back({n, n, n});         // a point
     mesh.triangles.push_back({n, n + 1, n});     // an edge twice
     mesh.triangles.push_back({n, n + 1, n + 2}); // three points of a line
@@ -196,7 +202,8 @@ TEST(RayScene, DegenerateTrianglesBlockNothingAndHarmNothing) {
         packet.num_directions = PacketSize;
         for (std::size_t lane = 0; lane < PacketSize; ++lane)
             packet.set(lane, glm::normalize(glm::vec3(coordinate(random)) - origin));
-        EXPECT_EQ(with.occluded(origin, packet, 0xffff), without.occluded(origin, packet, 0xffff)) << round;
+        EXPECT_EQ(with.occluded(origin, packet, 0xffff), without.occluded(origin, packet, 0xffff))
+            << round;
     }
 }
 
@@ -211,9 +218,11 @@ TEST(RayScene, NoTrianglesBlockNothing) {
 // Embree itself drops such triangles without a word.
 TEST(RayScene, RefusesCoordinatesBeyondTheRayTracersRange) {
     const mesh::TriangleMesh sphere = scenes::icosphere(0, 1.0f, glm::vec3(0.0f));
-    EXPECT_TRUE(RayScene(transformed(sphere, 1e18f, glm::vec3(0.0f))).occluded(glm::vec3(0.0f), {0, 1, 0}));
+    EXPECT_TRUE(
+        RayScene(transformed(sphere, 1e18f, glm::vec3(0.0f))).occluded(glm::vec3(0.0f), {0, 1, 0}));
     for (const float scale : {3e18f, 1e30f, 1e38f, std::numeric_limits<float>::infinity()})
-        EXPECT_THROW(RayScene{transformed(sphere, scale, glm::vec3(0.0f))}, std::runtime_error) << scale;
+        EXPECT_THROW(RayScene{transformed(sphere, scale, glm::vec3(0.0f))}, std::runtime_error)
+            << scale;
     mesh::TriangleMesh with_stray_point = sphere;
     with_stray_point.positions.emplace_back(1e30f);
     EXPECT_TRUE(RayScene(with_stray_point).occluded(glm::vec3(0.0f), {0, 1, 0}));
@@ -230,29 +239,31 @@ TEST(RayScene, OutlivesItsMeshAndMoves) {
 // Receivers on a convex surface see all that is above their faces: the automatic bias is enough.
 TEST(RayScene, OnAConvexMeshNothingAboveAllAdjacentFacesIsBlocked) {
     for (const float radius : {1e-6f, 1.0f, 1e6f})
-        for (const mesh::TriangleMesh& mesh : {scenes::icosphere(2, radius, glm::vec3(0.3f * radius)),
-                                               scenes::box(glm::vec3(-radius), glm::vec3(radius))}) {
+        for (const mesh::TriangleMesh& mesh :
+             {scenes::icosphere(2, radius, glm::vec3(0.3f * radius)),
+              scenes::box(glm::vec3(-radius), glm::vec3(radius))}) {
             const RayScene scene(mesh);
             const float bias = automatic_bias(mesh);
             std::vector<std::vector<glm::vec3>> face_normals(mesh.num_vertices());
             for (const auto& [a, b, c] : mesh.triangles) {
                 const glm::dvec3 p = mesh.positions[a];
-                const glm::dvec3 normal = glm::normalize(
-                    glm::cross(glm::dvec3(mesh.positions[b]) - p, glm::dvec3(mesh.positions[c]) - p));
+                const glm::dvec3 normal = glm::normalize(glm::cross(
+                    glm::dvec3(mesh.positions[b]) - p, glm::dvec3(mesh.positions[c]) - p));
                 for (const std::uint32_t vertex : {a, b, c})
                     face_normals[vertex].emplace_back(normal);
             }
             std::size_t num_above = 0;
             for (std::uint32_t vertex = 0; vertex < mesh.num_vertices(); ++vertex) {
-                const glm::vec3 origin = ray_origin(mesh.positions[vertex], mesh.normals[vertex], bias);
+                const glm::vec3 origin =
+                    ray_origin(mesh.positions[vertex], mesh.normals[vertex], bias);
                 for (const cubemap::Face face : cubemap::AllFaces)
                     for (std::uint32_t i = 0; i < 64; ++i)
                         for (const LatticePoint point :
                              lattice_points({.face = face, .level = 3, .x = i % 8, .y = i / 8})) {
                             const glm::vec3 w = direction(point);
-                            const bool above =
-                                std::all_of(face_normals[vertex].begin(), face_normals[vertex].end(),
-                                            [&](const glm::vec3& n) { return glm::dot(n, w) > 0.0f; });
+                            const bool above = std::all_of(
+                                face_normals[vertex].begin(), face_normals[vertex].end(),
+                                [&](const glm::vec3& n) { return glm::dot(n, w) > 0.0f; });
                             if (!above)
                                 continue;
                             ++num_above;

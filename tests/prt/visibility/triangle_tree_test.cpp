@@ -21,7 +21,8 @@ void check(const mesh::TriangleMesh& mesh) {
             corners[i] = mesh.positions[triangle[i / 3]][static_cast<int>(i % 3)];
         expected.insert(corners);
     }
-    const auto visit = [&](const auto& self, std::int32_t index, const std::array<float, 6>& box) -> void {
+    const auto visit = [&](const auto& self, std::int32_t index,
+                           const std::array<float, 6>& box) -> void {
         if (index < 0) {
             const TriangleTree::Leaf& leaf = tree.leaves[static_cast<std::size_t>(~index)];
             EXPECT_GE(leaf.size, 1u);

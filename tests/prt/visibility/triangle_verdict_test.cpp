@@ -39,16 +39,18 @@ TEST(TriangleVerdict, KnowsWhatIsFarFromAnEdge) {
 TEST(TriangleVerdict, LeavesWhatRoundingMayTurn) {
     const glm::vec3 triangle[3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
     const glm::vec3 down(0, 0, -1);
-    EXPECT_EQ(judge(triangle, {0.5f, 0.5f, 1}, down), Verdict::Doubt);         // on an edge
-    EXPECT_EQ(judge(triangle, {0.5f, 1e-7f, 1}, down), Verdict::Doubt);        // a rounding inside
-    EXPECT_EQ(judge(triangle, {0.5f, 1e-5f, 1}, down), Verdict::Hit);          // a hundred
-    EXPECT_EQ(judge(triangle, {0.5f, 1e-5f, 1000}, down), Verdict::Doubt);     // fewer, so far away
-    EXPECT_EQ(judge(triangle, {-1, 0.25f, 0}, {1, 0, 0}), Verdict::Doubt);     // along the plane
-    EXPECT_EQ(judge(triangle, {0.25f, 0.25f, 0}, down), Verdict::Doubt);       // from the plane
-    EXPECT_EQ(judge(triangle, {2, 0.25f, 0}, {0, 0.8f, 0.6f}), Verdict::Miss); // from beside it in its plane
+    EXPECT_EQ(judge(triangle, {0.5f, 0.5f, 1}, down), Verdict::Doubt);     // on an edge
+    EXPECT_EQ(judge(triangle, {0.5f, 1e-7f, 1}, down), Verdict::Doubt);    // a rounding inside
+    EXPECT_EQ(judge(triangle, {0.5f, 1e-5f, 1}, down), Verdict::Hit);      // a hundred
+    EXPECT_EQ(judge(triangle, {0.5f, 1e-5f, 1000}, down), Verdict::Doubt); // fewer, so far away
+    EXPECT_EQ(judge(triangle, {-1, 0.25f, 0}, {1, 0, 0}), Verdict::Doubt); // along the plane
+    EXPECT_EQ(judge(triangle, {0.25f, 0.25f, 0}, down), Verdict::Doubt);   // from the plane
+    EXPECT_EQ(judge(triangle, {2, 0.25f, 0}, {0, 0.8f, 0.6f}),
+              Verdict::Miss); // from beside it in its plane
 }
 
-/// Triangles of all shapes and distances, and rays close to their edges and corners: what is certain is what the ray tracer says.
+/// Triangles of all shapes and distances, and rays close to their edges and corners: what is
+/// certain is what the ray tracer says.
 TEST(TriangleVerdict, NeverContradictsTheRayTracer) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> uniform(-1.0f, 1.0f);
@@ -70,8 +72,9 @@ TEST(TriangleVerdict, NeverContradictsTheRayTracer) {
         for (int j = 0; j < 20; ++j) {
             // Towards a point on an edge or its extension, and a little beside.
             const auto k = static_cast<std::size_t>(random() % 3);
-            const glm::vec3 target = glm::mix(corners[k], corners[(k + 1) % 3], 1.2f * uniform(random)) +
-                                     size * power(-7.0f) * scenes::random_direction(random);
+            const glm::vec3 target =
+                glm::mix(corners[k], corners[(k + 1) % 3], 1.2f * uniform(random)) +
+                size * power(-7.0f) * scenes::random_direction(random);
             const glm::vec3 origin = 0.01f * scenes::random_direction(random);
             const glm::vec3 w = glm::normalize(target - origin);
             const Verdict verdict = judge(corners, origin, w);
@@ -82,7 +85,8 @@ TEST(TriangleVerdict, NeverContradictsTheRayTracer) {
             packet.num_directions = 1;
             for (std::size_t lane = 0; lane < PacketSize; ++lane)
                 packet.set(lane, w);
-            ASSERT_EQ(rays.occluded(origin, packet, 1u), verdict == Verdict::Hit ? 1u : 0u) << i << " " << j;
+            ASSERT_EQ(rays.occluded(origin, packet, 1u), verdict == Verdict::Hit ? 1u : 0u)
+                << i << " " << j;
         }
     }
     for (const std::size_t count : counts)

@@ -20,12 +20,13 @@ class ArrayFileTest : public testing::Test {
 protected:
     void SetUp() override { fs::create_directories(folder_); }
     void TearDown() override { fs::remove_all(folder_); }
-    fs::path folder_ =
-        fs::path(testing::TempDir()) /
-        ("array_file_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       ("array_file_" +
+                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
 };
 
-// The layout is numpy's NEP 1: magic, version 1.0, 16-bit length, a Python dictionary padded with spaces, the data.
+// The layout is numpy's NEP 1: magic, version 1.0, 16-bit length, a Python dictionary padded with
+// spaces, the data.
 TEST_F(ArrayFileTest, IsNumpysFormat) {
     for (const std::size_t n : {0u, 1u, 9u, 10u, 12345u}) {
         std::vector<glm::vec3> values;
@@ -41,8 +42,8 @@ TEST_F(ArrayFileTest, IsNumpysFormat) {
         EXPECT_EQ((10 + length) % 64, 0u);
         ASSERT_EQ(bytes.size(), 10 + length + n * 12);
         const std::string description(reinterpret_cast<const char*>(bytes.data()) + 10, length);
-        EXPECT_EQ(description.find("{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(n) +
-                                   ", 3), }"),
+        EXPECT_EQ(description.find("{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+                                   std::to_string(n) + ", 3), }"),
                   0u);
         EXPECT_EQ(description.find_first_not_of(' ', description.find('}') + 1), length - 1);
         EXPECT_EQ(description.back(), '\n');
@@ -108,17 +109,20 @@ TEST_F(ArrayFileTest, RefusesWhatItDoesNotRead) {
     refused(Version1, "{'descr': '<i4', 'fortran_order': False, 'shape': (2, 3), }", six,
             "float32 or float64");
     refused(Version1, "{'descr': '<f4', 'fortran_order': True, 'shape': (2, 3), }", six, "C order");
-    refused(Version1, "{'descr': '<f4', 'fortran_order': False, 'shape': (3, 2), }", six, "last axis is 3");
-    refused(Version1, "{'descr': '<f4', 'fortran_order': False, 'shape': (), }", six, "last axis is 3");
+    refused(Version1, "{'descr': '<f4', 'fortran_order': False, 'shape': (3, 2), }", six,
+            "last axis is 3");
+    refused(Version1, "{'descr': '<f4', 'fortran_order': False, 'shape': (), }", six,
+            "last axis is 3");
     refused(Version1, "{'fortran_order': False, 'shape': (2, 3), }", six, "one number type");
     refused(Version1, good, six.substr(1), "expected 24 bytes of values, got 23");
     refused(Version1, good, six + "x", "expected 24 bytes of values, got 25");
-    refused(
-        Version1,
-        "{'descr': '<f4', 'fortran_order': False, 'shape': (999999999999999999, 999999999999999999, 3), }",
-        six, "that memory can hold");
+    refused(Version1,
+            "{'descr': '<f4', 'fortran_order': False, 'shape': (999999999999999999, "
+            "999999999999999999, 3), }",
+            six, "that memory can hold");
     std::ofstream(path, std::ios::binary) << Version1 << "\xff\xff{  ";
-    scenes::expect_refused(path, "expected a description", [&] { static_cast<void>(load_npy(path)); });
+    scenes::expect_refused(path, "expected a description",
+                           [&] { static_cast<void>(load_npy(path)); });
 }
 
 TEST_F(ArrayFileTest, UnwritablePlacesLeaveNothing) {

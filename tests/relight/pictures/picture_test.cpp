@@ -36,7 +36,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A square in the plane z = 0 that faces +Z, [-1, 1] x [-1, 1]; vertices left to right, bottom to top.
+/// A square in the plane z = 0 that faces +Z, [-1, 1] x [-1, 1]; vertices left to right, bottom to
+/// top.
 mesh::TriangleMesh square() {
     mesh::TriangleMesh mesh;
     mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
@@ -45,7 +46,8 @@ mesh::TriangleMesh square() {
     return mesh;
 }
 
-/// One colour for each axis direction: a face of radiance (1, 0, 0) for +X, (0.5, 0, 0) for -X, green and blue likewise.
+/// One colour for each axis direction: a face of radiance (1, 0, 0) for +X, (0.5, 0, 0) for -X,
+/// green and blue likewise.
 cubemap::CubeMap axes_environment() {
     cubemap::CubeMap environment(8);
     for (const cubemap::Face face : cubemap::AllFaces) {
@@ -57,7 +59,8 @@ cubemap::CubeMap axes_environment() {
     return environment;
 }
 
-// From (0, 0, 4) with half-angle atan(1/2) the picture spans [-2, 2] of the plane z = 0: the square fills the middle half.
+// From (0, 0, 4) with half-angle atan(1/2) the picture spans [-2, 2] of the plane z = 0: the square
+// fills the middle half.
 const Camera FrontCamera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 2.0f * 26.5650512f};
 
 struct Drawn {
@@ -81,8 +84,9 @@ void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance) {
 
 TEST(Picture, ASquareBeforeABackground) {
     const Drawn drawn;
-    const Picture picture = drawn.picture(std::vector<glm::vec3>(4, glm::vec3(7.0f, 8.0f, 9.0f)), FrontCamera,
-                                          {.width = 16, .height = 16, .samples_per_axis = 2});
+    const Picture picture =
+        drawn.picture(std::vector<glm::vec3>(4, glm::vec3(7.0f, 8.0f, 9.0f)), FrontCamera,
+                      {.width = 16, .height = 16, .samples_per_axis = 2});
     ASSERT_EQ(picture.pixels.size(), 256u);
     for (std::uint32_t y = 0; y < 16; ++y)
         for (std::uint32_t x = 0; x < 16; ++x) {
@@ -111,7 +115,8 @@ TEST(Picture, BackgroundLiesWhereTheAxesAre) {
     const std::vector<glm::vec3> black(4, glm::vec3(0.0f));
     struct View {
         glm::vec3 direction;
-        glm::vec3 centre, right, left, top, bottom; ///< directions seen there at 45 degrees and a little more
+        /// Directions seen there at 45 degrees and a little more
+        glm::vec3 centre, right, left, top, bottom;
     };
     const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     for (const View& view :
@@ -119,9 +124,9 @@ TEST(Picture, BackgroundLiesWhereTheAxesAre) {
           View{-x, -x, -z, z, y, -y}, View{y, y, -x, x, -z, z}, View{-y, -y, x, -x, -z, z}}) {
         // Far off the square, a picture of 100 degrees reaches past the neighbouring faces' edges.
         const glm::vec3 eye(100.0f, 200.0f, 300.0f);
-        const Picture picture =
-            drawn.picture(black, {.eye = eye, .target = eye + view.direction, .fov_degrees = 100.0f},
-                          {.width = 41, .height = 41, .samples_per_axis = 1});
+        const Picture picture = drawn.picture(
+            black, {.eye = eye, .target = eye + view.direction, .fov_degrees = 100.0f},
+            {.width = 41, .height = 41, .samples_per_axis = 1});
         const auto colour = [](const glm::vec3& axis) {
             const glm::vec3 positive = glm::max(axis, 0.0f), negative = glm::max(-axis, 0.0f);
             return positive + 0.5f * negative;
@@ -159,8 +164,9 @@ TEST(Picture, WidePicturesShowMoreAtTheSidesNotLess) {
 TEST(Picture, SamplesOfAPixelAreAveraged) {
     // The square's edge halves a column of pixels: 15 pixels over 4 units, the edge at 11.25.
     const Drawn drawn;
-    const Picture picture = drawn.picture(std::vector<glm::vec3>(4, glm::vec3(8.0f, 0.0f, 0.5f)), FrontCamera,
-                                          {.width = 15, .height = 15, .samples_per_axis = 4});
+    const Picture picture =
+        drawn.picture(std::vector<glm::vec3>(4, glm::vec3(8.0f, 0.0f, 0.5f)), FrontCamera,
+                      {.width = 15, .height = 15, .samples_per_axis = 4});
     expect_near(pixel(picture, 11, 7), {2.0f, 0.0f, 0.5f}, 1e-4f);
 }
 
@@ -172,8 +178,8 @@ TEST(Picture, TheNearestSurfaceIsSeen) {
     const mesh::TriangleMesh both = scenes::joined(behind, front);
     std::vector<glm::vec3> radiance(4, glm::vec3(1.0f, 0.0f, 0.0f));
     radiance.resize(8, glm::vec3(0.0f, 1.0f, 0.0f));
-    const Picture picture = draw(both, prt::RayScene(both), radiance, axes_environment(), FrontCamera,
-                                 {.width = 8, .height = 8, .samples_per_axis = 1});
+    const Picture picture = draw(both, prt::RayScene(both), radiance, axes_environment(),
+                                 FrontCamera, {.width = 8, .height = 8, .samples_per_axis = 1});
     expect_near(pixel(picture, 4, 4), {0.0f, 1.0f, 0.0f}, 1e-5f);
 }
 
@@ -181,9 +187,10 @@ TEST(Picture, AnyNumberOfThreadsGivesTheSameBits) {
     const Drawn drawn;
     std::vector<glm::vec3> first;
     for (const std::size_t num_threads : {1u, 2u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, num_threads);
-        const Picture picture = drawn.picture({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}, FrontCamera,
-                                              {.width = 33, .height = 21});
+        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                          num_threads);
+        const Picture picture = drawn.picture({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
+                                              FrontCamera, {.width = 33, .height = 21});
         if (!first.empty()) {
             EXPECT_EQ(picture.pixels, first);
         }
@@ -191,7 +198,8 @@ TEST(Picture, AnyNumberOfThreadsGivesTheSameBits) {
     }
 }
 
-/// Where a point lies in the picture: both coordinates in [-1, 1] when it is seen, up and right positive.
+/// Where a point lies in the picture: both coordinates in [-1, 1] when it is seen, up and right
+/// positive.
 glm::dvec2 projected(const glm::dvec3& point, const Camera& camera, double aspect) {
     const glm::dvec3 eye(camera.eye);
     const glm::dvec3 forward = glm::normalize(glm::dvec3(camera.target) - eye);
@@ -221,8 +229,8 @@ TEST(Picture, AutomaticCameraSeesTheWholeMeshAndFillsThePicture) {
                     EXPECT_LT(forward.x, 0.0f) << "from the right";
                     double widest = 0.0;
                     for (const glm::vec3& position : mesh.positions) {
-                        const glm::dvec2 at =
-                            projected(position, camera, static_cast<double>(options.width) / options.height);
+                        const glm::dvec2 at = projected(
+                            position, camera, static_cast<double>(options.width) / options.height);
                         widest = std::max({widest, std::abs(at.x), std::abs(at.y)});
                     }
                     EXPECT_LT(widest, 1.0);
@@ -234,18 +242,22 @@ TEST(Picture, AutomaticCameraOfAMeshFarFromTheOrigin) {
     // Map coordinates in metres: floats are half a metre apart there.
     const glm::vec3 low(500000.0f, 30.0f, 5000000.0f);
     const Camera camera = automatic_camera(scenes::box(low, low + glm::vec3(40.0f, 20.0f, 40.0f)));
-    const Camera near = automatic_camera(scenes::box(glm::vec3(0.0f), glm::vec3(40.0f, 20.0f, 40.0f)));
-    EXPECT_LT(
-        glm::distance(glm::normalize(camera.eye - camera.target), glm::normalize(near.eye - near.target)),
-        0.01f);
-    EXPECT_NEAR(glm::distance(camera.eye, camera.target), glm::distance(near.eye, near.target), 1.0f);
-    EXPECT_NO_THROW(static_cast<void>(automatic_camera(scenes::box(glm::vec3(1e9f), glm::vec3(1.0001e9f)))));
+    const Camera near =
+        automatic_camera(scenes::box(glm::vec3(0.0f), glm::vec3(40.0f, 20.0f, 40.0f)));
+    EXPECT_LT(glm::distance(glm::normalize(camera.eye - camera.target),
+                            glm::normalize(near.eye - near.target)),
+              0.01f);
+    EXPECT_NEAR(glm::distance(camera.eye, camera.target), glm::distance(near.eye, near.target),
+                1.0f);
+    EXPECT_NO_THROW(
+        static_cast<void>(automatic_camera(scenes::box(glm::vec3(1e9f), glm::vec3(1.0001e9f)))));
 }
 
 TEST(Picture, AutomaticCameraLooksAtWhatStandsOnTheGround) {
     const mesh::TriangleMesh sphere = scenes::icosphere(1, 1.0f, {2.0f, 1.5f, 3.0f});
     const Camera alone = automatic_camera(sphere);
-    const Camera with_ground = automatic_camera(scenes::joined(scenes::floor_grid(5, 50.0f), sphere));
+    const Camera with_ground =
+        automatic_camera(scenes::joined(scenes::floor_grid(5, 50.0f), sphere));
     EXPECT_EQ(with_ground.eye, alone.eye);
     EXPECT_EQ(with_ground.target, alone.target);
     // A ground alone is looked at itself.
@@ -259,7 +271,8 @@ TEST(Picture, RefusesBadSizesAndCameras) {
     const std::vector<glm::vec3> white(4, glm::vec3(1.0f));
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const auto refused = [&](const Camera& camera, const PictureOptions& options) {
-        EXPECT_THROW(static_cast<void>(drawn.picture(white, camera, options)), std::invalid_argument);
+        EXPECT_THROW(static_cast<void>(drawn.picture(white, camera, options)),
+                     std::invalid_argument);
     };
     refused(FrontCamera, {.width = 0});
     refused(FrontCamera, {.height = 0});
@@ -272,8 +285,8 @@ TEST(Picture, RefusesBadSizesAndCameras) {
     refused({.eye = {0, 0, std::numeric_limits<float>::infinity()}}, {});
     for (const float fov : {0.0f, -10.0f, 180.0f, 400.0f, nan})
         refused({.eye = {0, 0, 4}, .fov_degrees = fov}, {});
-    EXPECT_THROW(static_cast<void>(draw(drawn.mesh, drawn.rays, std::span(white).first(3), axes_environment(),
-                                        FrontCamera)),
+    EXPECT_THROW(static_cast<void>(draw(drawn.mesh, drawn.rays, std::span(white).first(3),
+                                        axes_environment(), FrontCamera)),
                  std::invalid_argument);
     EXPECT_THROW(static_cast<void>(draw(drawn.mesh, drawn.rays, white, {}, FrontCamera)),
                  std::invalid_argument);
@@ -303,7 +316,8 @@ protected:
 };
 
 TEST_F(SavePictureTest, PngHoldsTheSrgbCurve) {
-    // Bytes from IEC 61966-2-1: 0.0031308 is where the line ends (12.92 x = 0.04045); 0.2140 is half of the scale; 0.18 is 118.
+    // Bytes from IEC 61966-2-1: 0.0031308 is where the line ends (12.92 x = 0.04045); 0.2140 is
+    // half of the scale; 0.18 is 118.
     const Picture picture{.width = 4,
                           .height = 2,
                           .pixels = {{0.0f, 1.0f, 0.5f},
@@ -317,8 +331,9 @@ TEST_F(SavePictureTest, PngHoldsTheSrgbCurve) {
     const fs::path path = folder_ / "picture.png";
     save_picture(path, picture);
     int width = 0, height = 0;
-    const std::vector<std::uint8_t> expected = {0,   255, 188, 118, 128, 10, 3, 255, 255, 0,   0,   243,
-                                                255, 0,   0,   0,   255, 0,  0, 0,   255, 255, 255, 255};
+    const std::vector<std::uint8_t> expected = {0,   255, 188, 118, 128, 10,  3,   255,
+                                                255, 0,   0,   243, 255, 0,   0,   0,
+                                                255, 0,   0,   0,   255, 255, 255, 255};
     EXPECT_EQ(decoded(path, width, height), expected);
     EXPECT_EQ(width, 4);
     EXPECT_EQ(height, 2);

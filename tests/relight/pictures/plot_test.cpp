@@ -39,7 +39,8 @@ TEST(Plot, LeavesOutWhatNoAxisHas) {
 }
 
 TEST(Plot, TextIsEscapedAndNothingToShowIsAPlotToo) {
-    const std::string text = svg({.title = "a < b & c", .x_label = {}, .y_label = {}, .series = {}});
+    const std::string text =
+        svg({.title = "a < b & c", .x_label = {}, .y_label = {}, .series = {}});
     EXPECT_THAT(text, HasSubstr("a &lt; b &amp; c"));
     EXPECT_THAT(text, HasSubstr("</svg>"));
     EXPECT_THROW(static_cast<void>(svg({.series = {{.name = "", .x = {1.0}, .y = {}}}})),

@@ -49,8 +49,8 @@ TEST(ReceiverPicture, EqualsADirectDrawOfTheSameRadiance) {
         for (const prt::MeshPoint& point : pixels.receivers.points)
             radiance.push_back(prt::value_at(mesh, colors, point));
         const Picture composed = compose(pixels.layout, radiance, sky);
-        const Picture drawn =
-            draw(mesh, rays, colors, sky, camera, {.width = 64, .height = 48, .samples_per_axis = n});
+        const Picture drawn = draw(mesh, rays, colors, sky, camera,
+                                   {.width = 64, .height = 48, .samples_per_axis = n});
         ASSERT_EQ(composed.pixels.size(), drawn.pixels.size());
         EXPECT_TRUE(composed.alpha.empty());
         for (std::size_t i = 0; i < drawn.pixels.size(); ++i)
@@ -58,7 +58,8 @@ TEST(ReceiverPicture, EqualsADirectDrawOfTheSameRadiance) {
 
         // Cut out and laid over the background alone, it is the same picture.
         const Picture cut_out = compose_cut_out(pixels.layout, radiance);
-        const Picture empty = compose(prt::PixelLayout{.camera = camera, .width = 64, .height = 48}, {}, sky);
+        const Picture empty =
+            compose(prt::PixelLayout{.camera = camera, .width = 64, .height = 48}, {}, sky);
         for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
             const float alpha = cut_out.alpha[i];
             if (alpha == 1.0f || alpha == 0.0f) {
@@ -76,7 +77,8 @@ TEST(ReceiverPicture, APixelIsTheMeanOfItsSamples) {
                                   .height = 1,
                                   .samples_per_axis = 2,
                                   .samples = {0, 1, 3, 6}};
-    const std::vector<glm::vec3> radiance = {glm::vec3(1), glm::vec3(2), glm::vec3(3), glm::vec3(8)};
+    const std::vector<glm::vec3> radiance = {glm::vec3(1), glm::vec3(2), glm::vec3(3),
+                                             glm::vec3(8)};
     const Picture picture = compose(layout, radiance, cubemap::CubeMap(4, glm::vec3(0.5f)));
     EXPECT_LT(difference(picture.pixels[0], glm::vec3(6.5f / 4.0f)), 1e-6f);
     EXPECT_LT(difference(picture.pixels[1], glm::vec3(9.5f / 4.0f)), 1e-6f);
@@ -84,8 +86,9 @@ TEST(ReceiverPicture, APixelIsTheMeanOfItsSamples) {
     EXPECT_EQ(cut_out.alpha, (std::vector<float>{0.75f, 0.25f}));
     EXPECT_EQ(cut_out.pixels[0], glm::vec3(1.5f));
     EXPECT_EQ(cut_out.pixels[1], glm::vec3(2.0f));
-    EXPECT_THROW(static_cast<void>(compose(layout, std::span(radiance).first(3), cubemap::CubeMap(4))),
-                 std::invalid_argument);
+    EXPECT_THROW(
+        static_cast<void>(compose(layout, std::span(radiance).first(3), cubemap::CubeMap(4))),
+        std::invalid_argument);
     EXPECT_THROW(static_cast<void>(compose(layout, radiance, {})), std::invalid_argument);
     EXPECT_THROW(static_cast<void>(compose_cut_out(layout, {})), std::invalid_argument);
 }
@@ -109,11 +112,14 @@ TEST(ReceiverPicture, PixelsOnVerticesAreLitAsTheVertices) {
     const cubemap::CubeMap sky = scenes::smooth_environment(16);
     const ExactOptions exact{.bias = prt::automatic_bias(mesh)};
     const prt::Receivers vertices = prt::vertex_receivers(mesh);
-    const std::vector<glm::dvec3> of_vertices = exact_radiance(vertices, all_of(vertices), rays, sky, exact);
+    const std::vector<glm::dvec3> of_vertices =
+        exact_radiance(vertices, all_of(vertices), rays, sky, exact);
     const std::vector<glm::dvec3> of_pixels =
         exact_radiance(pixels.receivers, all_of(pixels.receivers), rays, sky, exact);
-    const prt::PrecomputeOptions options{.tolerance = 0.005f, .face_resolution = 64, .bias = exact.bias};
-    const std::vector<glm::vec3> relit_vertices = relight(prt::precompute(vertices, rays, options), sky);
+    const prt::PrecomputeOptions options{
+        .tolerance = 0.005f, .face_resolution = 64, .bias = exact.bias};
+    const std::vector<glm::vec3> relit_vertices =
+        relight(prt::precompute(vertices, rays, options), sky);
     const std::vector<glm::vec3> relit_pixels =
         relight(prt::precompute(pixels.receivers, rays, options), sky);
     std::size_t num_compared = 0;
@@ -121,7 +127,8 @@ TEST(ReceiverPicture, PixelsOnVerticesAreLitAsTheVertices) {
         for (std::size_t v = 0; v < 81; ++v)
             if (glm::length(pixels.receivers.positions[i] - mesh.positions[v]) < 1e-3f) {
                 ++num_compared;
-                EXPECT_LT(glm::length(of_pixels[i] - of_vertices[v]), 1e-2 * glm::length(of_vertices[v]))
+                EXPECT_LT(glm::length(of_pixels[i] - of_vertices[v]),
+                          1e-2 * glm::length(of_vertices[v]))
                     << v;
                 EXPECT_LT(glm::length(relit_pixels[i] - relit_vertices[v]),
                           0.02f * glm::length(relit_vertices[v]))
@@ -141,9 +148,9 @@ TEST(ReceiverPicture, RelitSphereEqualsTheDrawnOne) {
         prt::pixel_receivers(sphere, rays, {.camera = camera, .width = 40, .height = 40});
     const Picture composed =
         compose(pixels.layout, relight(prt::precompute(pixels.receivers, rays, options), sky), sky);
-    const Picture drawn =
-        draw(sphere, rays, relight(prt::precompute(prt::vertex_receivers(sphere), rays, options), sky), sky,
-             camera, {.width = 40, .height = 40, .samples_per_axis = 1});
+    const Picture drawn = draw(
+        sphere, rays, relight(prt::precompute(prt::vertex_receivers(sphere), rays, options), sky),
+        sky, camera, {.width = 40, .height = 40, .samples_per_axis = 1});
     double error = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
         const glm::vec3 d = composed.pixels[i] - drawn.pixels[i];
@@ -164,12 +171,12 @@ TEST(ReceiverPicture, ALightmapHoldsTheExactIrradiance) {
     EXPECT_EQ(texels.receivers.size(), 16u * 16u);
     const cubemap::CubeMap sky = scenes::smooth_environment(32);
     const float bias = prt::automatic_bias(mesh);
-    const Picture lightmap =
-        compose(texels.layout,
-                relight(prt::precompute(texels.receivers, rays,
-                                        {.tolerance = 0.005f, .face_resolution = 128, .bias = bias}),
-                        sky),
-                2);
+    const Picture lightmap = compose(
+        texels.layout,
+        relight(prt::precompute(texels.receivers, rays,
+                                {.tolerance = 0.005f, .face_resolution = 128, .bias = bias}),
+                sky),
+        2);
     prt::Receivers places;
     std::vector<std::size_t> pixels;
     for (std::uint32_t y = 2; y < 18; ++y)
@@ -179,7 +186,8 @@ TEST(ReceiverPicture, ALightmapHoldsTheExactIrradiance) {
             places.normals.emplace_back(0.0f, 1.0f, 0.0f);
             pixels.push_back(std::size_t{y} * 20 + x);
         }
-    const std::vector<glm::dvec3> exact = exact_radiance(places, all_of(places), rays, sky, {.bias = bias});
+    const std::vector<glm::dvec3> exact =
+        exact_radiance(places, all_of(places), rays, sky, {.bias = bias});
     for (std::size_t i = 0; i < pixels.size(); ++i) {
         EXPECT_EQ(lightmap.alpha[pixels[i]], 1.0f);
         EXPECT_LT(glm::length(glm::dvec3(lightmap.pixels[pixels[i]]) - exact[i]),

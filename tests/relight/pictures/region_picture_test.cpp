@@ -29,7 +29,8 @@ TEST(RegionPicture, ShowsMapBordersAndLights) {
     EXPECT_GT(at(picture, 512, 100).g, 2.0f * at(picture, 512, 100).r);
     EXPECT_GT(at(picture, 400, 100).r, 3.0f * at(picture, 400, 100).b);
     EXPECT_GT(at(picture, 600, 100).b, 3.0f * at(picture, 600, 100).r);
-    // The first light is at +X, a quarter from the left at half height: light in the middle, a dark ring around it.
+    // The first light is at +X, a quarter from the left at half height: light in the middle, a dark
+    // ring around it.
     EXPECT_GT(at(picture, 256, 256).r, 0.9f);
     EXPECT_GT(at(picture, 256, 256).g, 0.3f);
     bool ring = false;
@@ -39,16 +40,18 @@ TEST(RegionPicture, ShowsMapBordersAndLights) {
 }
 
 TEST(RegionPicture, ColoursAreInRangeWhateverTheMap) {
-    for (const auto& image : {wild(300, 150), constant(1, 1, glm::vec3(0.0f)),
-                              constant(5000, 3, glm::vec3(1e30f)), constant(2, 1, glm::vec3(1e-30f))}) {
+    for (const auto& image :
+         {wild(300, 150), constant(1, 1, glm::vec3(0.0f)), constant(5000, 3, glm::vec3(1e30f)),
+          constant(2, 1, glm::vec3(1e-30f))}) {
         for (const Method method : AllMethods) {
             const Picture picture = region_picture(image, place(method, image, 1));
             EXPECT_LE(picture.width, 2048u);
             EXPECT_GE(picture.width, 1024u);
-            EXPECT_TRUE(std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& pixel) {
-                return pixel.r >= 0.0f && pixel.r <= 1.0f && pixel.g >= 0.0f && pixel.g <= 1.0f &&
-                       pixel.b >= 0.0f && pixel.b <= 1.0f;
-            }));
+            EXPECT_TRUE(std::all_of(
+                picture.pixels.begin(), picture.pixels.end(), [](const glm::vec3& pixel) {
+                    return pixel.r >= 0.0f && pixel.r <= 1.0f && pixel.g >= 0.0f &&
+                           pixel.g <= 1.0f && pixel.b >= 0.0f && pixel.b <= 1.0f;
+                }));
         }
     }
 }
