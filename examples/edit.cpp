@@ -1,29 +1,18 @@
 // Lighting design in code: light layers over an environment, dragged, undone, read by another
-// thread, and asked who lights what.
+// thread, and asked what lights a point. edit SCENE.prt ENVIRONMENT.exr LAYERS.json
 #include <cstdio>
+#include <exception>
 #include <vector>
 
 #include "cubemap/layers/layer_file.h"
-#include "data_gen/environments.h"
-#include "data_gen/scenes.h"
-#include "prt/precompute.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/contribution.h"
-#include "relight/light_editor.h"
+#include "relumine/relumine.h"
 
-int main() {
+int main(int argc, char** argv) try {
     using namespace relumine;
-
-    // A scene, as in relight.cpp; prt::load_scene() reads one that is precomputed.
-    const mesh::TriangleMesh mesh = data_gen::blob(5000);
-    const prt::RayScene rays(mesh);
-    const float bias = prt::automatic_bias(mesh);
-    const prt::Transfer transfer =
-        prt::precompute(prt::vertex_receivers(mesh), rays, {.tolerance = 0.03f, .bias = bias});
-    relight::LightEditor editor(
-        transfer,
-        {.blockers = &rays, .positions = mesh.positions, .bias = bias, .tolerance = 0.03f});
-    editor.set_base(data_gen::sun_and_sky(128));
+    if (argc != 4)
+        return std::fputs("edit SCENE.prt ENVIRONMENT.exr LAYERS.json\n", stderr), 2;
+    LitScene lit(load_scene(argv[1]));
+    lit.light(load_environment(argv[2]));
 
     // Any number of layers is one update; mark() makes a step that undo() comes back to.
     cubemap::LightLayer key{.name = "key",
@@ -33,29 +22,32 @@ int main() {
                                   .region =
                                       cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90},
                                   .effect = cubemap::Gain{.factor = 0.25f}};
-    editor.set_layers({dim, key});
+    lit.set_layers({dim, key});
+    relight::LightEditor& editor = lit.editor();
     editor.mark();
 
     // A drag: many edits, each relights only what it touches, then one step of undo.
     double seconds = 0.0;
     for (int event = 0; event < 20; ++event) {
         std::get<cubemap::Disc>(key.region).direction.x -= 0.1;
-        seconds += editor.set_layer(1, key).seconds;
+        seconds += lit.set_layer(1, key).seconds;
     }
     editor.mark();
-    const std::vector<glm::vec3> dragged(editor.radiance().begin(), editor.radiance().end());
+    const std::vector<glm::vec3> dragged(lit.radiance().begin(), lit.radiance().end());
     editor.undo();
     editor.redo(); // bit by bit what it was
 
     std::vector<glm::vec3> seen; // any thread may ask at any time
     editor.snapshot(seen);
 
-    // Which directions light receiver 0? Its integral over the sphere is the receiver's radiance.
-    const std::uint32_t receiver = 0;
-    const cubemap::CubeMap who = relight::contribution_map(editor.relighter(), {&receiver, 1});
-    cubemap::save_layers("layers.json",
-                         {.layers = {editor.layers().begin(), editor.layers().end()}});
-    std::printf("20 events, %.2f ms each; receiver 0: %.4f, by direction %.4f\n", 50.0 * seconds,
-                static_cast<double>(seen[0].g), cubemap::total_power(who).y);
+    // Which directions light the vertex nearest to a point? Their integral is its radiance.
+    const std::uint32_t receiver = nearest_receiver(lit.scene(), {0.0f, 2.0f, 0.0f});
+    const cubemap::CubeMap who = lit.contribution_map({&receiver, 1});
+    cubemap::save_layers(argv[3], {.layers = {editor.layers().begin(), editor.layers().end()}});
+    std::printf("20 events, %.2f ms each; vertex %u: %.4f, by direction %.4f\n", 50.0 * seconds,
+                receiver, static_cast<double>(seen[receiver].g), cubemap::total_power(who).y);
     return seen == dragged ? 0 : 1;
+} catch (const std::exception& error) {
+    std::fprintf(stderr, "edit: %s\n", error.what());
+    return 1;
 }

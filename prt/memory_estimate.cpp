@@ -1,10 +1,10 @@
 #include "prt/memory_estimate.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "prt/receivers/receiver_order.h"
+#include "prt/tolerance.h"
 
 namespace relumine::prt {
 
@@ -128,12 +128,9 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
                                std::uint64_t max_bytes) {
     const Receivers trial = trial_receivers(receivers);
     PrecomputeOptions trial_options = options;
-    if (options.epsilon) {
-        // The same RMS for fewer receivers.
-        trial_options.epsilon = {};
-        trial_options.tolerance =
-            *options.epsilon * std::sqrt(static_cast<float>(receivers.size()));
-    }
+    // The same RMS for fewer receivers.
+    trial_options.epsilon = {};
+    trial_options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
     trial_options.checkpoint = nullptr;
     trial_options.on_progress = {};
     trial_options.column_scale =

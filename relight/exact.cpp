@@ -7,6 +7,7 @@
 #include <mutex>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 #include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
@@ -99,6 +100,27 @@ private:
     prt::Surface surface_;
 };
 
+void require(bool condition, const char* message) {
+    if (!condition)
+        throw std::invalid_argument(message);
+}
+
+void check(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
+           const cubemap::CubeMap& environment) {
+    const std::size_t n = receivers.size();
+    require(receivers.normals.size() == n, "expected one normal per receiver");
+    require(receivers.surfaces.empty() || receivers.surfaces.size() == n,
+            "expected one surface per receiver, or none");
+    require(receivers.to_eye.empty() || receivers.to_eye.size() == n,
+            "expected one direction to the eye per receiver, or none");
+    require(std::all_of(receiver_indices.begin(), receiver_indices.end(),
+                        [n](std::uint32_t i) { return i < n; }),
+            "expected indices of receivers");
+    const std::size_t r = environment.resolution;
+    require(r > 0 && environment.texels.size() == cubemap::NumFaces * r * r,
+            "expected an environment of 6 x R x R texels");
+}
+
 } // namespace
 
 std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
@@ -106,6 +128,7 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
                                        const prt::Blockers& blockers,
                                        const cubemap::CubeMap& environment,
                                        const ExactOptions& options) {
+    check(receivers, receiver_indices, environment);
     const std::uint32_t r = environment.resolution;
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(r);
     std::vector<prt::Lobes<glm::dvec3>> sums(receiver_indices.size());
@@ -174,6 +197,10 @@ std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::
 
 ErrorReport compare(std::span<const std::uint32_t> receiver_indices,
                     std::span<const glm::dvec3> exact, std::span<const glm::vec3> relit) {
+    require(exact.size() == receiver_indices.size(), "expected one exact radiance per index");
+    require(std::all_of(receiver_indices.begin(), receiver_indices.end(),
+                        [&](std::uint32_t i) { return i < relit.size(); }),
+            "expected indices of relit receivers");
     ErrorReport report;
     double error_squares = 0.0;
     double exact_squares = 0.0;

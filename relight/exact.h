@@ -30,7 +30,8 @@ struct ExactOptions {
 /// Outgoing radiance for albedo 1 of the chosen receivers [receiver_indices.size()]:
 /// B = 1/pi sum over all 6 R^2 texels of L_j dw_j V(w_j) max(n.w_j, 0), lights at texel centres,
 /// sums in double [JN, Eq. 1]. Black texels and those below the horizon cast no ray. Parallel over
-/// receivers; the order of each sum is fixed.
+/// receivers; the order of each sum is fixed. Throws std::invalid_argument for an index or a size
+/// that does not fit the receivers, and for an environment without texels; Cancelled.
 [[nodiscard]] std::vector<glm::dvec3>
 exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
                const prt::Blockers& blockers, const cubemap::CubeMap& environment,
@@ -56,7 +57,8 @@ struct ErrorReport {
     std::uint32_t worst_receiver = 0;
 };
 
-/// exact: [receiver_indices.size()] from exact_radiance(); relit: [num_receivers].
+/// exact: [receiver_indices.size()] from exact_radiance(); relit: [num_receivers]. Throws
+/// std::invalid_argument for sizes or indices that do not fit.
 [[nodiscard]] ErrorReport compare(std::span<const std::uint32_t> receiver_indices,
                                   std::span<const glm::dvec3> exact,
                                   std::span<const glm::vec3> relit);

@@ -4,6 +4,7 @@
 #include <bit>
 #include <numbers>
 #include <numeric>
+#include <stdexcept>
 
 #include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
@@ -102,6 +103,11 @@ std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lig
                                        std::span<const glm::vec3> normals,
                                        std::span<const std::uint32_t> receiver_indices,
                                        const ShadowRays& rays) {
+    if (rays.blockers == nullptr || rays.positions.size() != normals.size())
+        throw std::invalid_argument("expected shadow rays with one position per receiver");
+    if (!std::all_of(receiver_indices.begin(), receiver_indices.end(),
+                     [&](std::uint32_t receiver) { return receiver < normals.size(); }))
+        throw std::invalid_argument("expected indices of receivers");
     const LightPackets packets(lights);
     std::vector<glm::dvec3> radiance(receiver_indices.size());
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerTask),

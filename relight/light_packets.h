@@ -66,7 +66,9 @@ private:
 
 /// Outgoing radiance for albedo 1 of the chosen receivers [receiver_indices.size()] under the
 /// lights: 1/pi sum of E_i V(w_i) max(n.w_i, 0). `rays.positions` are the receivers' own. Parallel;
-/// the order of each sum is fixed. O(receivers x lights) shadow rays.
+/// the order of each sum is fixed. O(receivers x lights) shadow rays. Throws std::invalid_argument
+/// for shadow rays without blockers or with another number of positions, and for an index out of
+/// range.
 [[nodiscard]] std::vector<glm::dvec3>
 radiance_under(std::span<const lights::DistantLight> lights, std::span<const glm::vec3> normals,
                std::span<const std::uint32_t> receiver_indices, const ShadowRays& rays);

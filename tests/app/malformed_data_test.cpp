@@ -4,6 +4,7 @@
 #include "tests/app/command.h"
 #include "tests/app/formats.h"
 #include "tests/app/small_files.h"
+#include "tests/real_data.h"
 
 namespace relumine::app {
 namespace {
@@ -14,7 +15,7 @@ class MalformedData : public AppTest {
 protected:
     static std::vector<fs::path> data_files(const std::string& name) {
         std::vector<fs::path> result;
-        const fs::path path = fs::path(RELUMINE_DATA_DIR) / name;
+        const fs::path path = real_data(name);
         if (fs::is_directory(path))
             for (const auto& entry : fs::directory_iterator(path))
                 result.push_back(fs::absolute(entry.path()));
@@ -44,8 +45,7 @@ protected:
 TEST_F(MalformedData, Meshes) {
     const std::vector<fs::path> meshes = data_files("meshes/malformed");
     if (meshes.empty())
-        GTEST_SKIP() << "no data in " << RELUMINE_DATA_DIR
-                     << "; set RELUMINE_DATA_DIR to the folder that holds it";
+        GTEST_SKIP() << absent_data("meshes/malformed");
     for (const fs::path& mesh : meshes) {
         const bool described = is_read_or_refused({"info", mesh.string()}, mesh);
         const bool precomputed =
@@ -60,8 +60,7 @@ TEST_F(MalformedData, Meshes) {
 TEST_F(MalformedData, Environments) {
     const std::vector<fs::path> environments = data_files("envs/robustness");
     if (environments.empty())
-        GTEST_SKIP() << "no data in " << RELUMINE_DATA_DIR
-                     << "; set RELUMINE_DATA_DIR to the folder that holds it";
+        GTEST_SKIP() << absent_data("envs/robustness");
     write("mesh.obj", octahedron_obj());
     succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
     for (const fs::path& environment : environments)

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -19,27 +18,41 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/plot.h"
 #include "relight/relighter.h"
-#include "tests/bench/median.h"
 #include "tests/bench/process_usage.h"
+#include "tests/bench/program.h"
+#include "tests/bench/times.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
 
 namespace {
 
-/// Steps of about the square root of ten.
-constexpr std::size_t VertexSteps[] = {20'000, 63'000, 200'000, 630'000, 2'000'000};
-constexpr std::size_t TriangleSteps[] = {10'000, 50'000, 250'000, 1'000'000, 5'000'000};
-constexpr std::size_t MeshSteps[] = {100'000, 500'000, 2'000'000};
-constexpr float ToleranceSteps[] = {0.1f, 0.056f, 0.032f, 0.018f, 0.01f};
+struct Steps {
+    /// Of about the square root of ten
+    std::vector<std::size_t> vertices = {20'000, 63'000, 200'000, 630'000, 2'000'000};
+    std::vector<std::size_t> triangles = {10'000, 50'000, 250'000, 1'000'000, 5'000'000};
+    std::vector<std::size_t> mesh = {100'000, 500'000, 2'000'000};
+    std::vector<float> tolerances = {0.1f, 0.056f, 0.032f, 0.018f, 0.01f};
 
-/// Where vertices or blockers grow
-constexpr float GrowthTolerance = 0.05f;
-/// Where clusters grow
-constexpr std::size_t BlobVertices = 50'000;
-/// Of a side: 20,164 receivers where blockers grow
-constexpr std::uint32_t FloorVertices = 142;
-constexpr std::uint32_t EnvironmentResolution = 256;
+    /// Where vertices or blockers grow
+    float growth_tolerance = 0.05f;
+    /// Where the mesh grows
+    float mesh_tolerance = prt::PrecomputeOptions{}.tolerance;
+    /// Where clusters grow; the floor of 142 x 142 of it are the receivers where blockers grow
+    std::size_t blob_vertices = 50'000;
+    std::uint32_t environment_resolution = 256;
+
+    static Steps tiny() {
+        return {.vertices = {1000, 2000},
+                .triangles = {2000, 4000},
+                .mesh = {1000, 2000},
+                .tolerances = {0.2f, 0.1f},
+                .growth_tolerance = 0.1f,
+                .mesh_tolerance = 0.1f,
+                .blob_vertices = 1000,
+                .environment_resolution = 16};
+    }
+};
 
 struct Cost {
     /// What grows
@@ -54,7 +67,8 @@ struct Cost {
     double peak_megabytes = 0.0;
 };
 
-Cost measure(const mesh::TriangleMesh& blockers, const prt::Receivers& receivers, float tolerance) {
+Cost measure(const mesh::TriangleMesh& blockers, const prt::Receivers& receivers, float tolerance,
+             std::uint32_t environment_resolution) {
     Cost cost{.num_receivers = receivers.size(), .num_triangles = blockers.triangles.size()};
     double before = bench::cpu_seconds();
     const prt::RayScene rays(blockers);
@@ -66,7 +80,7 @@ Cost measure(const mesh::TriangleMesh& blockers, const prt::Receivers& receivers
     cost.precompute = bench::cpu_seconds() - before;
     cost.num_clusters = transfer.num_clusters();
     relight::Relighter relighter(transfer);
-    relighter.set_environment(data_gen::two_soft_boxes(EnvironmentResolution));
+    relighter.set_environment(data_gen::two_soft_boxes(environment_resolution));
     cost.relight = bench::median_seconds([&] { relighter.resum(); });
     cost.peak_megabytes = bench::peak_megabytes();
     return cost;
@@ -133,13 +147,14 @@ nlohmann::json report(const std::string& what, const std::vector<Cost>& costs,
     return rows;
 }
 
-std::vector<Cost> against_vertices(std::size_t most) {
+std::vector<Cost> against_vertices(const Steps& steps, std::size_t most) {
     std::vector<Cost> costs;
-    for (const std::size_t num_vertices : VertexSteps) {
+    for (const std::size_t num_vertices : steps.vertices) {
         if (num_vertices > most)
             break;
         const mesh::TriangleMesh mesh = data_gen::blob(num_vertices);
-        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), GrowthTolerance));
+        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), steps.growth_tolerance,
+                                steps.environment_resolution));
         costs.back().x = static_cast<double>(mesh.num_vertices());
     }
     return costs;
@@ -147,24 +162,25 @@ std::vector<Cost> against_vertices(std::size_t most) {
 
 /// The same knot in more and more vertices, as finely clustered as users ask for who ask for
 /// nothing.
-std::vector<Cost> against_mesh_size(std::size_t most) {
+std::vector<Cost> against_mesh_size(const Steps& steps, std::size_t most) {
     std::vector<Cost> costs;
-    for (const std::size_t num_vertices : MeshSteps) {
+    for (const std::size_t num_vertices : steps.mesh) {
         if (num_vertices > most)
             break;
         const mesh::TriangleMesh mesh = data_gen::knot(num_vertices);
-        costs.push_back(
-            measure(mesh, prt::vertex_receivers(mesh), prt::PrecomputeOptions{}.tolerance));
+        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), steps.mesh_tolerance,
+                                steps.environment_resolution));
         costs.back().x = static_cast<double>(mesh.num_vertices());
     }
     return costs;
 }
 
-std::vector<Cost> against_clusters() {
-    const mesh::TriangleMesh mesh = data_gen::blob(BlobVertices);
+std::vector<Cost> against_clusters(const Steps& steps) {
+    const mesh::TriangleMesh mesh = data_gen::blob(steps.blob_vertices);
     std::vector<Cost> costs;
-    for (const float tolerance : ToleranceSteps) {
-        costs.push_back(measure(mesh, prt::vertex_receivers(mesh), tolerance));
+    for (const float tolerance : steps.tolerances) {
+        costs.push_back(
+            measure(mesh, prt::vertex_receivers(mesh), tolerance, steps.environment_resolution));
         costs.back().x = static_cast<double>(costs.back().num_clusters);
     }
     return costs;
@@ -182,13 +198,14 @@ prt::Receivers floor_receivers(const mesh::TriangleMesh& mesh) {
 }
 
 /// The same points of the floor beside a boulder of more and more triangles.
-std::vector<Cost> against_blockers(std::size_t most) {
-    const prt::Receivers floor = floor_receivers(data_gen::blob(BlobVertices));
+std::vector<Cost> against_blockers(const Steps& steps, std::size_t most) {
+    const prt::Receivers floor = floor_receivers(data_gen::blob(steps.blob_vertices));
     std::vector<Cost> costs;
-    for (const std::size_t num_triangles : TriangleSteps) {
+    for (const std::size_t num_triangles : steps.triangles) {
         if (num_triangles > most)
             break;
-        costs.push_back(measure(data_gen::blob(num_triangles / 2), floor, GrowthTolerance));
+        costs.push_back(measure(data_gen::blob(num_triangles / 2), floor, steps.growth_tolerance,
+                                steps.environment_resolution));
         costs.back().x = static_cast<double>(costs.back().num_triangles);
     }
     return costs;
@@ -197,33 +214,29 @@ std::vector<Cost> against_blockers(std::size_t most) {
 } // namespace
 
 int main(int argc, char** argv) {
-    CLI::App program{
-        "Measures how precompute and relighting grow with vertices, the size of a mesh at the "
-        "default "
-        "tolerance, clusters and blockers; Markdown on stdout, plots and JSON in a folder"};
     fs::path folder = ".";
     std::size_t most_vertices = 2'000'000;
     std::size_t most_triangles = 5'000'000;
-    program.add_option("--folder", folder, "where the plots go")->capture_default_str();
-    program.add_option("--vertices", most_vertices, "at most so many")->capture_default_str();
-    program.add_option("--triangles", most_triangles, "at most so many")->capture_default_str();
     std::vector<std::string> chosen = {"vertices", "mesh_size", "clusters", "triangles"};
-    program.add_option("--only", chosen, "which")->check(CLI::IsMember(chosen));
-    CLI11_PARSE(program, argc, argv);
-    try {
+    bench::Program program("bench_growth",
+                           "how precompute and relighting grow with vertices, the size of a mesh "
+                           "at the default tolerance, clusters and blockers; Markdown on stdout, "
+                           "plots and JSON in a folder");
+    program.add("--folder", folder, "where the plots go");
+    program.add("--vertices", most_vertices, "at most so many");
+    program.add("--triangles", most_triangles, "at most so many");
+    program.add("--only", chosen, "which, with commas between them");
+    return program.run(argc, argv, [&] {
+        const Steps steps = program.is_tiny() ? Steps::tiny() : Steps();
         fs::create_directories(folder);
         nlohmann::json result;
         for (const std::string& what : chosen)
             result[what] = report(what,
-                                  what == "vertices"    ? against_vertices(most_vertices)
-                                  : what == "mesh_size" ? against_mesh_size(most_vertices)
-                                  : what == "clusters"  ? against_clusters()
-                                                        : against_blockers(most_triangles),
+                                  what == "vertices"    ? against_vertices(steps, most_vertices)
+                                  : what == "mesh_size" ? against_mesh_size(steps, most_vertices)
+                                  : what == "clusters"  ? against_clusters(steps)
+                                                        : against_blockers(steps, most_triangles),
                                   folder);
         std::ofstream(folder / "growth.json") << result.dump(2) << '\n';
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bench_growth: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+    });
 }

@@ -13,21 +13,22 @@
 #include "data_gen/scenes.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "prt/precompute.h"
-#include "prt/visibility/ray_scene.h"
 #include "relight/light_editor.h"
 #include "relight/relighter.h"
+#include "relumine/precompute.h"
 
 namespace {
 
 using namespace relumine;
 
+/// With --tiny
+bool is_tiny = false;
+
 /// A boulder of 20,000 vertices, precomputed once for all benchmarks.
 struct Fixture {
-    mesh::TriangleMesh mesh = data_gen::blob(20000);
-    prt::RayScene rays{mesh};
-    prt::Transfer transfer = prt::precompute(
-        prt::vertex_receivers(mesh), rays, {.tolerance = 0.02f, .bias = prt::automatic_bias(mesh)});
+    Scene scene =
+        precompute(data_gen::blob(is_tiny ? 1000 : 20000), {.tolerance = is_tiny ? 0.1f : 0.02f});
+    const prt::Transfer& transfer = scene.transfer;
 
     static const Fixture& instance() {
         static const Fixture Instance;
@@ -189,3 +190,21 @@ void BM_ClusterLights(benchmark::State& state) {
 BENCHMARK(BM_ClusterLights)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 } // namespace
+
+// As benchmark_main, and --tiny: every benchmark once.
+int main(int argc, char** argv) {
+    std::vector<char*> arguments(argv, argv + argc);
+    char once[] = "--benchmark_min_time=0.000001";
+    for (char*& argument : arguments)
+        if (argument == std::string("--tiny")) {
+            is_tiny = true;
+            argument = once;
+        }
+    int count = argc;
+    benchmark::Initialize(&count, arguments.data());
+    if (benchmark::ReportUnrecognizedArguments(count, arguments.data()))
+        return 2;
+    benchmark::RunSpecifiedBenchmarks();
+    benchmark::Shutdown();
+    return 0;
+}

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
 #include "cubemap/resample/convert.h"
 #include "cubemap/resample/resample.h"
+#include "tests/bench/program.h"
 #include "tests/cubemap/sunny_sky.h"
 
 using namespace relumine::cubemap;
@@ -120,48 +120,49 @@ std::string percent(double value) {
     return fmt::format("{:.2g} %", 100.0 * value);
 }
 
+void run(const Settings& settings) {
+    fmt::print("{} places of the sun:\n\n", NumSuns);
+    for (const Sun& sun : Suns)
+        fmt::print("- {}\n", sun.place);
+    fmt::print(
+        "\n| from | through | power | own | largest | worst sun | equal size: own | largest |\n"
+        "|---|---|---|---|---|---|---|---|\n");
+    for (const Layout layout : Layouts) {
+        for (const Layout other : Layouts) {
+            if (layout == other || (!settings.from.empty() && settings.from != name(layout)) ||
+                (!settings.through.empty() && settings.through != name(other)))
+                continue;
+            const Errors roomy =
+                there_and_back(layout, other, settings.resolution, settings.darkest);
+            const Errors equal = there_and_back(layout, other, SourceResolution, settings.darkest);
+            fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", name(layout), name(other),
+                       percent(roomy.power), percent(roomy.own), percent(roomy.largest),
+                       Suns.at(roomy.sun).place, percent(equal.own), percent(equal.largest));
+            std::fflush(stdout);
+        }
+    }
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{
-        "Measures what environments lose on the way to another layout and back: Markdown on "
-        "stdout, in some minutes"};
-    program.add_option("--face-resolution", settings.resolution,
-                       "natural resolution on the way (what `env convert` chooses)");
-    program
-        .add_option("--darkest", settings.darkest,
-                    "normals with less than this part of the largest irradiance count only against "
-                    "the largest")
-        ->capture_default_str();
-    program.add_option("--from", settings.from, "this layout only, as the table names it");
-    program.add_option("--through", settings.through, "this layout on the way only");
-    CLI11_PARSE(program, argc, argv);
-    try {
-        fmt::print("{} places of the sun:\n\n", NumSuns);
-        for (const Sun& sun : Suns)
-            fmt::print("- {}\n", sun.place);
-        fmt::print(
-            "\n| from | through | power | own | largest | worst sun | equal size: own | largest |\n"
-            "|---|---|---|---|---|---|---|---|\n");
-        for (const Layout layout : Layouts) {
-            for (const Layout other : Layouts) {
-                if (layout == other || (!settings.from.empty() && settings.from != name(layout)) ||
-                    (!settings.through.empty() && settings.through != name(other)))
-                    continue;
-                const Errors roomy =
-                    there_and_back(layout, other, settings.resolution, settings.darkest);
-                const Errors equal =
-                    there_and_back(layout, other, SourceResolution, settings.darkest);
-                fmt::print("| {} | {} | {} | {} | {} | {} | {} | {} |\n", name(layout), name(other),
-                           percent(roomy.power), percent(roomy.own), percent(roomy.largest),
-                           Suns.at(roomy.sun).place, percent(equal.own), percent(equal.largest));
-                std::fflush(stdout);
-            }
+    relumine::bench::Program program(
+        "bench_layouts", "what environments lose on the way to another layout and back: Markdown "
+                         "on stdout, in some minutes");
+    program.add("--face-resolution", settings.resolution,
+                "natural resolution on the way, 0: what `env convert` chooses");
+    program.add("--darkest", settings.darkest,
+                "normals with less than this part of the largest irradiance count only against the "
+                "largest");
+    program.add("--from", settings.from, "this layout only, as the table names it");
+    program.add("--through", settings.through, "this layout on the way only");
+    return program.run(argc, argv, [&] {
+        if (program.is_tiny()) {
+            settings.from = name(Layout::LatLong);
+            settings.through = name(Layout::Cube);
+            settings.resolution = SourceResolution;
         }
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "layouts: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+        run(settings);
+    });
 }

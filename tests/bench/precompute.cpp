@@ -8,34 +8,29 @@
 #include <filesystem>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include "data_gen/scenes.h"
-#include "mesh/floor.h"
-#include "mesh/load.h"
 #include "prt/clusters/lattice.h"
 #include "prt/precompute.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "tests/bench/inputs.h"
 #include "tests/bench/process_usage.h"
+#include "tests/bench/times.h"
 
 namespace {
 
 using namespace relumine;
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// The paper's algorithm as one would write it down: cell by cell, each of the nine samples a
 /// vector of floats, every ray on its own, nothing shared between cells. Returns the number of
@@ -106,14 +101,14 @@ class LongestGap {
 public:
     void call() {
         const std::scoped_lock lock(mutex_);
-        longest_ = std::max(longest_, seconds_since(last_));
-        last_ = Clock::now();
+        longest_ = std::max(longest_, since_last_.seconds());
+        since_last_.restart();
     }
     [[nodiscard]] double seconds() const { return longest_; }
 
 private:
     std::mutex mutex_;
-    Clock::time_point last_ = Clock::now();
+    bench::Stopwatch since_last_;
     double longest_ = 0.0;
 };
 
@@ -144,74 +139,92 @@ void measure_cancel(const prt::Receivers& receivers, const prt::Blockers& blocke
     for (int i = 1; i <= 8; ++i) {
         std::stop_source stop;
         options.stop = stop.get_token();
-        Clock::time_point asked;
+        bench::Stopwatch since_asked;
         const std::jthread canceller([&, i] {
             std::this_thread::sleep_for(std::chrono::milliseconds(170 * i));
-            asked = Clock::now();
+            since_asked.restart();
             stop.request_stop();
         });
         try {
             static_cast<void>(prt::precompute(receivers, blockers, options));
         } catch (const prt::Cancelled&) {
-            longest = std::max(longest, seconds_since(asked));
+            longest = std::max(longest, since_asked.seconds());
         }
     }
     fmt::print("cancelled after at most {:.0f} ms\n", longest * 1e3);
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
-    CLI::App program("how fast relumine precompute is");
-    std::string mesh_file;
+struct Settings {
+    std::string mesh = "bun_zipper.ply";
     std::uint32_t floor_vertices = 193;
     float tolerance = 0.03f;
     bool plain = false;
     bool threads = false;
     bool cancel = false;
-    program.add_option("--mesh", mesh_file,
-                       "a mesh file, or 'colonnade' for the generated one; default: the bunny");
-    program.add_option("--floor", floor_vertices, "floor of N x N vertices, 0 for none")
-        ->capture_default_str();
-    program.add_option("--tolerance", tolerance)->capture_default_str();
-    program.add_flag("--plain", plain,
-                     "also one ray at a time, cell by cell: minutes at the default tolerance");
-    program.add_flag("--threads", threads, "also on one thread");
-    program.add_flag("--cancel", cancel, "also how fast it stops");
-    CLI11_PARSE(program, argc, argv);
+};
 
-    mesh::TriangleMesh mesh;
-    if (mesh_file == "colonnade") {
-        mesh = data_gen::colonnade();
-    } else {
-        const std::filesystem::path bunny =
-            std::filesystem::path(RELUMINE_DATA_DIR) / "meshes/stanford/bun_zipper.ply";
-        mesh = mesh::load(mesh_file.empty() ? bunny : std::filesystem::path(mesh_file));
-        if (floor_vertices > 0)
-            mesh::append_floor(mesh, floor_vertices);
-    }
+/// A path, a name of meshes/stanford, or 'colonnade'.
+mesh::TriangleMesh load(const Settings& settings, const bench::Inputs& inputs) {
+    if (settings.mesh == "colonnade")
+        return data_gen::colonnade();
+    if (!inputs.is_tiny() && std::filesystem::exists(settings.mesh))
+        return load_mesh(settings.mesh,
+                         {.floor_vertices = settings.floor_vertices != 0
+                                                ? std::optional(settings.floor_vertices)
+                                                : std::nullopt})
+            .geometry;
+    return inputs.mesh(settings.mesh, settings.floor_vertices).geometry;
+}
+
+/// The parts of relumine::precompute() one by one, as their times are wanted.
+void run(const Settings& settings, const bench::Inputs& inputs) {
+    const mesh::TriangleMesh mesh = load(settings, inputs);
     const prt::Receivers receivers = prt::vertex_receivers(mesh);
-    const prt::PrecomputeOptions options{.tolerance = tolerance, .bias = prt::automatic_bias(mesh)};
+    const prt::PrecomputeOptions options{.tolerance = settings.tolerance,
+                                         .bias = prt::automatic_bias(mesh)};
     fmt::print("{} vertices, {} triangles, tolerance {}\n", mesh.num_vertices(),
-               mesh.num_triangles(), tolerance);
+               mesh.num_triangles(), settings.tolerance);
 
     const prt::RayScene rays(mesh);
-    const Clock::time_point start = Clock::now();
+    const bench::Stopwatch tree;
     const prt::BeamScene beams(mesh, rays);
-    fmt::print("tree for the beams     {:8.2f} s\n", seconds_since(start));
-    if (threads) {
+    fmt::print("tree for the beams     {:8.2f} s\n", tree.seconds());
+    if (settings.threads) {
         const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
         measure("beams, one thread", receivers, beams, options);
     }
     measure("beams", receivers, beams, options);
     measure("Embree, packets", receivers, rays, options);
-    if (plain) {
-        const Clock::time_point plain_start = Clock::now();
+    if (settings.plain) {
+        const bench::Stopwatch watch;
         const double before = bench::cpu_seconds();
         const std::size_t num_clusters = PlainClustering(receivers, rays, options).run();
-        print("plain", seconds_since(plain_start), bench::cpu_seconds() - before, num_clusters);
+        print("plain", watch.seconds(), bench::cpu_seconds() - before, num_clusters);
         fmt::print("\n");
     }
-    if (cancel)
+    if (settings.cancel)
         measure_cancel(receivers, beams, options);
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Settings settings;
+    bench::Program program("bench_precompute", "how fast relumine precompute is");
+    const bench::Inputs inputs(program);
+    program.add("--mesh", settings.mesh,
+                "a mesh file, a name of meshes/stanford, or 'colonnade' for the generated one");
+    program.add("--floor", settings.floor_vertices, "floor of N x N vertices, 0 for none");
+    program.add("--tolerance", settings.tolerance, "RMS, 1/sr");
+    program.add_flag("--plain", settings.plain,
+                     "also one ray at a time, cell by cell: minutes at the default tolerance");
+    program.add_flag("--threads", settings.threads, "also on one thread");
+    program.add_flag("--cancel", settings.cancel, "also how fast it stops");
+    return program.run(argc, argv, [&] {
+        if (inputs.is_tiny()) {
+            settings.tolerance = 0.1f;
+            settings.plain = settings.threads = settings.cancel = true;
+        }
+        run(settings, inputs);
+    });
 }

@@ -9,19 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/image/environment.h"
-#include "cubemap/resample/resample.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/exact.h"
-#include "relight/light_editor.h"
-#include "tests/bench/bunny.h"
+#include "relumine/relumine.h"
 #include "tests/bench/dense_table.h"
-#include "tests/bench/median.h"
+#include "tests/bench/inputs.h"
 #include "tests/bench/memory_bandwidth.h"
+#include "tests/bench/times.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -29,9 +25,6 @@ using namespace relumine;
 namespace {
 
 struct Settings {
-    fs::path data = RELUMINE_DATA_DIR;
-    /// A bunny.prt that is there already
-    fs::path scene;
     fs::path json = "relight.json";
     std::uint32_t resolution = 1024;
     /// Receivers to verify
@@ -53,26 +46,24 @@ private:
 };
 
 /// Median time of an edit that changes a disc's brightness.
-double edit_seconds(relight::LightEditor& editor, double part_of_face) {
+double edit_seconds(LitScene& lit, double part_of_face) {
     const glm::dvec3 direction(0.15, 0.35, 1.0);
-    editor.set_layers({bench::disc(direction, part_of_face, 0.0)});
+    lit.set_layers({bench::disc(direction, part_of_face, 0.0)});
     constexpr int NumEdits = 200;
     std::vector<double> seconds;
     for (int i = 1; i <= NumEdits; ++i)
         seconds.push_back(bench::seconds_of(
-            [&] { editor.set_layer(0, bench::disc(direction, part_of_face, 0.05 * i)); }));
+            [&] { lit.set_layer(0, bench::disc(direction, part_of_face, 0.05 * i)); }));
     return bench::median(seconds);
 }
 
-void measure_relighting(const Settings& settings, const prt::Scene& scene,
-                        const relight::ShadowRays& shadow_rays, Report& report) {
-    const double bandwidth = bench::memory_bandwidth();
+void measure_relighting(const Settings& settings, const bench::Inputs& inputs, LitScene& lit,
+                        Report& report) {
+    const Scene& scene = lit.scene();
+    const double bandwidth = bench::memory_bandwidth(inputs.is_tiny());
     report.add_value("memory_bandwidth", bandwidth);
-    const cubemap::CubeMap beach =
-        cubemap::resample(cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr"),
-                          settings.resolution);
-    relight::LightEditor editor(scene.transfer, shadow_rays);
-    editor.set_base(beach);
+    const cubemap::CubeMap beach = inputs.environment("beach_cross.hdr", settings.resolution);
+    lit.light(beach);
 
     // A Relighter without sharp lights: what is compared is the sum over clusters.
     relight::Relighter relighter(scene.transfer);
@@ -100,7 +91,7 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
     fmt::print(
         "Memory is read at {:.1f} GB/s. Bunny, {} vertices, {} clusters; beach at R = {}.\n\n",
         1e-9 * bandwidth, scene.mesh.num_vertices(), scene.transfer.num_clusters(),
-        settings.resolution);
+        beach.resolution);
     fmt::print("| step | median | remark |\n|---|---|---|\n");
     report.add("full_relight", "full relight of a binned map", 1e3 * full,
                fmt::format("{:.0f} MB, {:.1f} times as fast as the dense table", 1e-6 * bytes,
@@ -119,83 +110,64 @@ void measure_relighting(const Settings& settings, const prt::Scene& scene,
                fmt::format("{:.0f} MB at {:.1f} GB/s, {:.2f} of what memory gives",
                            1e-6 * map_bytes, 1e-9 * map_bytes / bin, map_bytes / bin / bandwidth));
     for (const double part : {0.05, 0.10}) {
-        const double edit = edit_seconds(editor, part);
+        const double edit = edit_seconds(lit, part);
         report.add(fmt::format("edit_{:.0f}", 100 * part),
                    fmt::format("an edit, disc of {:.0f} % of the map's width", 100 * part),
                    1e3 * edit, fmt::format("{:.0f} times as fast as a full relight", full / edit));
     }
 }
 
-void measure_files(const prt::Scene& scene, Report& report) {
+void measure_files(const Scene& scene, Report& report) {
     const fs::path path = fs::temp_directory_path() / "relumine_bench_relight.prt";
-    prt::save_scene(path, scene);
-    const double load = bench::median_seconds([&] { static_cast<void>(prt::load_scene(path)); });
+    save_scene(path, scene);
+    const double load = bench::median_seconds([&] { static_cast<void>(load_scene(path)); });
     report.add("load", "loading the .prt", 1e3 * load,
                fmt::format("{:.1f} MB", 1e-6 * static_cast<double>(fs::file_size(path))));
     report.add_value("prt_bytes", static_cast<double>(fs::file_size(path)));
     fs::remove(path);
 }
 
-void measure_errors(const Settings& settings, const prt::Scene& scene,
-                    const relight::ShadowRays& shadow_rays, Report& report) {
+void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitScene& lit,
+                    Report& report) {
     constexpr std::uint32_t Resolution = 256;
-    const std::vector<std::uint32_t> sample =
-        relight::random_receivers(scene.transfer, settings.num_samples, 1);
+    lit.set_layers({});
+    std::size_t num_samples = 0;
     std::vector<double> seconds;
     std::string errors;
     for (const std::string name : {"grace", "stpeters", "galileo", "kitchen", "beach"}) {
-        const cubemap::CubeMap map = cubemap::resample(
-            cubemap::load_environment(settings.data / "envs/debevec" / (name + "_cross.hdr")),
-            Resolution);
-        const std::vector<glm::vec3> relit = relight::relight(scene.transfer, map, shadow_rays);
-        std::vector<glm::dvec3> exact;
-        seconds.push_back(bench::seconds_of([&] {
-            exact = relight::exact_radiance(scene.receivers, sample, *shadow_rays.blockers, map,
-                                            {.bias = scene.settings.bias});
-        }));
-        const double error = relight::compare(sample, exact, relit).relative_l2;
-        errors += fmt::format(" {} {:.5f}", name, error);
-        report.add_value("error_" + name, error);
+        lit.light(inputs.environment(name + "_cross.hdr", Resolution));
+        Verification check;
+        seconds.push_back(
+            bench::seconds_of([&] { check = lit.verify({.num_samples = settings.num_samples}); }));
+        num_samples = check.receivers.size();
+        errors += fmt::format(" {} {:.5f}", name, check.error.relative_l2);
+        report.add_value("error_" + name, check.error.relative_l2);
     }
     report.add("verify",
-               fmt::format("exact radiance of {} receivers, R = {}", sample.size(), Resolution),
+               fmt::format("exact radiance of {} receivers, R = {}", num_samples,
+                           lit.environment().resolution),
                1e3 * bench::median(seconds), "relative L2 of relighting:" + errors);
-}
-
-void run(const Settings& settings) {
-    const prt::Scene scene = bench::bunny(settings.scene, settings.data);
-    const prt::RayScene rays(scene.mesh);
-    const relight::ShadowRays shadow_rays{.blockers = &rays,
-                                          .positions = scene.mesh.positions,
-                                          .bias = scene.settings.bias,
-                                          .tolerance = scene.settings.tolerance};
-    Report report;
-    measure_relighting(settings, scene, shadow_rays, report);
-    measure_files(scene, report);
-    measure_errors(settings, scene, shadow_rays, report);
-    report.save(settings.json);
 }
 
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{
-        "Measures relighting and editing of the bunny against the plain ways; Markdown on "
-        "stdout, JSON in a file"};
-    program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
-        ->capture_default_str();
-    program.add_option("--scene", settings.scene, "the bunny's .prt, where it is there");
-    program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
-    program.add_option("--face-resolution", settings.resolution, "R")->capture_default_str();
-    program.add_option("--samples", settings.num_samples, "receivers to verify")
-        ->capture_default_str();
-    CLI11_PARSE(program, argc, argv);
-    try {
-        run(settings);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bench_relight: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+    bench::Program program("bench_relight", "relighting and editing of the bunny against the plain "
+                                            "ways; Markdown on stdout, JSON in a file");
+    bench::Inputs inputs(program);
+    inputs.add_scene();
+    program.add("--json", settings.json, "JSON file to write");
+    program.add("--face-resolution", settings.resolution, "R");
+    program.add("--samples", settings.num_samples, "receivers to verify");
+    return program.run(argc, argv, [&] {
+        if (inputs.is_tiny())
+            settings.num_samples = 50;
+        LitScene lit(inputs.bunny());
+        Report report;
+        measure_relighting(settings, inputs, lit, report);
+        measure_files(lit.scene(), report);
+        measure_errors(settings, inputs, lit, report);
+        report.save(settings.json);
+    });
 }

@@ -6,21 +6,20 @@
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <unistd.h>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
-#include "prt/precompute.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/light_editor.h"
-#include "tests/bench/median.h"
+#include "relumine/relumine.h"
+#include "tests/bench/program.h"
+#include "tests/bench/times.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -110,35 +109,26 @@ Times times_of(std::vector<double> seconds) {
 }
 
 void run(const Settings& settings) {
-    const mesh::TriangleMesh mesh = data_gen::blob(settings.num_vertices);
-    const prt::RayScene rays(mesh);
-    const float bias = prt::automatic_bias(mesh);
-    const prt::PrecomputeOptions options{.tolerance = 0.02f, .bias = bias};
-    const prt::Transfer transfer = prt::precompute(prt::vertex_receivers(mesh), rays, options);
-    const relight::ShadowRays shadow_rays{.blockers = &rays,
-                                          .positions = mesh.positions,
-                                          .bias = bias,
-                                          .tolerance = options.tolerance};
-    relight::LightEditor editor(transfer, shadow_rays);
+    LitScene lit(precompute(data_gen::blob(settings.num_vertices), {.tolerance = 0.02f}));
+    const prt::Transfer& transfer = lit.scene().transfer;
     const cubemap::CubeMap base = data_gen::two_soft_boxes(settings.resolution);
-    editor.set_base(base);
+    lit.light(base);
 
     RandomLayers layers;
     // Without marks: each sums all anew, and a history may hold a gigabyte.
     const auto edit = [&] {
-        editor.set_layers({layers.next()});
+        lit.set_layers({layers.next()});
     };
     const auto change_environment = [&](std::size_t i) {
         cubemap::CubeMap next = base;
         const auto gain = static_cast<float>(1 + i % 7);
         for (glm::vec3& texel : next.texels)
             texel *= gain;
-        editor.set_base(std::move(next));
+        lit.light(std::move(next));
     };
     const auto drift_now = [&] {
-        return difference(
-            editor.relighter().radiance(),
-            relight::relight(transfer, editor.relighter().environment(), shadow_rays));
+        return difference(lit.radiance(),
+                          relight::relight(transfer, lit.environment(), lit.shadow_rays()));
     };
     // A tenth of the work first: caches and pools have their size then.
     for (std::size_t i = 0; i < settings.num_environments / 10; ++i)
@@ -155,7 +145,7 @@ void run(const Settings& settings) {
     double drift = 0.0;
     for (std::size_t i = 0; i < edits.size(); ++i) {
         edits[i] = bench::seconds_of(edit);
-        if (i % 1000 == 999)
+        if (i % 1000 == 999 || i + 1 == edits.size())
             drift = std::max(drift, drift_now());
     }
     const double after = resident_megabytes();
@@ -188,25 +178,22 @@ void run(const Settings& settings) {
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{
-        "Measures memory, drift and times over many edits and environments; Markdown on "
-        "stdout, JSON in a file"};
-    program.add_option("--edits", settings.num_edits)
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    program.add_option("--environments", settings.num_environments)
-        ->capture_default_str()
-        ->check(CLI::PositiveNumber);
-    program.add_option("--vertices", settings.num_vertices, "of the generated boulder")
-        ->capture_default_str();
-    program.add_option("--face-resolution", settings.resolution, "R")->capture_default_str();
-    program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
-    CLI11_PARSE(program, argc, argv);
-    try {
+    bench::Program program("bench_service", "memory, drift and times over many edits and "
+                                            "environments; Markdown on stdout, JSON in a file");
+    program.add("--edits", settings.num_edits, "1 or more");
+    program.add("--environments", settings.num_environments, "1 or more");
+    program.add("--vertices", settings.num_vertices, "of the generated boulder");
+    program.add("--face-resolution", settings.resolution, "R");
+    program.add("--json", settings.json, "JSON file to write");
+    return program.run(argc, argv, [&] {
+        if (program.is_tiny()) {
+            settings.num_edits = 40;
+            settings.num_environments = 10;
+            settings.num_vertices = 1000;
+            settings.resolution = 16;
+        }
+        if (settings.num_edits == 0 || settings.num_environments == 0)
+            throw std::invalid_argument("expected at least one edit and one environment");
         run(settings);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "bench_service: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+    });
 }

@@ -3,7 +3,6 @@
 // the error against exact integration that the paper shows as a picture.
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -11,31 +10,23 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/image/environment.h"
-#include "cubemap/resample/resample.h"
-#include "mesh/floor.h"
-#include "mesh/load.h"
-#include "prt/glossy/glossy_precompute.h"
-#include "prt/precompute.h"
-#include "prt/scene/scene_file.h"
-#include "prt/visibility/beam_scene.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/exact.h"
-#include "relight/pictures/picture.h"
-#include "relight/relighter.h"
-#include "tests/bench/median.h"
+#include "relumine/relumine.h"
+#include "tests/bench/inputs.h"
+#include "tests/bench/times.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
 
 namespace {
 
-constexpr float Epsilon = 5e-5f; // the paper's threshold, Section 6
+/// The paper's threshold, Section 6
+constexpr float Epsilon = 5e-5f;
+/// For a thousand vertices
+constexpr float TinyEpsilon = 2e-3f;
 constexpr std::array<const char*, 5> Crosses = {"grace", "stpeters", "galileo", "kitchen", "beach"};
 
 /// A row of the paper's table (Pentium 4, 3.4 GHz).
@@ -54,7 +45,6 @@ constexpr PaperRow PaperBuddha = {"Buddha", "happy_vrip_res3.ply", 69577, 4701, 
 constexpr float Roughness = 0.3f;
 
 struct Settings {
-    fs::path data = RELUMINE_DATA_DIR;
     fs::path json = "table1.json";
     std::size_t num_samples = 1000;
     bool with_4096 = true;
@@ -62,30 +52,18 @@ struct Settings {
     std::string only;
 };
 
-prt::Scene precomputed(const fs::path& mesh, std::uint32_t face_resolution,
-                       prt::PrecomputeStatistics& statistics) {
-    prt::Scene scene;
-    scene.mesh = mesh::load(mesh);
-    mesh::append_floor(scene.mesh);
-    const prt::RayScene exact_rays(scene.mesh);
-    const prt::BeamScene rays(scene.mesh, exact_rays);
-    scene.settings.bias = prt::automatic_bias(scene.mesh);
-    scene.settings.epsilon = Epsilon;
-    scene.transfer = prt::precompute(
-        prt::vertex_receivers(scene.mesh), rays,
-        {.epsilon = Epsilon, .face_resolution = face_resolution, .bias = scene.settings.bias},
-        &statistics);
-    return scene;
+float epsilon(const bench::Inputs& inputs) {
+    return inputs.is_tiny() ? TinyEpsilon : Epsilon;
 }
 
 /// The experiment of Section 6: a disc added to the beach map, its intensity rising over 60 steps.
 /// `radius` is a part of the map's width.
-double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, double radius) {
-    const std::uint32_t r = relighter.environment().resolution;
+double seconds_per_edit(LitScene& lit, const glm::dvec3& axis, double radius) {
+    const std::uint32_t r = lit.environment().resolution;
     const double min_cosine =
         std::cos(radius * std::numbers::pi / 2.0); // a face is a right angle wide
     const cubemap::FacePoint centre = cubemap::face_point(axis);
-    relight::TexelRectangle box{.face = centre.face, .x0 = r, .y0 = r};
+    cubemap::TexelRectangle box{.face = centre.face, .x0 = r, .y0 = r};
     for (std::uint32_t y = 0; y < r; ++y)
         for (std::uint32_t x = 0; x < r; ++x)
             if (glm::dot(cubemap::texel_direction(centre.face, x, y, r), axis) >= min_cosine) {
@@ -102,17 +80,17 @@ double seconds_per_edit(relight::Relighter& relighter, const glm::dvec3& axis, d
                 const bool inside =
                     glm::dot(cubemap::texel_direction(box.face, x, y, r), axis) >= min_cosine;
                 radiance.push_back(inside ? glm::vec3(0.2f * static_cast<float>(step + 1))
-                                          : relighter.environment().at(box.face, x, y));
+                                          : lit.environment().at(box.face, x, y));
             }
-        seconds.push_back(relighter.update_region(box, radiance).seconds);
+        seconds.push_back(lit.update_region(box, radiance).seconds);
     }
     return bench::median(seconds);
 }
 
 /// Size of the scene's file.
-std::uint64_t saved_bytes(const prt::Scene& scene, const char* name) {
+std::uint64_t saved_bytes(const Scene& scene, const char* name) {
     const fs::path file = fs::temp_directory_path() / fmt::format("relumine_table1_{}.prt", name);
-    const std::uint64_t bytes = prt::save_scene(file, scene);
+    const std::uint64_t bytes = save_scene(file, scene);
     fs::remove(file);
     return bytes;
 }
@@ -127,62 +105,47 @@ struct UnderCrosses {
 };
 
 /// `resolution` of the environments, 0: their natural one.
-UnderCrosses under_crosses(relight::Relighter& relighter, const prt::Receivers& receivers,
-                           const prt::RayScene& rays, float bias, const Settings& settings,
+UnderCrosses under_crosses(LitScene& lit, const Settings& settings, const bench::Inputs& inputs,
                            std::uint32_t resolution = 0) {
     UnderCrosses result;
-    const std::vector<std::uint32_t> sample =
-        relight::random_receivers(relighter.transfer(), settings.num_samples, 1);
-    result.num_samples = sample.size();
     for (const char* name : Crosses) {
         fmt::print(stderr, "exact integration under {}\n", name);
-        const cubemap::EnvironmentImage image = cubemap::load_environment(
-            settings.data / "envs/debevec" / fmt::format("{}_cross.hdr", name));
-        const cubemap::CubeMap map = cubemap::resample(
-            image, resolution != 0 ? resolution : cubemap::natural_resolution(image));
+        const cubemap::CubeMap map =
+            inputs.environment(fmt::format("{}_cross.hdr", name), resolution);
         for (int i = 0; i < 5; ++i)
-            result.times.push_back(relighter.set_environment(map));
-        const std::vector<glm::dvec3> exact =
-            relight::exact_radiance(receivers, sample, rays, map, {.bias = bias});
-        result.errors[name] = relight::compare(sample, exact, relighter.radiance()).relative_l2;
+            result.times.push_back(lit.light(map));
+        const Verification check = lit.verify({.num_samples = settings.num_samples});
+        result.num_samples = check.receivers.size();
+        result.errors[name] = check.error.relative_l2;
     }
     return result;
 }
 
-nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
-    prt::PrecomputeStatistics statistics;
+nlohmann::json measure(const PaperRow& paper, const Settings& settings,
+                       const bench::Inputs& inputs) {
+    const Mesh mesh = inputs.mesh(paper.mesh);
+    PrecomputeReport report;
     fmt::print(stderr, "{}: precompute at R = 1024\n", paper.name);
-    const prt::Scene scene =
-        precomputed(settings.data / "meshes/stanford" / paper.mesh, 1024, statistics);
-    const std::uint64_t file_bytes = saved_bytes(scene, paper.name);
+    LitScene lit(precompute(mesh, {.epsilon = epsilon(inputs)}, &report));
+    const std::uint64_t file_bytes = saved_bytes(lit.scene(), paper.name);
 
-    const prt::RayScene rays(scene.mesh);
-    const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
-    const relight::ShadowRays shadow_rays{.blockers = &rays,
-                                          .positions = scene.mesh.positions,
-                                          .bias = scene.settings.bias,
-                                          .tolerance = rms};
-    relight::Relighter relighter(scene.transfer, shadow_rays);
-    const UnderCrosses verified = under_crosses(relighter, prt::vertex_receivers(scene.mesh), rays,
-                                                scene.settings.bias, settings);
+    const UnderCrosses verified = under_crosses(lit, settings, inputs);
     std::vector<double> relight_seconds;
-    for (const relight::RelightTimes& times : verified.times)
+    for (const RelightTimes& times : verified.times)
         relight_seconds.push_back(times.seconds_trace + times.seconds_relight);
 
     // The light sources of the experiment stand in front of the model and at its side.
-    const cubemap::EnvironmentImage beach =
-        cubemap::load_environment(settings.data / "envs/debevec/beach_cross.hdr");
-    relighter.set_environment(cubemap::resample(beach, 1024));
+    lit.light(inputs.environment("beach_cross.hdr", 1024));
     const double edit_front =
-        seconds_per_edit(relighter, glm::normalize(glm::dvec3(0.15, 0.35, 1.0)), 0.05);
+        seconds_per_edit(lit, glm::normalize(glm::dvec3(0.15, 0.35, 1.0)), 0.05);
     const double edit_side =
-        seconds_per_edit(relighter, glm::normalize(glm::dvec3(1.0, 0.35, 0.15)), 0.10);
+        seconds_per_edit(lit, glm::normalize(glm::dvec3(1.0, 0.35, 0.15)), 0.10);
 
     nlohmann::json row = {{"scene", paper.name},
-                          {"vertices", scene.mesh.num_vertices()},
-                          {"clusters", statistics.num_clusters},
+                          {"vertices", report.num_vertices},
+                          {"clusters", report.clusters.num_clusters},
                           {"file_bytes", file_bytes},
-                          {"seconds_precompute", statistics.seconds},
+                          {"seconds_precompute", report.clusters.seconds},
                           {"seconds_relight", bench::median(relight_seconds)},
                           {"seconds_edit_5_percent", edit_front},
                           {"seconds_edit_10_percent", edit_side},
@@ -190,61 +153,44 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings) {
                           {"relative_l2", verified.errors}};
     if (settings.with_4096 && paper.name == std::string("Bunny")) { // as the paper has it
         fmt::print(stderr, "{}: precompute at R = 4096\n", paper.name);
-        static_cast<void>(
-            precomputed(settings.data / "meshes/stanford" / paper.mesh, 4096, statistics));
-        row["clusters_4096"] = statistics.num_clusters;
+        row["clusters_4096"] =
+            precompute(mesh, {.epsilon = epsilon(inputs), .face_resolution = 4096})
+                .transfer.num_clusters();
     }
     return row;
 }
 
 /// The third row: the Buddha's vertices with highlights, R = 256.
-nlohmann::json measure_buddha(const Settings& settings) {
+nlohmann::json measure_buddha(const Settings& settings, const bench::Inputs& inputs) {
+    Mesh mesh = inputs.mesh(PaperBuddha.mesh);
     fmt::print(stderr, "Buddha: precompute at R = 256\n");
-    prt::Scene scene;
-    scene.mesh = mesh::load(settings.data / "meshes/stanford" / PaperBuddha.mesh);
-    mesh::append_floor(scene.mesh);
-    scene.settings.bias = prt::automatic_bias(scene.mesh);
-    scene.settings.epsilon = Epsilon;
-    scene.settings.view = relight::automatic_camera(scene.mesh);
-    scene.receivers = prt::vertex_receivers(scene.mesh);
-    prt::look_from(scene.receivers, scene.settings.view->eye);
-    scene.receivers.surfaces.assign(scene.receivers.size(), {.albedo = glm::vec3(0.3f),
-                                                             .specular = glm::vec3(0.5f),
-                                                             .highlight = prt::Highlight::Ggx,
-                                                             .shape = Roughness});
-    const auto start = std::chrono::steady_clock::now();
-    const prt::RayScene exact_rays(scene.mesh);
-    const prt::BeamScene rays(scene.mesh, exact_rays);
-    scene.transfer =
-        prt::precompute(scene.receivers, rays,
-                        {.epsilon = Epsilon, .face_resolution = 256, .bias = scene.settings.bias});
-    prt::GlossyStatistics glossy;
-    scene.transfer.glossy =
-        prt::precompute_glossy(scene.receivers, rays, scene.transfer,
-                               {.face_resolution = 256, .bias = scene.settings.bias}, &glossy);
-    prt::set_surfaces(scene.transfer, scene.receivers);
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const bench::Stopwatch watch;
+    PrecomputeReport report;
+    Scene scene = precompute(std::move(mesh),
+                             {.epsilon = epsilon(inputs),
+                              .face_resolution = 256,
+                              .view = View{},
+                              .surface = everywhere({.albedo = glm::vec3(0.3f),
+                                                     .specular = glm::vec3(0.5f),
+                                                     .highlight = prt::Highlight::Ggx,
+                                                     .shape = Roughness})},
+                             &report);
+    const double seconds = watch.seconds();
     const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);
 
-    const float rms = Epsilon * std::sqrt(static_cast<float>(scene.mesh.num_vertices()));
-    relight::Relighter relighter(scene.transfer, {.blockers = &exact_rays,
-                                                  .positions = scene.mesh.positions,
-                                                  .bias = scene.settings.bias,
-                                                  .tolerance = rms});
-    const UnderCrosses verified =
-        under_crosses(relighter, scene.receivers, exact_rays, scene.settings.bias, settings, 256);
+    LitScene lit(std::move(scene));
+    const UnderCrosses verified = under_crosses(lit, settings, inputs, 256);
     std::vector<double> relight_seconds;
-    for (const relight::RelightTimes& times : verified.times)
+    for (const RelightTimes& times : verified.times)
         relight_seconds.push_back(times.seconds_relight);
     return {{"scene", PaperBuddha.name},
-            {"vertices", scene.mesh.num_vertices()},
-            {"clusters", scene.transfer.num_clusters()},
-            {"cells_per_block", static_cast<double>(glossy.num_entries) /
-                                    static_cast<double>(scene.transfer.counts.num_blocks())},
+            {"vertices", report.num_vertices},
+            {"clusters", report.clusters.num_clusters},
+            {"cells_per_block", static_cast<double>(report.highlights->num_entries) /
+                                    static_cast<double>(lit.scene().transfer.counts.num_blocks())},
             {"file_bytes", file_bytes},
             {"seconds_precompute", seconds},
-            {"seconds_glossy", glossy.seconds},
+            {"seconds_glossy", report.highlights->seconds},
             {"seconds_relight", bench::median(relight_seconds)},
             {"samples_verified", verified.num_samples},
             {"relative_l2", verified.errors}};
@@ -301,48 +247,50 @@ void print_markdown(const nlohmann::json& rows) {
     }
 }
 
+void run(const Settings& settings, const bench::Inputs& inputs) {
+    const auto wanted = [&](const PaperRow& paper) {
+        return settings.only.empty() || settings.only == paper.name;
+    };
+    // One row that is absent need not keep the others back.
+    const auto measured = [](nlohmann::json& rows, const auto& row) {
+        try {
+            rows.push_back(row());
+        } catch (const bench::Absent& absent) {
+            fmt::print("skipped, {}\n", absent.what());
+        }
+    };
+    nlohmann::json rows = nlohmann::json::array();
+    for (const PaperRow& paper : Paper)
+        if (wanted(paper))
+            measured(rows, [&] { return measure(paper, settings, inputs); });
+    nlohmann::json buddha = nlohmann::json::array();
+    if (wanted(PaperBuddha))
+        measured(buddha, [&] { return measure_buddha(settings, inputs); });
+    if (!rows.empty())
+        print_markdown(rows);
+    for (const nlohmann::json& row : buddha) {
+        print_buddha(row);
+        rows.push_back(row);
+    }
+    std::ofstream(settings.json) << rows.dump(2) << '\n';
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{"Measures Table 1 of Johan and Nishita; Markdown on stdout, JSON in a file"};
-    program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
-        ->capture_default_str();
-    program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
-    program.add_option("--samples", settings.num_samples, "receivers to verify")
-        ->capture_default_str();
-    program.add_flag("!--skip-4096", settings.with_4096, "leave out the Bunny at R = 4096");
-    program.add_option("--only", settings.only, "one row: Bunny, Dragon or Buddha");
-    CLI11_PARSE(program, argc, argv);
-
-    const auto wanted = [&](const PaperRow& paper) {
-        return settings.only.empty() || settings.only == paper.name;
-    };
-    nlohmann::json rows = nlohmann::json::array();
-    nlohmann::json buddha;
-    try {
-        for (const PaperRow& paper : Paper) {
-            if (!wanted(paper))
-                continue;
-            const fs::path mesh = settings.data / "meshes/stanford" / paper.mesh;
-            if (fs::exists(mesh))
-                rows.push_back(measure(paper, settings));
-            else
-                fmt::print("{}: skipped, no {}; name the folder with --data\n", paper.name,
-                           mesh.string());
-        }
-        if (wanted(PaperBuddha) && fs::exists(settings.data / "meshes/stanford" / PaperBuddha.mesh))
-            buddha = measure_buddha(settings);
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "table1: {}\n", error.what());
-        return 1;
-    }
-    if (!rows.empty())
-        print_markdown(rows);
-    if (!buddha.is_null()) {
-        print_buddha(buddha);
-        rows.push_back(buddha);
-    }
-    std::ofstream(settings.json) << rows.dump(2) << '\n';
-    return 0;
+    bool skip_4096 = false;
+    bench::Program program("bench_table1", "Table 1 of Johan and Nishita; Markdown on stdout, JSON "
+                                           "in a file");
+    bench::Inputs inputs(program);
+    program.add("--json", settings.json, "JSON file to write");
+    program.add("--samples", settings.num_samples, "receivers to verify");
+    program.add_flag("--skip-4096", skip_4096, "leave out the Bunny at R = 4096");
+    program.add("--only", settings.only, "one row: Bunny, Dragon or Buddha");
+    return program.run(argc, argv, [&] {
+        settings.with_4096 = !skip_4096;
+        if (inputs.is_tiny())
+            settings.num_samples = 50;
+        run(settings, inputs);
+    });
 }

@@ -3,29 +3,24 @@
 // frame, and by Relumine's own transfer. On a sun that moves through the sky and a probe that
 // turns.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/image/environment.h"
-#include "cubemap/resample/resample.h"
 #include "data_gen/sequences.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/exact.h"
 #include "relight/flicker.h"
 #include "relight/light_packets.h"
-#include "relight/relighter.h"
-#include "tests/bench/bunny.h"
-#include "tests/bench/median.h"
+#include "relumine/relumine.h"
+#include "tests/bench/inputs.h"
+#include "tests/bench/times.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;
@@ -41,9 +36,6 @@ constexpr const char* FollowedClusters = "clusters, followed";
 constexpr double MeanLuminance = 0.25;
 
 struct Settings {
-    fs::path data = RELUMINE_DATA_DIR;
-    /// A bunny.prt that is there already
-    fs::path scene;
     fs::path json = "video.json";
     /// Folder, or none
     fs::path plots;
@@ -56,32 +48,26 @@ struct Settings {
     bool variants = false;
 };
 
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 struct Sequence {
     std::string name;
     data_gen::FrameMaker map;
 };
 
 /// Those of `relumine generate sequence` that the tables of docs/measurements.md show.
-std::vector<Sequence> sequences(const Settings& settings) {
+std::vector<Sequence> sequences(const Settings& settings, const bench::Inputs& inputs) {
     std::vector<Sequence> result;
-    const fs::path grace = settings.data / "envs/debevec/grace_cross.hdr";
     for (const data_gen::Sequence& sequence : data_gen::sequences()) {
         data_gen::SequenceOptions options{.num_frames = settings.num_frames,
                                           .face_resolution = settings.resolution};
         if (sequence.name == "sun") {
             result.push_back({"sun", sequence.make(options)});
-        } else if (sequence.name == "turn" && fs::exists(grace)) {
-            options.probe =
-                cubemap::resample(cubemap::load_environment(grace), settings.resolution);
-            result.push_back({"turn, grace", sequence.make(options)});
         } else if (sequence.name == "turn") {
-            fmt::print("turn: skipped, no {}; name the folder with --data\n", grace.string());
+            try {
+                options.probe = inputs.environment("grace_cross.hdr", settings.resolution);
+                result.push_back({"turn, grace", sequence.make(options)});
+            } catch (const bench::Absent& absent) {
+                fmt::print("turn: skipped, {}\n", absent.what());
+            }
         }
     }
     return result;
@@ -101,15 +87,9 @@ struct Row {
 
 class Experiment {
 public:
-    Experiment(const Settings& settings, const prt::Scene& scene)
-        : settings_(settings), scene_(scene), rays_(scene.mesh),
-          receivers_(prt::vertex_receivers(scene.mesh)),
-          sample_(relight::random_receivers(scene.transfer, settings.num_receivers, 1)),
-          shadow_rays_{.blockers = &rays_,
-                       .positions = scene.mesh.positions,
-                       .bias = scene.settings.bias,
-                       .tolerance = scene.settings.tolerance},
-          relighter_(scene.transfer, shadow_rays_) {}
+    Experiment(const Settings& settings, LitScene& lit)
+        : settings_(settings), lit_(lit),
+          sample_(relight::random_receivers(lit.scene().transfer, settings.num_receivers, 1)) {}
 
     std::vector<Row> run(const Sequence& sequence) {
         rows_.clear();
@@ -120,13 +100,13 @@ public:
         };
         const auto sampled = [&](bool seed_per_frame, double& seconds) {
             seconds = 0.0;
-            Clock::time_point start;
+            bench::Stopwatch watch;
             // the clock stands while a frame is made
             const lights::FrameImages timed = [&](std::size_t frame) {
                 if (frame > 0)
-                    seconds += seconds_since(start);
+                    seconds += watch.seconds();
                 cubemap::EnvironmentImage image = images(frame);
-                start = Clock::now();
+                watch.restart();
                 return image;
             };
             lights::FrameSamples samples =
@@ -134,7 +114,7 @@ public:
                                       {.samples_per_frame = settings_.num_samples,
                                        .seed = settings_.seed,
                                        .seed_per_frame = seed_per_frame});
-            seconds += seconds_since(start);
+            seconds += watch.seconds();
             return samples;
         };
         double seconds_sample = 0.0;
@@ -201,16 +181,16 @@ private:
             fmt::print(stderr, "\r{}: exact integration of frame {} of {} ", sequence.name,
                        frame + 1, settings_.num_frames);
             const cubemap::CubeMap map = sequence.map(frame);
-            exact_.push_back(relight::exact_radiance(receivers_, sample_, rays_, map,
-                                                     {.bias = scene_.settings.bias}));
+            exact_.push_back(relight::exact_radiance(lit_.scene().receivers, sample_, lit_.rays(),
+                                                     map, {.bias = lit_.scene().settings.bias}));
             images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
                 luminance += lights::luminance(value);
-            const relight::RelightTimes times = relighter_.set_environment(map);
+            const RelightTimes times = lit_.light(map);
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
             relit.emplace_back();
             for (const std::uint32_t receiver : sample_)
-                relit.back().emplace_back(relighter_.radiance()[receiver]);
+                relit.back().emplace_back(lit_.radiance()[receiver]);
         }
         fmt::print(stderr, "\n");
         exposure_ = MeanLuminance * static_cast<double>(exact_.size() * sample_.size()) / luminance;
@@ -242,8 +222,9 @@ private:
         relight::FlickerMeter meter(exposure_);
         Row row{.method = method, .report = {}, .seconds_prepare = seconds_prepare};
         for (std::size_t frame = 0; frame < frames.num_frames(); ++frame) {
-            meter.add_frame(relight::radiance_under(frames.at(frame), receivers_.normals, sample_,
-                                                    shadow_rays_),
+            meter.add_frame(relight::radiance_under(frames.at(frame),
+                                                    lit_.scene().receivers.normals, sample_,
+                                                    lit_.shadow_rays()),
                             exact_[frame]);
             row.lights += static_cast<double>(frames.at(frame).size()) /
                           static_cast<double>(frames.num_frames());
@@ -256,7 +237,7 @@ private:
         std::vector<double> seconds;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t frame = i * (frames.num_frames() - 1) / 2;
-            const relight::RelightTimes times = relighter_.set_lights(frames.at(frame));
+            const RelightTimes times = lit_.light(frames.at(frame));
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
         }
         row.seconds_light = bench::median(seconds);
@@ -264,12 +245,8 @@ private:
     }
 
     const Settings& settings_;
-    const prt::Scene& scene_;
-    prt::RayScene rays_;
-    prt::Receivers receivers_;
+    LitScene& lit_;
     std::vector<std::uint32_t> sample_;
-    relight::ShadowRays shadow_rays_;
-    relight::Relighter relighter_;
 
     /// [frames] as lat-longs
     std::vector<cubemap::EnvironmentImage> images_;
@@ -340,55 +317,52 @@ void write_plots(const Settings& settings, std::size_t index, const Sequence& se
                             jumping, 0, 5, fmt::format("{}: importance sampling", sequence.name)));
 }
 
+void run(const Settings& settings, const bench::Inputs& inputs) {
+    LitScene lit(inputs.bunny());
+    Experiment experiment(settings, lit);
+    fmt::print("Bunny, {} vertices; {} frames at R = {}; ground truth by exact integration for {} "
+               "vertices; {} clusters from {} samples a frame\n",
+               lit.scene().mesh.num_vertices(), settings.num_frames, settings.resolution,
+               experiment.num_receivers(), settings.num_clusters, settings.num_samples);
+    nlohmann::json result = nlohmann::json::array();
+    const std::vector<Sequence> all = sequences(settings, inputs);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        const std::vector<Row> rows = experiment.run(all[i]);
+        print_rows(all[i], rows);
+        if (!settings.plots.empty())
+            write_plots(settings, i, all[i], rows, experiment);
+        result.push_back(json_of(all[i], rows));
+    }
+    std::ofstream(settings.json) << result.dump(2) << '\n';
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
     Settings settings;
-    CLI::App program{
-        "Measures Staton et al.'s flicker experiment; Markdown on stdout, JSON in a file"};
-    program.add_option("--data", settings.data, "folder with meshes/stanford and envs/debevec")
-        ->capture_default_str();
-    program.add_option("--scene", settings.scene, "the bunny's .prt, where it is there");
-    program.add_option("--json", settings.json, "JSON file to write")->capture_default_str();
-    program.add_option("--plots", settings.plots, "folder for plots as SVG");
-    program.add_option("--frames", settings.num_frames, "of each sequence")
-        ->check(CLI::Range(2, 100000))
-        ->capture_default_str();
-    program
-        .add_option("--receivers", settings.num_receivers, "vertices that are integrated exactly")
-        ->capture_default_str();
-    program.add_option("--face-resolution", settings.resolution, "R")->capture_default_str();
-    program.add_option("--samples", settings.num_samples, "of each frame")->capture_default_str();
-    program.add_option("--clusters", settings.num_clusters)->capture_default_str();
-    program.add_option("--seed", settings.seed)->capture_default_str();
+    bench::Program program("bench_video", "Staton et al.'s flicker experiment; Markdown on stdout, "
+                                          "JSON in a file");
+    bench::Inputs inputs(program);
+    inputs.add_scene();
+    program.add("--json", settings.json, "JSON file to write");
+    program.add("--plots", settings.plots, "folder for plots as SVG");
+    program.add("--frames", settings.num_frames, "of each sequence, 2 or more");
+    program.add("--receivers", settings.num_receivers, "vertices that are integrated exactly");
+    program.add("--face-resolution", settings.resolution, "R");
+    program.add("--samples", settings.num_samples, "of each frame");
+    program.add("--clusters", settings.num_clusters, "of lights");
+    program.add("--seed", settings.seed, "of the samples");
     program.add_flag("--variants", settings.variants, "also other fades, and a seed per frame");
-    CLI11_PARSE(program, argc, argv);
-    if (settings.scene.empty() && !fs::exists(settings.data / "meshes/stanford/bun_zipper.ply")) {
-        fmt::print("skipped, no bunny in {}; name the folder with --data\n",
-                   settings.data.string());
-        return 0;
-    }
-    try {
-        const prt::Scene scene = bench::bunny(settings.scene, settings.data);
-        Experiment experiment(settings, scene);
-        fmt::print(
-            "Bunny, {} vertices; {} frames at R = {}; ground truth by exact integration for {} "
-            "vertices; {} clusters from {} samples a frame\n",
-            scene.mesh.num_vertices(), settings.num_frames, settings.resolution,
-            experiment.num_receivers(), settings.num_clusters, settings.num_samples);
-        nlohmann::json result = nlohmann::json::array();
-        const std::vector<Sequence> all = sequences(settings);
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const std::vector<Row> rows = experiment.run(all[i]);
-            print_rows(all[i], rows);
-            if (!settings.plots.empty())
-                write_plots(settings, i, all[i], rows, experiment);
-            result.push_back(json_of(all[i], rows));
+    return program.run(argc, argv, [&] {
+        if (inputs.is_tiny()) {
+            settings.num_frames = 4;
+            settings.num_receivers = 20;
+            settings.resolution = 16;
+            settings.num_samples = 64;
+            settings.num_clusters = 16;
         }
-        std::ofstream(settings.json) << result.dump(2) << '\n';
-    } catch (const std::exception& error) {
-        fmt::print(stderr, "video: {}\n", error.what());
-        return 1;
-    }
-    return 0;
+        if (settings.num_frames < 2)
+            throw std::invalid_argument("--frames: expected at least 2");
+        run(settings, inputs);
+    });
 }

@@ -185,7 +185,7 @@ TEST(OrientationData, CubeAndLatLongOfOnePlaceShowTheSameWorld) {
         const auto cube = data_file("openexr/" + place + "Cube.exr");
         const auto lat_long = data_file("openexr/" + place + "LatLong.exr");
         if (cube.empty() || lat_long.empty())
-            GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
+            GTEST_SKIP() << absent_data("envs");
         const CubeMap a = resample(load_environment(cube), 128);
         const CubeMap b = resample(load_environment(lat_long), 128);
         EXPECT_GT(correlation(a, b), 0.97) << place;
@@ -199,7 +199,7 @@ TEST(OrientationData, DebevecsCrossesAreUprightAndSeamless) {
     for (const std::string place : {"beach", "galileo", "grace", "kitchen", "stpeters"}) {
         const auto path = data_file("debevec/" + place + "_cross.hdr");
         if (path.empty())
-            GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
+            GTEST_SKIP() << absent_data("envs");
         const EnvironmentImage image = load_environment(path);
         EXPECT_EQ(image.layout, Layout::VerticalCross);
         const CubeMap map = resample(image, 256);

@@ -14,6 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/image/image_layout.h"
+#include "tests/real_data.h"
 
 namespace relumine::cubemap {
 
@@ -106,8 +107,7 @@ std::string message_of(const Call& call) {
 
 /// A file of the data folder, or empty where that is absent.
 inline std::filesystem::path data_file(const std::string& name) {
-    const std::filesystem::path path = std::filesystem::path(RELUMINE_DATA_DIR) / "envs" / name;
-    return std::filesystem::exists(path) ? path : std::filesystem::path();
+    return real_data(std::filesystem::path("envs") / name);
 }
 
 } // namespace relumine::cubemap

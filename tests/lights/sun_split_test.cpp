@@ -13,6 +13,7 @@
 #include "cubemap/resample/resample.h"
 #include "data_gen/environments.h"
 #include "lights/disc_light.h"
+#include "tests/real_data.h"
 
 namespace relumine::lights {
 namespace {
@@ -162,9 +163,9 @@ TEST(SunSplit, LatLongImages) {
 TEST(SunSplit, MeasuredSuns) {
     for (const char* name : {"latlong/sunset_1k.hdr", "latlong/blender_sunset_1k.exr",
                              "openexr/KernerEnvLatLong.exr", "openexr/KernerEnvCube.exr"}) {
-        const std::filesystem::path path = std::filesystem::path(RELUMINE_DATA_DIR) / "envs" / name;
-        if (!std::filesystem::exists(path))
-            GTEST_SKIP() << "no data folder";
+        const std::filesystem::path path = real_data(std::filesystem::path("envs") / name);
+        if (path.empty())
+            GTEST_SKIP() << absent_data(name);
         const cubemap::EnvironmentImage image =
             cubemap::load_environment(path, {.fix_bad_pixels = true});
         const auto split = split_sun(image);

@@ -4,6 +4,7 @@
 
 #include "mesh/floor.h"
 #include "tests/mesh/mesh_files.h"
+#include "tests/real_data.h"
 
 namespace relumine::mesh {
 namespace {
@@ -66,11 +67,10 @@ constexpr RealMesh RealMeshes[] = {
 class RealDataTest : public testing::Test {
 protected:
     void SetUp() override {
-        if (!std::filesystem::exists(folder_ / "stanford"))
-            GTEST_SKIP() << "no real meshes in " << folder_
-                         << "; set RELUMINE_DATA_DIR to the folder that holds them";
+        if (real_data("meshes/stanford").empty())
+            GTEST_SKIP() << absent_data("meshes/stanford");
     }
-    const std::filesystem::path folder_ = std::filesystem::path(RELUMINE_DATA_DIR) / "meshes";
+    const std::filesystem::path folder_ = real_data_folder() / "meshes";
 };
 
 TEST_F(RealDataTest, EveryMeshHasItsCounts) {

@@ -147,6 +147,33 @@ TEST(Exact, Stops) {
     EXPECT_LE(num_calls, 64) << "at most one row for each thread";
 }
 
+TEST(Exact, RefusesIndicesAndSizesThatDoNotFit) {
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    const cubemap::CubeMap white(4, glm::vec3(1.0f));
+    const auto run = [&](const prt::Receivers& receivers, std::vector<std::uint32_t> some,
+                         const cubemap::CubeMap& environment) {
+        return exact_radiance(receivers, some, scene.rays, environment);
+    };
+    const auto n = static_cast<std::uint32_t>(scene.receivers.size());
+    EXPECT_EQ(run(scene.receivers, {n - 1}, white).size(), 1u);
+    EXPECT_THROW(run(scene.receivers, {n}, white), std::invalid_argument);
+    EXPECT_THROW(run({}, {0}, white), std::invalid_argument);
+    EXPECT_THROW(run(scene.receivers, {0}, {}), std::invalid_argument);
+    cubemap::CubeMap torn = white;
+    torn.texels.pop_back();
+    EXPECT_THROW(run(scene.receivers, {0}, torn), std::invalid_argument);
+    prt::Receivers without_normals = scene.receivers;
+    without_normals.normals.pop_back();
+    EXPECT_THROW(run(without_normals, {0}, white), std::invalid_argument);
+
+    const std::vector<glm::vec3> relit(3);
+    const std::vector<glm::dvec3> exact(2);
+    EXPECT_THROW(static_cast<void>(compare(std::vector<std::uint32_t>{0, 3}, exact, relit)),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(compare(std::vector<std::uint32_t>{0}, exact, relit)),
+                 std::invalid_argument);
+}
+
 TEST(Exact, RandomReceiversDoNotRepeat) {
     const prt::Transfer& transfer = scenes::relit_scene().transfer;
     const std::size_t n = transfer.num_receivers();

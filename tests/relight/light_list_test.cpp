@@ -83,6 +83,20 @@ TEST(LightPackets, EqualOneShadowRayPerLightAndReceiver) {
     EXPECT_GT(num_shadows, 100u);
 }
 
+TEST(LightPackets, RefuseIndicesAndSizesThatDoNotFit) {
+    const scenes::RelitScene& scene = relit_scene();
+    const std::vector<DistantLight> lights(1);
+    const std::vector<glm::vec3>& normals = scene.receivers.normals;
+    const std::vector<std::uint32_t> beyond = {static_cast<std::uint32_t>(normals.size())};
+    EXPECT_THROW(static_cast<void>(radiance_under(lights, normals, beyond, scene.shadow_rays())),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(radiance_under(lights, normals, ShadowRays{})),
+                 std::invalid_argument);
+    EXPECT_THROW(
+        static_cast<void>(radiance_under(lights, std::span(normals).first(1), scene.shadow_rays())),
+        std::invalid_argument);
+}
+
 TEST(RelighterLights, WithShadowRaysEqualTracing) {
     std::mt19937 random(2);
     const scenes::RelitScene& scene = relit_scene();

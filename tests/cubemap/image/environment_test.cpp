@@ -210,7 +210,7 @@ TEST(EnvironmentData, DamagedFilesAreRefusedAtOnceInOneLine) {
                                    "BrightRingsNanInf.exr", "AllHalfValues.exr"}) {
         const auto path = data_file("robustness/" + file);
         if (path.empty())
-            GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
+            GTEST_SKIP() << absent_data("envs");
         const auto start = std::clock();
         const std::string message = message_of([&] { (void)load_environment(path); });
         EXPECT_TRUE(message.starts_with(path.string() + ": expected ")) << message;
@@ -231,7 +231,7 @@ TEST(EnvironmentData, DamagedFilesAreRefusedAtOnceInOneLine) {
 TEST(EnvironmentData, NegativePixelsOfRealFilesAreCounted) {
     const auto path = data_file("latlong/blender_studio_1k.exr");
     if (path.empty())
-        GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
+        GTEST_SKIP() << absent_data("envs");
     EXPECT_NE(message_of([&] {
                   (void)load_environment(path);
               }).find("got 0 NaN/Inf and 3 negative pixels"),

@@ -273,7 +273,7 @@ TEST(ConvertData, GalileoAsCrossAndAsAngularMapShowsTheSameWorld) {
     const auto cross_file = data_file("debevec/galileo_cross.hdr"),
                probe_file = data_file("debevec/galileo_probe.hdr");
     if (cross_file.empty() || probe_file.empty())
-        GTEST_SKIP() << "needs the data folder, see RELUMINE_DATA_DIR";
+        GTEST_SKIP() << absent_data("envs");
     EXPECT_THROW((void)load_environment(probe_file), std::runtime_error); // square
     const CubeMap cross = resample(load_environment(cross_file), 128);
     const CubeMap probe =

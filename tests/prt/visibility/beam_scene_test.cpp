@@ -20,6 +20,7 @@
 #include "tests/prt/every_target.h"
 #include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
+#include "tests/real_data.h"
 
 namespace relumine::prt {
 namespace {
@@ -291,9 +292,9 @@ TEST(BeamScene, ChangesNoTransfer) {
         }
     };
     same(things_on_a_floor(), "things on a floor");
-    const std::filesystem::path ugly = std::filesystem::path(RELUMINE_DATA_DIR) / "meshes/ugly";
-    if (!std::filesystem::exists(ugly))
-        GTEST_SKIP() << "the ugly meshes are not here";
+    const std::filesystem::path ugly = real_data("meshes/ugly");
+    if (ugly.empty())
+        GTEST_SKIP() << absent_data("meshes/ugly");
     int num_meshes = 0;
     for (const auto& entry : std::filesystem::directory_iterator(ugly)) {
         mesh::TriangleMesh mesh;

@@ -15,12 +15,25 @@ inline double median(std::vector<double> values) {
     return values[values.size() / 2];
 }
 
+/// A clock on the wall that runs from where it was made.
+class Stopwatch {
+public:
+    [[nodiscard]] double seconds() const {
+        return std::chrono::duration<double>(Clock::now() - start_).count();
+    }
+    void restart() { start_ = Clock::now(); }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start_ = Clock::now();
+};
+
 /// Of one run, on the wall.
 template<class Work>
 double seconds_of(const Work& work) {
-    const auto start = std::chrono::steady_clock::now();
+    const Stopwatch watch;
     work();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return watch.seconds();
 }
 
 /// The median of 21 runs, after one that is not counted.

@@ -1,0 +1,14 @@
+// The mesh and the environment that the tests give to the examples: boulder.ply and sky.exr.
+#include <vector>
+
+#include "cubemap/image/environment.h"
+#include "data_gen/environments.h"
+#include "data_gen/scenes.h"
+#include "mesh/save.h"
+
+int main() {
+    using namespace relumine;
+    const mesh::TriangleMesh mesh = data_gen::blob(5000);
+    mesh::save("boulder.ply", mesh, std::vector<glm::vec3>(mesh.num_vertices(), glm::vec3(1.0f)));
+    cubemap::save_environment("sky.exr", data_gen::sun_and_sky(64), cubemap::Layout::LatLong);
+}

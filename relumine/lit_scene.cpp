@@ -1,0 +1,246 @@
+#include "relumine/lit_scene.h"
+
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cubemap/layers/layer_composite.h"
+#include "relight/contribution.h"
+#include "relight/light_packets.h"
+
+namespace relumine {
+
+struct LitScene::Impl {
+    Impl(Scene&& given, const LightOptions& options)
+        : scene(std::move(given)), rays(scene.mesh), clusters_only(options.clusters_only) {}
+
+    [[nodiscard]] bool has_clusters() const { return scene.transfer.num_receivers() != 0; }
+
+    [[nodiscard]] relight::ShadowRays shadow_rays() const {
+        if (clusters_only)
+            return {};
+        return {.blockers = &rays,
+                .positions = scene.receivers.positions,
+                .bias = scene.settings.bias,
+                .tolerance = rms_tolerance(scene)};
+    }
+
+    void require_clusters() const {
+        if (!has_clusters())
+            throw std::invalid_argument(
+                "expected a precomputed scene, got a mesh without clusters");
+    }
+
+    relight::Relighter& plain_relighter() {
+        require_clusters();
+        if (!relighter)
+            relighter.emplace(scene.transfer, shadow_rays());
+        return *relighter;
+    }
+
+    [[nodiscard]] const relight::Relighter* present_relighter() const {
+        if (editor)
+            return &editor->relighter();
+        return relighter ? &*relighter : nullptr;
+    }
+
+    [[nodiscard]] bool has_environment() const {
+        return present_relighter() != nullptr && present_relighter()->environment().resolution != 0;
+    }
+
+    /// For what only an environment can do.
+    const relight::Relighter& lit_relighter() const {
+        if (!has_environment())
+            throw std::logic_error("expected a scene lit by an environment");
+        return *present_relighter();
+    }
+
+    /// The editor takes over what lights the scene.
+    relight::LightEditor& edited() {
+        require_clusters();
+        if (editor)
+            return *editor;
+        auto made = std::make_unique<relight::LightEditor>(scene.transfer, shadow_rays());
+        if (has_environment())
+            made->set_base(relighter->environment());
+        editor = std::move(made);
+        relighter.reset();
+        return *editor;
+    }
+
+    Scene scene;
+    prt::RayScene rays;
+    bool clusters_only;
+    /// One of the two lights the scene; none before the first light()
+    std::optional<relight::Relighter> relighter;
+    std::unique_ptr<relight::LightEditor> editor;
+    /// Behind light lists
+    cubemap::CubeMap black{1};
+    cubemap::CubeMap nothing;
+    bool is_lit_by_list = false;
+    /// Of a scene without clusters
+    std::vector<glm::vec3> radiance;
+};
+
+LitScene::LitScene(Scene scene, const LightOptions& options)
+    : impl_(std::make_unique<Impl>(std::move(scene), options)) {
+    if (options.clusters_only)
+        impl_->require_clusters();
+}
+
+LitScene::~LitScene() = default;
+LitScene::LitScene(LitScene&&) noexcept = default;
+LitScene& LitScene::operator=(LitScene&&) noexcept = default;
+
+const Scene& LitScene::scene() const {
+    return impl_->scene;
+}
+
+bool LitScene::has_clusters() const {
+    return impl_->has_clusters();
+}
+
+const prt::RayScene& LitScene::rays() const {
+    return impl_->rays;
+}
+
+relight::ShadowRays LitScene::shadow_rays() const {
+    return impl_->shadow_rays();
+}
+
+RelightTimes LitScene::light(cubemap::CubeMap environment) {
+    const RelightTimes times =
+        impl_->editor ? impl_->editor->set_base(std::move(environment))
+                      : impl_->plain_relighter().set_environment(std::move(environment));
+    impl_->is_lit_by_list = false;
+    return times;
+}
+
+RelightTimes LitScene::light(Environment environment) {
+    return light(std::move(environment.map));
+}
+
+RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
+    RelightTimes times;
+    if (!has_clusters()) {
+        impl_->radiance =
+            relight::radiance_under(lights, impl_->scene.receivers.normals, shadow_rays());
+    } else {
+        times = impl_->plain_relighter().set_lights(lights);
+        impl_->editor.reset();
+    }
+    impl_->is_lit_by_list = true;
+    return times;
+}
+
+UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
+                                     std::span<const glm::vec3> radiance) {
+    if (!impl_->editor)
+        return impl_->plain_relighter().update_region(rectangle, radiance);
+    if (!impl_->has_environment())
+        throw std::invalid_argument("expected an environment before its first update");
+    cubemap::CubeMap base = *impl_->editor->base();
+    const std::uint32_t r = base.resolution;
+    if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r ||
+        rectangle.y1 > r)
+        throw std::invalid_argument(
+            fmt::format("expected a rectangle inside the {0} x {0} face", r));
+    const std::size_t width = rectangle.x1 - rectangle.x0;
+    if (radiance.size() != width * (rectangle.y1 - rectangle.y0))
+        throw std::invalid_argument("expected one radiance per texel of the rectangle");
+    auto value = radiance.begin();
+    for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
+        for (std::uint32_t x = rectangle.x0; x < rectangle.x1; ++x)
+            base.at(rectangle.face, x, y) = *value++;
+    return impl_->editor->update_base(std::move(base));
+}
+
+UpdateReport LitScene::set_layers(std::vector<cubemap::LightLayer> layers) {
+    if (!impl_->has_environment())
+        throw std::invalid_argument("expected an environment before its layers");
+    return impl_->edited().set_layers(std::move(layers));
+}
+
+UpdateReport LitScene::set_layer(std::size_t index, const cubemap::LightLayer& layer) {
+    if (!impl_->has_environment())
+        throw std::invalid_argument("expected an environment before its layers");
+    return impl_->edited().set_layer(index, layer);
+}
+
+relight::LightEditor& LitScene::editor() {
+    return impl_->edited();
+}
+
+std::span<const glm::vec3> LitScene::radiance() const {
+    const relight::Relighter* relighter = impl_->present_relighter();
+    if (relighter != nullptr && (impl_->is_lit_by_list || impl_->has_environment()))
+        return relighter->radiance();
+    return impl_->radiance;
+}
+
+const cubemap::CubeMap& LitScene::environment() const {
+    if (impl_->is_lit_by_list)
+        return impl_->black;
+    return impl_->has_environment() ? impl_->present_relighter()->environment() : impl_->nothing;
+}
+
+const relight::Relighter& LitScene::relighter() const {
+    const relight::Relighter* relighter = impl_->present_relighter();
+    if (relighter == nullptr)
+        throw std::logic_error("expected a scene that is lit");
+    return *relighter;
+}
+
+Verification LitScene::verify(const VerifyOptions& options) const {
+    const relight::Relighter& relighter = impl_->lit_relighter();
+    Verification result;
+    result.receivers =
+        relight::random_receivers(impl_->scene.transfer, options.num_samples, options.seed);
+    const std::vector<glm::dvec3> exact = relight::exact_radiance(
+        impl_->scene.receivers, result.receivers, impl_->rays, relighter.environment(),
+        {.bias = impl_->scene.settings.bias,
+         .stop = options.stop,
+         .on_progress = options.on_progress});
+    result.error = relight::compare(result.receivers, exact, relighter.radiance());
+    return result;
+}
+
+cubemap::CubeMap LitScene::contribution_map(std::span<const std::uint32_t> receivers) const {
+    return relight::contribution_map(impl_->lit_relighter(), receivers);
+}
+
+Share LitScene::lit_by(const cubemap::Region& region) const {
+    const auto sum_of = [](std::span<const glm::vec3> radiance) {
+        double sum = 0.0;
+        for (const glm::vec3& value : radiance)
+            sum += static_cast<double>(value.r) + static_cast<double>(value.g) +
+                   static_cast<double>(value.b);
+        return sum;
+    };
+    const relight::Relighter& relighter = impl_->lit_relighter();
+    cubemap::validate(region);
+    Share result{.radiance = {}, .environment = relighter.environment()};
+    const std::vector<float> weights = cubemap::coverage_map(region, result.environment.resolution);
+    for (std::size_t texel = 0; texel < weights.size(); ++texel)
+        result.environment.texels[texel] *= weights[texel];
+    result.radiance = relight::radiance_from(relighter, weights);
+    const double all = sum_of(relighter.radiance());
+    result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
+    return result;
+}
+
+Picture LitScene::draw(const OutputOptions& options) const {
+    if (radiance().empty())
+        throw std::logic_error("expected a scene that is lit");
+    return Painter(*this, options).draw(radiance(), environment());
+}
+
+void LitScene::save(const std::filesystem::path& path, const OutputOptions& options) const {
+    if (radiance().empty())
+        throw std::logic_error("expected a scene that is lit");
+    Painter(*this, options).save(path, radiance(), environment());
+}
+
+} // namespace relumine

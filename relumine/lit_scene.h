@@ -1,0 +1,182 @@
+// A scene under light: what a program that relights keeps in memory.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "cubemap/layers/light_layer.h"
+#include "cubemap/texel_rectangle.h"
+#include "lights/light_list.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/exact.h"
+#include "relight/light_editor.h"
+#include "relight/relighter.h"
+#include "relumine/environment.h"
+#include "relumine/output.h"
+#include "relumine/scene.h"
+
+namespace relumine {
+
+using relight::RelightTimes;
+using relight::UpdateReport;
+
+struct LightOptions {
+    /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
+    bool clusters_only = false;
+};
+
+struct VerifyOptions {
+    /// Receivers chosen at random, 0 for all
+    std::size_t num_samples = 2000;
+    std::uint64_t seed = 1;
+    /// Polled a few times a second; Cancelled is thrown
+    std::stop_token stop = {};
+    /// Fraction in [0, 1]; one call at a time
+    std::function<void(double)> on_progress = {};
+};
+
+/// How far the radiance is from exact integration.
+struct Verification {
+    /// The receivers that were looked at
+    std::vector<std::uint32_t> receivers;
+    relight::ErrorReport error;
+};
+
+/// What a part of the environment gives to a scene.
+struct Share {
+    /// [num_receivers], albedo 1
+    std::vector<glm::vec3> radiance;
+    /// The environment without the rest
+    cubemap::CubeMap environment;
+    /// Of the light that the scene reflects, 0 to 1
+    double share = 0.0;
+};
+
+/// Owns a scene, its ray accelerator and its light, so that nothing can dangle. Movable; references
+/// to its parts stay valid when it is moved.
+///
+///     relumine::LitScene lit(relumine::load_scene("bunny.prt"));
+///     lit.light(relumine::load_environment("grace.exr"));
+///     lit.save("bunny.png");
+///
+/// Threads: one thread at a time may call what is not const. Every result is the same bit by bit
+///          for any number of threads.
+/// Memory:  the scene, about 100 bytes per triangle for its rays, and about 1 KB for 16 receivers
+///          once it is lit.
+class LitScene {
+public:
+    /// Builds the ray accelerator, O(n log n); nothing is lit yet.
+    ///
+    /// Throws:  std::invalid_argument for clusters_only with a scene that has no clusters.
+    explicit LitScene(Scene scene, const LightOptions& options = {});
+    ~LitScene();
+    LitScene(LitScene&&) noexcept;
+    LitScene& operator=(LitScene&&) noexcept;
+
+    [[nodiscard]] const Scene& scene() const;
+    /// False for unclustered_scene().
+    [[nodiscard]] bool has_clusters() const;
+    [[nodiscard]] const prt::RayScene& rays() const;
+    /// What tracing single lights takes, with the scene's own bias and tolerance; empty for
+    /// clusters_only. Points into this object.
+    [[nodiscard]] relight::ShadowRays shadow_rays() const;
+
+    /// Lights the scene with an environment [JN, Eq. 8], of any resolution. Layers stay over it.
+    ///
+    /// Throws:  std::invalid_argument for a map without texels, radiance that is not finite or
+    ///          negative, a scene without clusters; nothing has changed then.
+    /// Cost:    milliseconds, see docs/measurements.md.
+    RelightTimes light(cubemap::CubeMap environment);
+    RelightTimes light(Environment environment);
+
+    /// Lights the scene with distant lights alone, each with shadow rays of its own or, with
+    /// clusters_only, through its cluster. The environment and its layers go; the background is
+    /// black.
+    ///
+    /// Throws:  std::invalid_argument for irradiance that is not finite or negative, a direction
+    ///          that is not of unit length.
+    RelightTimes light(std::span<const lights::DistantLight> lights);
+
+    /// Replaces a rectangle of the environment's texels, row by row [(x1 - x0) * (y1 - y0)], and
+    /// updates what depends on it [JN, Section 5.2]. Under layers, the environment is what was
+    /// given to light(), and finding what changed costs a comparison of the whole map.
+    ///
+    /// Throws:  std::invalid_argument for a rectangle outside of the face, a wrong size, radiance
+    ///          that is not finite or negative, or no environment; nothing has changed then.
+    UpdateReport update_region(const cubemap::TexelRectangle& rectangle,
+                               std::span<const glm::vec3> radiance);
+
+    /// Replaces the light layers over the environment, bottom first, in one update.
+    ///
+    /// Throws:  std::invalid_argument for a layer that is not valid, radiance that is too large, or
+    ///          no environment; nothing has changed then.
+    /// Cost:    proportional to what the changed layers cover. The first call relights everything
+    ///          once more.
+    UpdateReport set_layers(std::vector<cubemap::LightLayer> layers);
+
+    /// Replaces one layer, as while it is dragged.
+    ///
+    /// Throws:  as set_layers(); std::out_of_range for an index.
+    UpdateReport set_layer(std::size_t index, const cubemap::LightLayer& layer);
+
+    /// All of editing: undo and redo, rotation, snapshots for other threads. It takes over the
+    /// environment and stays until light() is given lights, which end it.
+    ///
+    /// Throws:  std::invalid_argument for a scene without clusters.
+    [[nodiscard]] relight::LightEditor& editor();
+
+    /// Outgoing radiance, [num_receivers] in the receivers' order, in the unit of the
+    /// environment's; without materials for albedo 1. Empty before the first light().
+    [[nodiscard]] std::span<const glm::vec3> radiance() const;
+
+    /// What lights the scene, layers included; black under a light list, without texels before the
+    /// first light().
+    [[nodiscard]] const cubemap::CubeMap& environment() const;
+
+    /// The machine inside, for relight/'s own functions (contribution_map(), transfer_lights()).
+    ///
+    /// Throws:  std::logic_error before the first light() and for a scene without clusters.
+    [[nodiscard]] const relight::Relighter& relighter() const;
+
+    /// Compares the radiance with exact integration: every texel of the environment, every shadow
+    /// ray.
+    ///
+    /// Throws:  std::logic_error unless an environment lights the scene; Cancelled.
+    /// Cost:    6 R^2 rays for each receiver: seconds for 2000 of them at R = 256.
+    [[nodiscard]] Verification verify(const VerifyOptions& options = {}) const;
+
+    /// What lights these receivers: the environment, each texel weighted by how much of it they
+    /// reflect, in radiance per sr.
+    ///
+    /// Throws:  std::invalid_argument for no receivers or an index out of range; std::logic_error
+    ///          unless an environment lights the scene.
+    [[nodiscard]] cubemap::CubeMap contribution_map(std::span<const std::uint32_t> receivers) const;
+
+    /// The other way round: the scene as a region of the environment alone lights it.
+    ///
+    /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
+    [[nodiscard]] Share lit_by(const cubemap::Region& region) const;
+
+    /// The scene in its light. For many pictures of one view see Painter.
+    ///
+    /// Throws:  as Painter; std::logic_error before the first light().
+    [[nodiscard]] Picture draw(const OutputOptions& options = {}) const;
+
+    /// Writes the lit scene by extension, as Painter::save().
+    void save(const std::filesystem::path& path, const OutputOptions& options = {}) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace relumine

@@ -1,0 +1,46 @@
+// Meshes in: what the door loads and precomputes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "mesh/load.h"
+#include "mesh/triangle_mesh.h"
+
+namespace relumine {
+
+/// A triangle mesh and its origin. A TriangleMesh made in code converts to it.
+struct Mesh {
+    mesh::TriangleMesh geometry;
+    /// The path as it was given, or empty. Messages name it; a scene file keeps its last part.
+    std::string source;
+    /// xxHash64 of the file's bytes, 0 without a file
+    std::uint64_t source_hash = 0;
+    /// n of an n x n floor under the mesh, 0 for none
+    std::uint32_t floor_vertices = 0;
+
+    Mesh() = default;
+    // NOLINTNEXTLINE(google-explicit-constructor): a mesh made in code is a mesh
+    Mesh(mesh::TriangleMesh triangles) : geometry(std::move(triangles)) {}
+};
+
+struct MeshOptions {
+    /// The file's normals where it has them, or always smooth ones
+    mesh::NormalSource normals = mesh::NormalSource::File;
+    /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN]
+    std::optional<std::uint32_t> floor_vertices = {};
+    /// Side of the floor over the mesh's width
+    float floor_scale = 4.0f;
+};
+
+/// Reads an .obj, .gltf, .glb, .ply, .off or .stl file and adds the floor.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;
+///          std::invalid_argument for a floor that does not fit (mesh::append_floor()).
+/// Cost:    reads the file twice, once for its hash.
+[[nodiscard]] Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options = {});
+
+} // namespace relumine

@@ -1,0 +1,317 @@
+#include "relumine/precompute.h"
+
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "prt/receivers/pixel_receivers.h"
+#include "prt/scene/checkpoint_file.h"
+#include "prt/scene/fingerprint.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/pictures/picture.h"
+#include "relumine/memory_limit.h"
+
+namespace relumine {
+
+namespace {
+
+/// One precompute, step by step.
+class Precompute {
+public:
+    Precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report)
+        : options_(options), report_(report),
+          prefix_(mesh.source.empty() ? "" : mesh.source + ": "),
+          limit_(options.max_memory, prefix_) {
+        scene_.settings.floor_vertices = mesh.floor_vertices;
+        scene_.settings.source = std::filesystem::path(mesh.source).filename().string();
+        scene_.settings.source_hash = mesh.source_hash;
+        scene_.mesh = std::move(mesh.geometry);
+        clustering_ = {.tolerance = options.tolerance,
+                       .epsilon = options.epsilon,
+                       .min_level = options.min_level,
+                       .face_resolution = options.face_resolution,
+                       .bias = options.bias.value_or(prt::automatic_bias(scene_.mesh)),
+                       .stop = options.stop,
+                       .on_progress = progress(Stage::Clusters)};
+    }
+
+    Scene run() {
+        check_options();
+        try {
+            compute();
+            if (!options_.output.empty())
+                report_.file_bytes = prt::save_scene(options_.output, scene_);
+        } catch (...) {
+            if (checkpoint_ && checkpoint_->exists())
+                report_.checkpoint = prt::CheckpointFile::folder_for(options_.output);
+            throw;
+        }
+        if (checkpoint_)
+            checkpoint_->remove();
+        return std::move(scene_);
+    }
+
+private:
+    void check_options() const {
+        if (!options_.output.empty() && options_.output.extension() != ".prt")
+            throw std::invalid_argument(
+                fmt::format("{}: expected a name that ends in .prt", options_.output.string()));
+        if (options_.output.empty() && options_.resume)
+            throw std::invalid_argument("expected an output to resume the work of, got none");
+        if (!(options_.checkpoint_seconds >= 0.0))
+            throw std::invalid_argument(fmt::format("expected checkpoint seconds >= 0, got {}",
+                                                    options_.checkpoint_seconds));
+    }
+
+    /// Both parts of the transfer. The rays and all they are made of go before the scene is
+    /// written, which needs memory of its own.
+    void compute() {
+        report_.num_vertices = scene_.mesh.num_vertices();
+        report_.num_triangles = scene_.mesh.num_triangles();
+        report_.bias = clustering_.bias;
+        prt::SceneSizes sizes{.num_vertices = report_.num_vertices,
+                              .num_triangles = report_.num_triangles,
+                              .has_beams = options_.engine == Engine::Beams};
+        limit_.check_scene(sizes);
+        const prt::RayScene rays(scene_.mesh);
+        place_receivers(rays);
+        sizes.num_receivers = report_.num_receivers = scene_.receivers.size();
+        set_surfaces();
+        poll();
+        const bool has_highlights = prt::has_highlights(scene_.receivers);
+        open_checkpoint(has_highlights);
+        clustering_.more_follows = has_highlights;
+        keep_settings();
+        cluster(rays, sizes);
+        if (has_highlights)
+            add_highlights(rays, sizes);
+        prt::set_surfaces(scene_.transfer, scene_.receivers);
+    }
+
+    void place_receivers(const prt::RayScene& rays) {
+        try {
+            if (const auto* pixels = std::get_if<Pixels>(&options_.receivers))
+                place_pixels(*pixels, rays);
+            else if (const auto* texels = std::get_if<Texels>(&options_.receivers))
+                place_texels(*texels);
+            else
+                scene_.receivers = prt::vertex_receivers(scene_.mesh);
+            // Receivers that are no pixels of the view but seen from it.
+            if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
+                const std::optional<prt::Camera>& own = options_.view->camera;
+                scene_.settings.view = own ? *own : relight::automatic_camera(scene_.mesh);
+                prt::look_from(scene_.receivers, scene_.settings.view->eye);
+            }
+        } catch (const std::invalid_argument& error) {
+            throw std::runtime_error(prefix_ + error.what());
+        }
+    }
+
+    void place_pixels(const Pixels& size, const prt::RayScene& rays) {
+        const bool has_camera = options_.view && options_.view->camera;
+        const prt::Camera camera =
+            has_camera ? *options_.view->camera
+                       : relight::automatic_camera(scene_.mesh,
+                                                   {.width = size.width, .height = size.height});
+        prt::PixelReceivers pixels =
+            prt::pixel_receivers(scene_.mesh, rays,
+                                 {.camera = camera,
+                                  .width = size.width,
+                                  .height = size.height,
+                                  .samples_per_axis = size.samples_per_axis});
+        scene_.receivers = std::move(pixels.receivers);
+        scene_.layout = std::move(pixels.layout);
+        note(fmt::format("{}: {} samples hit the mesh", prt::description(scene_.layout),
+                         scene_.receivers.size()));
+    }
+
+    void place_texels(const Texels& size) {
+        prt::TexelReceivers texels =
+            prt::texel_receivers(scene_.mesh, {.width = size.width, .height = size.height});
+        const prt::AtlasReport& atlas = texels.report;
+        if (atlas.num_overlapping > 0)
+            warn(fmt::format("{} texels lie in several triangles, the first at column {}, row {}: "
+                             "charts overlap, the first triangle of the mesh wins",
+                             atlas.num_overlapping, atlas.first_overlap % size.width,
+                             atlas.first_overlap / size.width));
+        if (atlas.num_outside > 0)
+            warn(fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
+                             atlas.num_outside));
+        if (atlas.num_flat > 0)
+            note(fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
+        report_.atlas = atlas;
+        scene_.receivers = std::move(texels.receivers);
+        scene_.layout = std::move(texels.layout);
+    }
+
+    /// The mesh's materials, changed by the option; none where there are neither.
+    void set_surfaces() {
+        const mesh::TriangleMesh& mesh = scene_.mesh;
+        if (mesh.materials.empty() && !options_.surface)
+            return;
+        prt::Receivers& receivers = scene_.receivers;
+        if (receivers.points.empty()) {
+            receivers.surfaces = prt::vertex_surfaces(mesh, options_.surface);
+        } else {
+            receivers.surfaces.clear();
+            for (const prt::MeshPoint& point : receivers.points) {
+                const prt::Surface own = prt::surface_at(mesh, point.triangle, point.barycentric);
+                receivers.surfaces.push_back(
+                    options_.surface ? options_.surface(mesh, point.triangle, own) : own);
+            }
+        }
+        if (receivers.to_eye.empty())
+            leave_highlights_out();
+    }
+
+    void leave_highlights_out() {
+        for (prt::Surface& surface : scene_.receivers.surfaces) {
+            report_.num_highlights_left_out += surface.highlight != prt::Highlight::None ? 1 : 0;
+            surface.highlight = prt::Highlight::None;
+        }
+        if (report_.num_highlights_left_out != 0)
+            warn(fmt::format("{} receivers have highlights, which need a view: left out, the scene "
+                             "is diffuse",
+                             report_.num_highlights_left_out));
+    }
+
+    void open_checkpoint(bool has_highlights) {
+        const bool is_wanted = options_.checkpoint_seconds > 0.0 || options_.resume;
+        if (options_.output.empty() || !is_wanted)
+            return;
+        constexpr double Never = 1e9;
+        // A disk that stays full need not be told of every twenty seconds.
+        const auto warn_once = [this, last = std::string()](const std::string& message) mutable {
+            if (std::exchange(last, message) != message)
+                warn(message);
+        };
+        checkpoint_ = std::make_unique<prt::CheckpointFile>(
+            options_.output,
+            prt::fingerprint(scene_.mesh, scene_.receivers, clustering_,
+                             has_highlights ? std::optional(options_.glossy_tolerance)
+                                            : std::nullopt),
+            prt::CheckpointFile::Options{
+                .resume = options_.resume,
+                .interval = std::chrono::duration<double>(
+                    options_.checkpoint_seconds > 0.0 ? options_.checkpoint_seconds : Never),
+                .on_problem = warn_once});
+        clustering_.checkpoint = checkpoint_.get();
+        if (checkpoint_->exists())
+            note(fmt::format("going on from {}",
+                             prt::CheckpointFile::folder_for(options_.output).string()));
+    }
+
+    /// What the scene remembers of how it was made.
+    void keep_settings() {
+        prt::SceneSettings& settings = scene_.settings;
+        settings.tolerance = clustering_.tolerance;
+        settings.epsilon = clustering_.epsilon;
+        settings.min_level = clustering_.min_level;
+        settings.face_resolution = clustering_.face_resolution;
+        settings.bias = clustering_.bias;
+    }
+
+    void cluster(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
+        std::optional<prt::BeamScene> beams;
+        if (options_.engine == Engine::Beams)
+            beams.emplace(scene_.mesh, rays);
+        const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
+        report_.memory = limit_.check_estimate(sizes, scene_.receivers, blockers, clustering_);
+        if (report_.memory)
+            note(fmt::format("memory: about {} for about {} clusters",
+                             megabytes(report_.memory->peak_bytes), report_.memory->num_clusters));
+        try {
+            scene_.transfer =
+                prt::precompute(scene_.receivers, blockers, clustering_, &report_.clusters);
+        } catch (const prt::TooManyClusters& error) {
+            throw limit_.stopped(error);
+        }
+    }
+
+    void add_highlights(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
+        const float narrowest = prt::narrowest_roughness(options_.face_resolution);
+        const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
+        report_.num_too_smooth = static_cast<std::size_t>(
+            std::count_if(surfaces.begin(), surfaces.end(), [&](const prt::Surface& surface) {
+                return surface.highlight == prt::Highlight::Ggx && surface.shape < narrowest;
+            }));
+        if (report_.num_too_smooth != 0)
+            warn(fmt::format("{} receivers are smoother than roughness {:.3f}: cells of the "
+                             "quadtree cannot hold so sharp a highlight, it comes out wider",
+                             report_.num_too_smooth, narrowest));
+        prt::GlossyOptions glossy{.tolerance = options_.glossy_tolerance,
+                                  .face_resolution = options_.face_resolution,
+                                  .bias = clustering_.bias,
+                                  .checkpoint = checkpoint_.get(),
+                                  .stop = options_.stop,
+                                  .on_progress = progress(Stage::Highlights)};
+        const std::optional<std::uint64_t> max_bytes =
+            limit_.max_glossy_bytes(sizes, report_.clusters.column_bytes);
+        if (max_bytes) {
+            const std::uint64_t estimate =
+                prt::estimate_glossy_entries(scene_.receivers, rays, scene_.transfer, glossy);
+            if (estimate * prt::BytesPerEntry > *max_bytes)
+                throw limit_.too_many_highlights(*max_bytes, "an estimate of", estimate);
+            report_.highlights_estimate = estimate;
+            glossy.max_bytes = *max_bytes;
+        }
+        prt::GlossyStatistics statistics;
+        try {
+            scene_.transfer.glossy = prt::precompute_glossy(scene_.receivers, rays, scene_.transfer,
+                                                            glossy, &statistics);
+        } catch (const prt::TooManyEntries& error) {
+            throw limit_.too_many_highlights(glossy.max_bytes, "at least", error.num_entries);
+        }
+        report_.highlights = statistics;
+        scene_.settings.glossy_tolerance = options_.glossy_tolerance;
+    }
+
+    [[nodiscard]] std::function<void(double)> progress(Stage stage) const {
+        if (!options_.on_progress)
+            return {};
+        return [this, stage](double fraction) {
+            options_.on_progress(stage, fraction);
+        };
+    }
+    void poll() const {
+        if (options_.stop.stop_requested())
+            throw Cancelled();
+    }
+    void warn(const std::string& message) const {
+        if (options_.on_warning)
+            options_.on_warning(message);
+    }
+    void note(const std::string& message) const {
+        if (options_.on_note)
+            options_.on_note(message);
+    }
+
+    const PrecomputeOptions& options_;
+    PrecomputeReport& report_;
+    std::string prefix_;
+    MemoryLimit limit_;
+    Scene scene_;
+    prt::PrecomputeOptions clustering_;
+    std::unique_ptr<prt::CheckpointFile> checkpoint_;
+};
+
+} // namespace
+
+Scene precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
+    PrecomputeReport local;
+    PrecomputeReport& facts = report != nullptr ? *report : local;
+    facts = {};
+    return Precompute(std::move(mesh), options, facts).run();
+}
+
+prt::SurfaceOverride everywhere(const prt::Surface& surface) {
+    return [surface](const mesh::TriangleMesh&, std::uint32_t, const prt::Surface&) {
+        return surface;
+    };
+}
+
+} // namespace relumine

@@ -1,0 +1,175 @@
+// From a mesh to a scene that any environment lights: all of the precompute in one call.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <stdexcept>
+#include <stop_token>
+#include <string>
+#include <variant>
+
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/glossy/surface_sampling.h"
+#include "prt/memory_estimate.h"
+#include "prt/precompute.h"
+#include "prt/receivers/camera.h"
+#include "prt/receivers/texel_receivers.h"
+#include "relumine/mesh.h"
+#include "relumine/scene.h"
+
+namespace relumine {
+
+/// Thrown when a stop token asked for the end.
+using prt::Cancelled;
+
+/// The mesh's vertices are lit: pictures from any view, meshes with vertex colours.
+struct Vertices {};
+
+/// The pixels of one view are lit: a picture as sharp as its pixels, from that view alone.
+struct Pixels {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 768;
+    /// n x n samples a pixel
+    std::uint32_t samples_per_axis = 1;
+};
+
+/// The texels of a lightmap on the mesh's uvs are lit.
+struct Texels {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 1024;
+};
+
+/// A view of the scene.
+struct View {
+    /// Nothing: a camera that shows all of the mesh
+    std::optional<prt::Camera> camera = {};
+};
+
+/// How rays are traced. The results are the same bit by bit.
+enum class Engine {
+    /// Whole beams of rays at once: the fast one
+    Beams,
+    /// Each ray with Embree: less memory, no beam tree
+    Embree,
+};
+
+/// Parts of a precompute that take time.
+enum class Stage {
+    /// Visibility and clusters
+    Clusters,
+    /// The view-dependent part; only where there are highlights and an eye
+    Highlights,
+};
+
+struct PrecomputeOptions {
+    /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer
+    float tolerance = prt::PrecomputeOptions{}.tolerance;
+    /// The paper's form of the tolerance in its place; grows lax with the mesh's size
+    std::optional<float> epsilon = {};
+    /// Every cell is split at least this often
+    std::uint32_t min_level = prt::PrecomputeOptions{}.min_level;
+    /// R: cells stop at single texels of a 6 x R x R environment
+    std::uint32_t face_resolution = prt::PrecomputeOptions{}.face_resolution;
+    /// Lift of the rays' origins off the surface, in the mesh's unit; automatic unless given
+    std::optional<float> bias = {};
+    Engine engine = Engine::Beams;
+
+    /// What is lit
+    std::variant<Vertices, Pixels, Texels> receivers = Vertices{};
+    /// The camera of pixels, and the eye that highlights are for. Without one, pixels take the
+    /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
+    std::optional<View> view = {};
+    /// Surfaces in place of the mesh's materials; empty: those. See everywhere().
+    prt::SurfaceOverride surface = {};
+    /// Relative error of a highlight under a small light anywhere
+    float glossy_tolerance = prt::GlossyOptions{}.tolerance;
+
+    /// Bytes. Work that would take more is refused before it begins, or stopped; none: no limit.
+    std::optional<std::uint64_t> max_memory = {};
+
+    /// The .prt file to write as soon as the scene is ready; empty: none
+    std::filesystem::path output = {};
+    /// Time between two checkpoints in the folder OUTPUT.checkpoint; 0: none. Without an output
+    /// there are none. The folder goes away when the scene is written.
+    double checkpoint_seconds = 20.0;
+    /// Go on from the checkpoint of the same work, where there is one
+    bool resume = false;
+
+    /// Polled a few times a second; Cancelled is thrown
+    std::stop_token stop = {};
+    /// Estimated fraction of a stage in [0, 1], never falling; one call at a time
+    std::function<void(Stage, double)> on_progress = {};
+    /// Sentences for people, one call at a time: what should be known at once
+    std::function<void(const std::string&)> on_warning = {};
+    /// The same: what helps to understand a run
+    std::function<void(const std::string&)> on_note = {};
+};
+
+/// What a precompute found and took.
+struct PrecomputeReport {
+    std::size_t num_vertices = 0;
+    std::size_t num_triangles = 0;
+    std::size_t num_receivers = 0;
+    /// As used, in the mesh's unit
+    float bias = 0.0f;
+    prt::PrecomputeStatistics clusters = {};
+    /// Only of texels: how the uvs fit the atlas
+    std::optional<prt::AtlasReport> atlas = {};
+    /// Only with a memory limit
+    std::optional<prt::MemoryEstimate> memory = {};
+
+    /// Only with highlights
+    std::optional<prt::GlossyStatistics> highlights = {};
+    /// Entries, from a trial; only with highlights and a memory limit
+    std::optional<std::uint64_t> highlights_estimate = {};
+    /// Receivers whose highlights were left out, as no view was given
+    std::size_t num_highlights_left_out = 0;
+    /// Receivers smoother than narrowest_roughness: their highlights come out wider
+    std::size_t num_too_smooth = 0;
+
+    /// Of the scene file, 0 without one
+    std::uint64_t file_bytes = 0;
+    /// The checkpoint folder that an exception has left to be resumed from, or empty
+    std::filesystem::path checkpoint = {};
+};
+
+/// Thrown when the work would take more memory than max_memory, or did. "SOURCE: expected X, got
+/// Y".
+struct MemoryLimitExceeded : std::runtime_error {
+    /// What is too large, and so what would help
+    enum class Part {
+        /// The mesh and its receivers: nothing but a smaller mesh
+        Scene,
+        /// By the estimate: a larger tolerance
+        Clusters,
+        /// Found while clustering; a checkpoint is left
+        ClustersFound,
+        /// A larger glossy_tolerance
+        Highlights,
+    };
+    MemoryLimitExceeded(Part what, const std::string& message)
+        : std::runtime_error(message), part(what) {}
+    Part part;
+};
+
+/// Computes which light reaches which receiver [JN, Section 4], highlights included, and writes the
+/// scene where an output is given.
+///
+/// Report:  where given, filled as far as the work got, also when an exception ends it.
+/// Throws:  std::invalid_argument for options out of range; std::runtime_error "SOURCE: ..." for a
+///          view that sees nothing, a mesh without uvs for texels, a checkpoint of other work, a
+///          file that cannot be written; MemoryLimitExceeded; Cancelled.
+/// Cost:    seconds to minutes: receivers times directions rays. 8 s for the bunny on its floor
+///          (73,196 vertices, docs/measurements.md).
+/// Memory:  the result twice, and half a gigabyte; less with max_memory.
+/// Threads: parallel inside; the result is the same bit by bit for any number of threads.
+[[nodiscard]] Scene precompute(Mesh mesh, const PrecomputeOptions& options = {},
+                               PrecomputeReport* report = nullptr);
+
+/// One surface for the whole mesh: PrecomputeOptions{.surface = everywhere({.albedo = ...})}.
+[[nodiscard]] prt::SurfaceOverride everywhere(const prt::Surface& surface);
+
+} // namespace relumine

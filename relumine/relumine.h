@@ -1,0 +1,20 @@
+// The door to the library: from a mesh to a picture in any light.
+//
+//     using namespace relumine;
+//     LitScene lit(precompute(load_mesh("bunny.ply", {.floor_vertices = 193})));
+//     lit.light(load_environment("grace.exr"));
+//     lit.save("bunny.png", {.albedo = glm::vec3(0.8f)});
+//
+// load_mesh() reads a mesh, precompute() finds which light reaches it, save_scene() and
+// load_scene() keep that; LitScene lights it with any environment or light list, edits, verifies,
+// draws and writes it. Errors are exceptions derived from std::exception. Nothing here prints.
+#pragma once
+
+// IWYU pragma: begin_exports
+#include "relumine/environment.h"
+#include "relumine/lit_scene.h"
+#include "relumine/mesh.h"
+#include "relumine/output.h"
+#include "relumine/precompute.h"
+#include "relumine/scene.h"
+// IWYU pragma: end_exports

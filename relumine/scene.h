@@ -1,0 +1,55 @@
+// Scenes: a mesh with its precomputed light transfer, in memory and as a .prt file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include <glm/vec3.hpp>
+
+#include "prt/scene/scene_file.h"
+#include "prt/transfer.h"
+#include "relight/pictures/picture.h"
+#include "relumine/mesh.h"
+
+namespace relumine {
+
+/// A mesh, what is lit of it (vertices, pixels or texels), its transfer, and how that was made. A
+/// value; bias and tolerance travel in its settings.
+using prt::Scene;
+
+/// Reads a scene and checks all of it. Throws std::runtime_error "path: expected X, got Y".
+using prt::load_scene;
+
+/// Writes a scene, whole or not at all; returns the file's size in bytes.
+using prt::save_scene;
+
+using relight::Camera;
+
+/// A mesh's vertices without clusters: light lists light them with shadow rays, environments do
+/// not. Costs nothing.
+[[nodiscard]] Scene unclustered_scene(Mesh mesh);
+
+/// The RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
+[[nodiscard]] float rms_tolerance(const Scene& scene);
+
+/// Other colours of all surfaces; nothing: as they are.
+struct SurfaceColors {
+    std::optional<glm::vec3> albedo = {};
+    /// F0, or Ks of Blinn-Phong
+    std::optional<glm::vec3> specular = {};
+};
+
+/// Colours are no part of the transfer, so they may change without a new precompute.
+///
+/// Throws:  std::invalid_argument for a scene without materials.
+void set_colors(Scene& scene, const SurfaceColors& colors);
+
+/// The camera that a picture of the scene's mesh has unless another is given: the eye that its
+/// highlights are for, or one that shows all of the mesh in a picture of this size.
+[[nodiscard]] Camera camera_of(const Scene& scene, const relight::PictureOptions& size = {},
+                               float fov_degrees = 35.0f);
+
+/// The receiver nearest to a position. O(receivers). The scene must have one.
+[[nodiscard]] std::uint32_t nearest_receiver(const Scene& scene, const glm::vec3& position);
+
+} // namespace relumine

@@ -1,0 +1,219 @@
+#include "relumine/lit_scene.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cubemap/layers/layer_composite.h"
+#include "relight/light_packets.h"
+#include "tests/relight/environments.h"
+#include "tests/relumine/small_scenes.h"
+
+namespace relumine {
+namespace {
+
+const Scene& boulder_scene() {
+    static const Scene Boulder = precompute(scenes::boulder(), {.tolerance = scenes::Tolerance});
+    return Boulder;
+}
+
+template<typename T>
+std::vector<T> copy(std::span<const T> values) {
+    return {values.begin(), values.end()};
+}
+
+std::vector<glm::vec3> lit(const cubemap::CubeMap& map) {
+    LitScene scene(boulder_scene());
+    scene.light(map);
+    return copy(scene.radiance());
+}
+
+cubemap::LightLayer disc(const glm::dvec3& direction, float radiance) {
+    return {.name = "disc",
+            .region = cubemap::Disc{.direction = direction, .radius_degrees = 20.0},
+            .effect = cubemap::Emit{.radiance = glm::vec3(radiance)}};
+}
+
+TEST(LitScene, LightsAsTheRelighterDoes) {
+    const cubemap::CubeMap map = scenes::random_environment(16, 1);
+    LitScene scene(boulder_scene());
+    EXPECT_TRUE(scene.radiance().empty());
+    scene.light(map);
+    EXPECT_EQ(copy(scene.radiance()),
+              relight::relight(scene.scene().transfer, map, scene.shadow_rays()));
+    EXPECT_EQ(scene.environment().texels, map.texels);
+    EXPECT_EQ(scene.shadow_rays().bias, boulder_scene().settings.bias);
+    EXPECT_EQ(scene.shadow_rays().tolerance, scenes::Tolerance);
+}
+
+TEST(LitScene, MayBeMovedWhileLit) {
+    const cubemap::CubeMap map = scenes::random_environment(16, 2);
+    std::optional<LitScene> first(boulder_scene());
+    first->light(map);
+    Painter painter(*first, {.width = 8, .height = 6});
+    LitScene second = std::move(*first);
+    first.reset();
+    const Picture picture = painter.draw(second.radiance(), second.environment());
+    EXPECT_EQ(picture.pixels, second.draw({.width = 8, .height = 6}).pixels);
+    second.set_layers({disc({1, 1, 0}, 3.0f)});
+    LitScene third(boulder_scene());
+    third = std::move(second);
+    third.set_layers({});
+    scenes::expect_close(third.radiance(), lit(map), 1e-5);
+}
+
+TEST(LitScene, UpdatesARegionUnderLayersOrWithout) {
+    const cubemap::CubeMap map = scenes::random_environment(16, 3);
+    const cubemap::TexelRectangle rectangle{cubemap::Face::PositiveY, 2, 3, 7, 9};
+    const std::vector<glm::vec3> bright(5 * 6, glm::vec3(9.0f));
+    cubemap::CubeMap changed = map;
+    for (std::uint32_t y = 3; y < 9; ++y)
+        for (std::uint32_t x = 2; x < 7; ++x)
+            changed.at(cubemap::Face::PositiveY, x, y) = glm::vec3(9.0f);
+
+    LitScene scene(boulder_scene());
+    scene.light(map);
+    EXPECT_GT(scene.update_region(rectangle, bright).num_clusters, 0u);
+    EXPECT_EQ(scene.environment().texels, changed.texels);
+    scenes::expect_close(scene.radiance(), lit(changed), 1e-5);
+
+    const std::vector<cubemap::LightLayer> layers = {disc({0, 1, 1}, 2.0f)};
+    LitScene layered(boulder_scene());
+    layered.light(map);
+    layered.set_layers(layers);
+    layered.update_region(rectangle, bright);
+    LitScene expected(boulder_scene());
+    expected.light(changed);
+    expected.set_layers(layers);
+    EXPECT_EQ(layered.environment().texels, expected.environment().texels);
+    scenes::expect_close(layered.radiance(), expected.radiance(), 1e-5);
+}
+
+TEST(LitScene, RefusesARegionThatDoesNotFit) {
+    LitScene scene(boulder_scene());
+    const std::vector<glm::vec3> four(4, glm::vec3(1.0f));
+    const cubemap::TexelRectangle inside{cubemap::Face::PositiveY, 0, 0, 2, 2};
+    EXPECT_THROW(scene.update_region(inside, four), std::invalid_argument); // nothing to update
+    scene.light(scenes::random_environment(4, 1));
+    for (int with_layers = 0; with_layers < 2; ++with_layers) {
+        EXPECT_THROW(scene.update_region({cubemap::Face::PositiveY, 3, 0, 5, 2}, four),
+                     std::invalid_argument);
+        EXPECT_THROW(scene.update_region({cubemap::Face::PositiveY, 2, 0, 2, 2}, {}),
+                     std::invalid_argument);
+        EXPECT_THROW(scene.update_region(inside, std::span(four).first(3)), std::invalid_argument);
+        scene.set_layers({disc({1, 0, 0}, 1.0f)});
+    }
+}
+
+TEST(LitScene, KeepsItsLayersUnderANewEnvironment) {
+    const cubemap::CubeMap first = scenes::random_environment(16, 4);
+    const cubemap::CubeMap second = scenes::random_environment(16, 5);
+    const std::vector<cubemap::LightLayer> layers = {disc({0, 1, 0}, 5.0f), disc({1, 0, 1}, 7.0f)};
+    LitScene scene(boulder_scene());
+    EXPECT_THROW(scene.set_layers(layers), std::invalid_argument); // no environment yet
+    scene.light(first);
+    scene.set_layers({layers[0], disc({1, 0, 1}, 1.0f)});
+    scene.set_layer(1, layers[1]);
+    EXPECT_EQ(copy(scene.editor().layers()), layers);
+    scene.light(second);
+    EXPECT_EQ(scene.environment().texels, cubemap::composite(second, layers).texels);
+    EXPECT_EQ(copy(scene.radiance()), lit(scene.environment()));
+    EXPECT_THROW(scene.set_layer(2, layers[0]), std::out_of_range);
+}
+
+TEST(LitScene, UndoesThroughItsEditor) {
+    LitScene scene(boulder_scene());
+    scene.light(scenes::random_environment(16, 6));
+    const std::vector<glm::vec3> plain = copy(scene.radiance());
+    scene.editor().mark();
+    scene.set_layers({disc({0, 1, 0}, 5.0f)});
+    scene.editor().mark();
+    EXPECT_NE(copy(scene.radiance()), plain);
+    scene.editor().undo();
+    EXPECT_EQ(copy(scene.radiance()), plain);
+}
+
+TEST(LitScene, TakesLightLists) {
+    const std::vector<lights::DistantLight> list = {
+        {.direction = {0, 1, 0}, .irradiance = glm::dvec3(2.0)},
+        {.direction = {0.6, 0.8, 0}, .irradiance = {1.0, 0.5, 0.25}}};
+    LitScene scene(boulder_scene());
+    scene.light(scenes::random_environment(8, 7));
+    scene.set_layers({disc({0, 1, 0}, 5.0f)});
+    scene.light(list);
+    const std::vector<glm::vec3> expected =
+        relight::radiance_under(list, scene.scene().receivers.normals, scene.shadow_rays());
+    scenes::expect_close(scene.radiance(), expected, 1e-6);
+    EXPECT_EQ(cubemap::total_power(scene.environment()), glm::dvec3(0.0));
+    EXPECT_THROW(scene.set_layers({}), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(scene.verify()), std::logic_error);
+
+    // A mesh without clusters gives the same.
+    LitScene mesh(unclustered_scene(scenes::boulder()));
+    EXPECT_FALSE(mesh.has_clusters());
+    mesh.light(list);
+    EXPECT_EQ(copy(mesh.radiance()), expected);
+    EXPECT_EQ(mesh.draw({.width = 8, .height = 6}).pixels.size(), 48u);
+    EXPECT_THROW(mesh.light(cubemap::CubeMap(4)), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(mesh.editor()), std::invalid_argument);
+}
+
+TEST(LitScene, LightsThroughClustersOnlyWhenAsked) {
+    cubemap::CubeMap sun(256);
+    sun.at(cubemap::Face::PositiveY, 100, 90) = glm::vec3(1e5f);
+    LitScene traced(boulder_scene());
+    EXPECT_GT(traced.light(sun).num_sharp_lights, 0u);
+    LitScene clusters(boulder_scene(), {.clusters_only = true});
+    EXPECT_EQ(clusters.light(sun).num_sharp_lights, 0u);
+    EXPECT_EQ(copy(clusters.radiance()), relight::relight(clusters.scene().transfer, sun));
+    EXPECT_THROW(LitScene(unclustered_scene(scenes::boulder()), {.clusters_only = true}),
+                 std::invalid_argument);
+}
+
+TEST(LitScene, SaysWhatItNeedsBeforeItIsLit) {
+    const LitScene scene(boulder_scene());
+    EXPECT_THROW(static_cast<void>(scene.relighter()), std::logic_error);
+    EXPECT_THROW(static_cast<void>(scene.draw()), std::logic_error);
+    EXPECT_THROW(scene.save("absent.png"), std::logic_error);
+    EXPECT_THROW(static_cast<void>(scene.verify()), std::logic_error);
+    EXPECT_THROW(static_cast<void>(scene.lit_by(cubemap::Disc{})), std::logic_error);
+    EXPECT_EQ(scene.environment().resolution, 0u);
+}
+
+TEST(LitScene, IsVerifiedByExactIntegration) {
+    LitScene scene(boulder_scene());
+    scene.light(scenes::smooth_environment(16));
+    const Verification some = scene.verify({.num_samples = 40, .seed = 3});
+    EXPECT_EQ(some.receivers, relight::random_receivers(scene.scene().transfer, 40, 3));
+    EXPECT_GT(some.error.relative_l2, 0.0);
+    EXPECT_LT(some.error.relative_l2, 0.05);
+    EXPECT_EQ(scene.verify({.num_samples = 0}).receivers.size(), scene.radiance().size());
+
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW(static_cast<void>(scene.verify({.stop = stop.get_token()})), Cancelled);
+}
+
+TEST(LitScene, KnowsWhatLightsIt) {
+    LitScene scene(boulder_scene());
+    scene.light(scenes::smooth_environment(16));
+    const std::array<std::uint32_t, 1> receiver = {
+        nearest_receiver(scene.scene(), {0.0f, 10.0f, 0.0f})};
+    const glm::dvec3 power = cubemap::total_power(scene.contribution_map(receiver));
+    EXPECT_NEAR(power.g, static_cast<double>(scene.radiance()[receiver[0]].g), 1e-3 * power.g);
+
+    // Two half spheres together are all of the light.
+    const Share above = scene.lit_by(cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 90.0});
+    const Share below =
+        scene.lit_by(cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90.0});
+    EXPECT_GT(above.share, below.share);
+    EXPECT_NEAR(above.share + below.share, 1.0, 1e-3);
+    EXPECT_EQ(above.radiance.size(), scene.radiance().size());
+    EXPECT_THROW(static_cast<void>(scene.lit_by(cubemap::Disc{.radius_degrees = -1.0})),
+                 std::invalid_argument);
+}
+
+} // namespace
+} // namespace relumine

@@ -1,0 +1,227 @@
+#include "relumine/precompute.h"
+
+#include <vector>
+
+#include "prt/receivers/pixel_receivers.h"
+#include "prt/receivers/texel_receivers.h"
+#include "prt/visibility/ray_scene.h"
+#include "tests/prt/same_transfer.h"
+#include "tests/relumine/small_scenes.h"
+
+namespace relumine {
+namespace {
+
+using scenes::boulder;
+using scenes::Tolerance;
+using scenes::two_squares;
+
+class PrecomputeFile : public scenes::InFolder {};
+
+TEST(Precompute, IsItsStepsInOneCall) {
+    const mesh::TriangleMesh mesh = boulder();
+    PrecomputeReport report;
+    const Scene scene = precompute(mesh, {.tolerance = Tolerance}, &report);
+
+    const prt::RayScene rays(mesh);
+    const float bias = prt::automatic_bias(mesh);
+    prt::expect_same(scene.transfer, prt::precompute(prt::vertex_receivers(mesh), rays,
+                                                     {.tolerance = Tolerance, .bias = bias}));
+    EXPECT_EQ(scene.mesh.positions, mesh.positions);
+    EXPECT_EQ(scene.receivers.positions, mesh.positions);
+    EXPECT_EQ(scene.settings.tolerance, Tolerance);
+    EXPECT_EQ(scene.settings.bias, bias);
+    EXPECT_EQ(scene.settings.min_level, 3u);
+    EXPECT_EQ(scene.settings.face_resolution, 1024u);
+    EXPECT_EQ(report.bias, bias);
+    EXPECT_EQ(report.num_vertices, mesh.num_vertices());
+    EXPECT_EQ(report.num_triangles, mesh.num_triangles());
+    EXPECT_EQ(report.num_receivers, mesh.num_vertices());
+    EXPECT_EQ(report.clusters.num_clusters, scene.transfer.num_clusters());
+    EXPECT_FALSE(report.highlights);
+    EXPECT_FALSE(report.memory);
+}
+
+TEST(Precompute, TakesABias) {
+    EXPECT_EQ(precompute(boulder(), {.tolerance = Tolerance, .bias = 0.02f}).settings.bias, 0.02f);
+}
+
+TEST(Precompute, OfBothEnginesIsTheSame) {
+    prt::expect_same(
+        precompute(boulder(), {.tolerance = Tolerance, .engine = Engine::Beams}).transfer,
+        precompute(boulder(), {.tolerance = Tolerance, .engine = Engine::Embree}).transfer);
+}
+
+TEST(Precompute, LightsPixelsOfAView) {
+    const mesh::TriangleMesh mesh = boulder();
+    const Camera camera{.eye = {0, 3, 6}, .target = {0, 0.5f, 0}};
+    const Scene scene = precompute(mesh, {.tolerance = Tolerance,
+                                          .receivers = Pixels{.width = 12, .height = 8},
+                                          .view = View{.camera = camera}});
+    const prt::PixelReceivers expected = prt::pixel_receivers(
+        mesh, prt::RayScene(mesh), {.camera = camera, .width = 12, .height = 8});
+    EXPECT_EQ(std::get<prt::PixelLayout>(scene.layout), expected.layout);
+    EXPECT_EQ(scene.receivers.positions, expected.receivers.positions);
+
+    const Scene automatic =
+        precompute(mesh, {.tolerance = Tolerance, .receivers = Pixels{.width = 12, .height = 8}});
+    EXPECT_EQ(std::get<prt::PixelLayout>(automatic.layout).camera,
+              relight::automatic_camera(mesh, {.width = 12, .height = 8}));
+}
+
+TEST(Precompute, LightsTexelsOfALightmap) {
+    mesh::TriangleMesh mesh = two_squares();
+    PrecomputeReport report;
+    const Scene scene = precompute(
+        mesh, {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}}, &report);
+    const prt::TexelReceivers expected = prt::texel_receivers(mesh, {.width = 8, .height = 4});
+    EXPECT_EQ(std::get<prt::TexelLayout>(scene.layout), expected.layout);
+    ASSERT_TRUE(report.atlas);
+    EXPECT_EQ(report.atlas->num_overlapping, 0u);
+
+    // The second square's chart over the first one's: 4 x 4 texels, without the four whose centres
+    // are on the triangles' common edge and so inside of none.
+    for (std::size_t vertex = 4; vertex < 8; ++vertex)
+        mesh.uvs[vertex].x -= 0.5f;
+    std::vector<std::string> warnings;
+    static_cast<void>(precompute(mesh, {.tolerance = 0.2f,
+                                        .receivers = Texels{.width = 8, .height = 4},
+                                        .on_warning = [&](const std::string& text) {
+                                            warnings.push_back(text);
+                                        }}));
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], "12 texels lie in several triangles, the first at column 0, row 0: "
+                           "charts overlap, the first triangle of the mesh wins");
+}
+
+TEST(Precompute, NamesTheMeshThatHasNoUvs) {
+    Mesh mesh(boulder());
+    mesh.geometry.uvs.clear();
+    mesh.source = "folder/boulder.ply";
+    try {
+        static_cast<void>(precompute(mesh, {.receivers = Texels{}}));
+        FAIL() << "made texels without uvs";
+    } catch (const std::runtime_error& error) {
+        EXPECT_EQ(std::string(error.what()).find("folder/boulder.ply: "), 0u) << error.what();
+    }
+}
+
+TEST(Precompute, HighlightsNeedAView) {
+    const PrecomputeOptions options{.tolerance = Tolerance,
+                                    .face_resolution = 64,
+                                    .surface = everywhere({.albedo = glm::vec3(0.3f),
+                                                           .specular = glm::vec3(0.5f),
+                                                           .highlight = prt::Highlight::Ggx,
+                                                           .shape = 0.6f})};
+    PrecomputeReport report;
+    const Scene diffuse = precompute(boulder(), options, &report);
+    EXPECT_FALSE(diffuse.transfer.glossy);
+    EXPECT_EQ(report.num_highlights_left_out, diffuse.receivers.size());
+    EXPECT_FALSE(diffuse.settings.glossy_tolerance);
+
+    PrecomputeOptions seen = options;
+    seen.view = View{};
+    double last = 0.0;
+    std::vector<Stage> stages;
+    seen.on_progress = [&](Stage stage, double fraction) {
+        if (stages.empty() || stages.back() != stage) {
+            stages.push_back(stage);
+            last = 0.0;
+        }
+        EXPECT_GE(fraction, last);
+        EXPECT_LE(fraction, 1.0);
+        last = fraction;
+    };
+    const Scene shiny = precompute(boulder(), seen, &report);
+    EXPECT_TRUE(shiny.transfer.glossy);
+    EXPECT_EQ(shiny.settings.view, relight::automatic_camera(shiny.mesh));
+    EXPECT_EQ(shiny.settings.glossy_tolerance, seen.glossy_tolerance);
+    ASSERT_TRUE(report.highlights);
+    EXPECT_GT(report.highlights->num_entries, 0u);
+    EXPECT_EQ(report.num_highlights_left_out, 0u);
+    EXPECT_EQ(stages, (std::vector{Stage::Clusters, Stage::Highlights}));
+}
+
+TEST(Precompute, RefusesOptionsOutOfRange) {
+    const auto run = [](const PrecomputeOptions& options) {
+        static_cast<void>(precompute(boulder(), options));
+    };
+    EXPECT_THROW(run({.tolerance = -1.0f}), std::invalid_argument);
+    EXPECT_THROW(run({.face_resolution = 0}), std::invalid_argument);
+    EXPECT_THROW(run({.bias = -1.0f}), std::invalid_argument);
+    EXPECT_THROW(run({.output = "scene.ply"}), std::invalid_argument);
+    EXPECT_THROW(run({.resume = true}), std::invalid_argument);
+    EXPECT_THROW(run({.checkpoint_seconds = -1.0}), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(precompute(mesh::TriangleMesh())), std::invalid_argument);
+}
+
+TEST(Precompute, KeepsWithinAMemoryLimit) {
+    using Part = MemoryLimitExceeded::Part;
+    const auto part_of = [](const PrecomputeOptions& options) -> std::optional<Part> {
+        Mesh mesh(data_gen::blob(20'000));
+        mesh.source = "boulder.ply";
+        try {
+            static_cast<void>(precompute(std::move(mesh), options));
+        } catch (const MemoryLimitExceeded& error) {
+            EXPECT_EQ(std::string(error.what()).find("boulder.ply: expected "), 0u) << error.what();
+            return error.part;
+        }
+        return {};
+    };
+    constexpr std::uint64_t MiB = 1u << 20u;
+    EXPECT_EQ(part_of({.max_memory = 1 * MiB}), Part::Scene);
+    EXPECT_EQ(part_of({.tolerance = 0.002f, .max_memory = 70 * MiB}), Part::Clusters);
+
+    PrecomputeReport report;
+    const Scene limited =
+        precompute(boulder(), {.tolerance = Tolerance, .max_memory = 200 * MiB}, &report);
+    prt::expect_same(limited.transfer, precompute(boulder(), {.tolerance = Tolerance}).transfer);
+    ASSERT_TRUE(report.memory);
+    EXPECT_LT(report.memory->peak_bytes, 200 * MiB);
+}
+
+TEST_F(PrecomputeFile, IsWrittenAndItsCheckpointGoes) {
+    PrecomputeReport report;
+    const Scene scene = precompute(
+        boulder(),
+        {.tolerance = Tolerance, .output = file("scene.prt"), .checkpoint_seconds = 1e-9}, &report);
+    EXPECT_EQ(report.file_bytes, std::filesystem::file_size(file("scene.prt")));
+    EXPECT_FALSE(std::filesystem::exists(file("scene.prt.checkpoint")));
+    save_scene(file("again.prt"), scene);
+    EXPECT_EQ(read("scene.prt"), read("again.prt"));
+    prt::expect_same(load_scene(file("scene.prt")).transfer, scene.transfer);
+}
+
+TEST_F(PrecomputeFile, StoppedIsResumedToTheSameBytes) {
+    const auto options = [&](const char* name) {
+        return PrecomputeOptions{
+            .tolerance = 0.02f, .output = file(name), .checkpoint_seconds = 1e-9};
+    };
+    static_cast<void>(precompute(boulder(), options("whole.prt")));
+
+    std::stop_source stop;
+    PrecomputeOptions first = options("scene.prt");
+    first.stop = stop.get_token();
+    first.on_progress = [&](Stage, double fraction) {
+        if (fraction > 0.3)
+            stop.request_stop();
+    };
+    PrecomputeReport report;
+    EXPECT_THROW(static_cast<void>(precompute(boulder(), first, &report)), Cancelled);
+    EXPECT_EQ(report.checkpoint, file("scene.prt.checkpoint"));
+    EXPECT_FALSE(std::filesystem::exists(file("scene.prt")));
+
+    PrecomputeOptions second = options("scene.prt");
+    second.resume = true;
+    std::vector<std::string> notes;
+    second.on_note = [&](const std::string& text) {
+        notes.push_back(text);
+    };
+    static_cast<void>(precompute(boulder(), second, &report));
+    EXPECT_EQ(notes, std::vector{"going on from " + file("scene.prt.checkpoint").string()});
+    EXPECT_TRUE(report.checkpoint.empty());
+    EXPECT_EQ(read("scene.prt"), read("whole.prt"));
+    EXPECT_FALSE(std::filesystem::exists(file("scene.prt.checkpoint")));
+}
+
+} // namespace
+} // namespace relumine

@@ -1,0 +1,62 @@
+// Small scenes for the tests of the door, and a folder for their files.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "data_gen/scenes.h"
+#include "relumine/relumine.h"
+
+namespace relumine::scenes {
+
+inline constexpr float Tolerance = 0.06f;
+
+/// A boulder on a floor, a thousand vertices.
+[[nodiscard]] inline mesh::TriangleMesh boulder() {
+    return data_gen::blob(1000);
+}
+
+/// A square over another, with uvs that fill the atlas, colours and no material.
+[[nodiscard]] inline mesh::TriangleMesh two_squares() {
+    mesh::TriangleMesh mesh;
+    mesh.positions = {{-1, 0, 1},  {1, 0, 1},      {1, 0, -1},         {-1, 0, -1},
+                      {0, 0.5, 0}, {0.6f, 0.5, 0}, {0.6f, 0.5, -0.6f}, {0, 0.5, -0.6f}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
+    mesh.normals.assign(8, {0, 1, 0});
+    mesh.uvs = {{0, 0}, {0.5, 0}, {0.5, 1}, {0, 1}, {0.5, 0}, {1, 0}, {1, 1}, {0.5, 1}};
+    mesh.colors.assign(8, {0.5f, 0.25f, 1.0f});
+    return mesh;
+}
+
+/// A folder of its own for each test, gone afterwards.
+class InFolder : public testing::Test {
+protected:
+    InFolder() {
+        const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+        folder_ = std::filesystem::temp_directory_path() /
+                  (std::string("relumine_door_") + test.test_suite_name() + "_" + test.name() +
+                   "_" + std::to_string(::getpid()));
+        std::filesystem::create_directories(folder_);
+    }
+    ~InFolder() override { std::filesystem::remove_all(folder_); }
+    InFolder(const InFolder&) = delete;
+    InFolder& operator=(const InFolder&) = delete;
+
+    [[nodiscard]] std::filesystem::path file(const std::string& name) const {
+        return folder_ / name;
+    }
+    [[nodiscard]] std::string read(const std::string& name) const {
+        std::ifstream stream(file(name), std::ios::binary);
+        return {std::istreambuf_iterator<char>(stream), {}};
+    }
+
+private:
+    std::filesystem::path folder_;
+};
+
+} // namespace relumine::scenes
