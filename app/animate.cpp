@@ -185,10 +185,10 @@ private:
             "{}: temporal inconsistency {:.5g} on average, {:.5g} at worst; relative L2 {:.5g}",
             options_.vertices, flicker.mean_inconsistency, flicker.worst_inconsistency,
             flicker.mean_relative_l2));
-        extra_report_["mean_inconsistency"] = flicker.mean_inconsistency;
-        extra_report_["inconsistency"] = flicker.inconsistency;
-        extra_report_["mean_relative_l2"] = flicker.mean_relative_l2;
-        extra_report_["relative_l2"] = flicker.relative_l2;
+        extra_report_.set("mean_inconsistency", flicker.mean_inconsistency);
+        extra_report_.set("inconsistency", flicker.inconsistency);
+        extra_report_.set("mean_relative_l2", flicker.mean_relative_l2);
+        extra_report_.set("relative_l2", flicker.relative_l2);
         if (options_.plot.empty())
             return;
         const relight::NamedReport named{options_.method, flicker};
@@ -268,24 +268,24 @@ private:
             per_frame * totals_.seconds_write, per_frame * totals_.seconds_load,
             per_frame * totals_.seconds_resample, per_frame * totals_.seconds_bin,
             seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0));
-        nlohmann::json result = {{"frames", sequence_.size()},
-                                 {"frames_lit", totals_.num_lit},
-                                 {"frames_kept", num_kept_},
-                                 {"frames_resummed", totals_.num_resummed},
-                                 {"clusters", lit_.scene().transfer.num_clusters()},
-                                 {"clusters_changed", totals_.num_clusters},
-                                 {"receivers", lit_.scene().transfer.num_receivers()},
-                                 {"method", options_.method},
-                                 {"seconds_load_scene", seconds_load_scene_},
-                                 {"seconds_load", totals_.seconds_load},
-                                 {"seconds_resample", totals_.seconds_resample},
-                                 {"seconds_bin", totals_.seconds_bin},
-                                 {"seconds_wait", totals_.seconds_wait},
-                                 {"seconds_relight", totals_.seconds_relight},
-                                 {"seconds_relight_frames", seconds_relight_frames_},
-                                 {"seconds_trace", totals_.seconds_trace},
-                                 {"seconds_write", totals_.seconds_write},
-                                 {"seconds_frames", seconds_frames_}};
+        Report result = {{"frames", sequence_.size()},
+                         {"frames_lit", totals_.num_lit},
+                         {"frames_kept", num_kept_},
+                         {"frames_resummed", totals_.num_resummed},
+                         {"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters_changed", totals_.num_clusters},
+                         {"receivers", lit_.scene().transfer.num_receivers()},
+                         {"method", options_.method},
+                         {"seconds_load_scene", seconds_load_scene_},
+                         {"seconds_load", totals_.seconds_load},
+                         {"seconds_resample", totals_.seconds_resample},
+                         {"seconds_bin", totals_.seconds_bin},
+                         {"seconds_wait", totals_.seconds_wait},
+                         {"seconds_relight", totals_.seconds_relight},
+                         {"seconds_relight_frames", seconds_relight_frames_},
+                         {"seconds_trace", totals_.seconds_trace},
+                         {"seconds_write", totals_.seconds_write},
+                         {"seconds_frames", seconds_frames_}};
         result.update(extra_report_);
         session_.report(result);
     }
@@ -306,7 +306,7 @@ private:
     Totals totals_;
     /// --method clusters
     lights::FrameLights frame_lights_;
-    nlohmann::json extra_report_ = nlohmann::json::object();
+    Report extra_report_;
     std::vector<double> seconds_relight_frames_;
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };
@@ -336,13 +336,13 @@ void run(const AnimateOptions& options, Session& session) {
 
 } // namespace
 
-void add_animate(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand(
+void add_animate(Command& program, Session& session) {
+    Command command = program.add_command(
         "animate", "light a scene with a sequence of environments: pictures, a movie or numbers");
     auto options = std::make_shared<AnimateOptions>();
     options->add_to(command);
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

@@ -15,13 +15,14 @@ namespace relumine::app {
 
 namespace fs = std::filesystem;
 
-void AnimateOptions::add_to(CLI::App& command) {
+void AnimateOptions::add_to(Command& command) {
     scene.add_to(command);
     command
         .add_option(
             "FRAMES", frames,
             "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
-        ->required();
+        .file()
+        .required();
     command.add_option("--frames", range,
                        "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)");
     environment.add_conversion_to(command);
@@ -30,46 +31,48 @@ void AnimateOptions::add_to(CLI::App& command) {
                     "prt: clusters' transfer, exact; clusters: lights that live over many frames "
                     "(Staton et al.); "
                     "importance: a few lights chosen anew for every frame")
-        ->check(CLI::IsMember({"prt", "clusters", "importance"}))
-        ->capture_default_str();
+        .one_of({"prt", "clusters", "importance"})
+        .show_default();
     command
         .add_option(
             "--bound", bound,
             "prt: update only clusters whose light changed by more than this part of it; 0: all "
             "that changed")
-        ->check(number_between(0.0, 1.0))
-        ->capture_default_str();
+        .between(0.0, 1.0)
+        .show_default();
     command.add_option("--lights", num_lights, "importance: lights in a frame")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
+        .between(1, 1000000)
+        .show_default();
     command.add_option("--clusters", num_clusters, "clusters: lights of all frames together")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
+        .between(1, 1000000)
+        .show_default();
     command.add_option("--samples", num_samples, "clusters: samples of a frame")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
+        .between(1, 1000000)
+        .show_default();
     command.add_option("--fade", fade, "clusters: frames over which lights come and go")
-        ->check(CLI::Range(0, 10000))
-        ->capture_default_str();
+        .between(0, 10000)
+        .show_default();
     command.add_flag("--even", even,
                      "clusters: lights are equally strong over all their frames, as in the paper");
-    command.add_option("--seed", seed, "of the random numbers")->capture_default_str();
-    output.add_to(command);
-    command.get_option("--output")
-        ->required(false)
-        ->description(
-            "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
-            "(numbers), .ply, .glb");
-    command.add_option("--vertices", vertices,
-                       "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
-    command.add_option(
-        "--measure", reference,
-        "another --vertices file of the same frames: says how much this one flickers against it");
-    command.add_option("--plot", plot, "of --measure: flicker over frames, .svg");
-    command.add_option("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
+    command.add_option("--seed", seed, "of the random numbers").show_default();
+    output.add_to(command).required(false).description(
+        "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
+        "(numbers), .ply, .glb");
+    command
+        .add_option("--vertices", vertices,
+                    "all frames in one .npy [frames x receivers x 3]: radiance times albedo")
+        .file();
+    command
+        .add_option("--measure", reference,
+                    "another --vertices file of the same frames: says how much this one flickers "
+                    "against it")
+        .file();
+    command.add_option("--plot", plot, "of --measure: flicker over frames, .svg").file();
+    command.add_option("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed")
+        .file();
     command.add_option("--fps", frames_per_second, "frames per second of the movie")
-        ->check(number_between(0.01, 1000.0))
-        ->capture_default_str();
+        .between(0.01, 1000.0)
+        .show_default();
     command.add_flag("--resume", resume,
                      "keep frames that are there already, from the same inputs");
 }
@@ -87,7 +90,7 @@ std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
 
 void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     if (output.path.empty() && vertices.empty())
-        throw CLI::ValidationError("-o", "expected -o or --vertices, got neither");
+        throw UsageError("-o", "expected -o or --vertices, got neither");
     const auto pattern = output_pattern();
     if (pattern) {
         output.check({scene.path});
@@ -109,7 +112,7 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     }
     if (!reference.empty()) {
         if (vertices.empty())
-            throw CLI::ValidationError("--measure", "expected --vertices with it");
+            throw UsageError("--measure", "expected --vertices with it");
         if (fs::path(reference).extension() != ".npy" || !fs::exists(reference))
             throw std::runtime_error(
                 fmt::format("{}: expected a .npy file that is there", reference));
@@ -117,7 +120,7 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     }
     if (!plot.empty()) {
         if (reference.empty())
-            throw CLI::ValidationError("--plot", "expected --measure with it");
+            throw UsageError("--plot", "expected --measure with it");
         if (fs::path(plot).extension() != ".svg")
             throw std::runtime_error(fmt::format("{}: expected a name that ends in .svg", plot));
         check_output(plot, {scene.path, reference});

@@ -6,8 +6,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
@@ -50,7 +48,7 @@ struct AnimateOptions {
     double frames_per_second = 24.0;
     bool resume = false;
 
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 
     /// Refuses what cannot be done before any work is.
     void check(const cubemap::FrameSequence& sequence) const;

@@ -7,7 +7,7 @@
 
 namespace relumine::app {
 
-void CheckpointOptions::add_to(CLI::App& command) {
+void CheckpointOptions::add_to(Command& command) {
     command.add_flag(
         "--resume", resume_,
         "go on from the last checkpoint of the same work, SCENE.prt.checkpoint, where there is "
@@ -16,8 +16,8 @@ void CheckpointOptions::add_to(CLI::App& command) {
         .add_option(
             "--checkpoint-seconds", seconds_,
             "time between two checkpoints; 0: none. The last goes away when the scene is written")
-        ->check(number_between(0.0, 86400.0))
-        ->capture_default_str();
+        .between(0.0, 86400.0)
+        .show_default();
 }
 
 std::unique_ptr<prt::CheckpointFile> CheckpointOptions::open(const std::string& output,

@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "app/session.h"
 #include "prt/scene/checkpoint_file.h"
 
@@ -15,7 +13,7 @@ namespace relumine::app {
 /// --resume and --checkpoint-seconds.
 class CheckpointOptions {
 public:
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 
     /// The checkpoint beside `output`; none where it is switched off. Throws std::runtime_error
     /// when one is to be resumed from that does not fit.

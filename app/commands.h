@@ -2,21 +2,20 @@
 // read.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "app/command_line.h"
 #include "app/session.h"
 
 namespace relumine::app {
 
-void add_precompute(CLI::App& program, Session& session);
-void add_relight(CLI::App& program, Session& session);
-void add_animate(CLI::App& program, Session& session);
-void add_edit(CLI::App& program, Session& session);
-void add_verify(CLI::App& program, Session& session);
-void add_lights(CLI::App& program, Session& session);
-void add_info(CLI::App& program, Session& session);
-void add_generate(CLI::App& program, Session& session);
-void add_env(CLI::App& program, Session& session);
-void add_view(CLI::App& program, Session& session);
+void add_precompute(Command& program, Session& session);
+void add_relight(Command& program, Session& session);
+void add_animate(Command& program, Session& session);
+void add_edit(Command& program, Session& session);
+void add_verify(Command& program, Session& session);
+void add_lights(Command& program, Session& session);
+void add_info(Command& program, Session& session);
+void add_generate(Command& program, Session& session);
+void add_env(Command& program, Session& session);
+void add_view(Command& program, Session& session);
 
 } // namespace relumine::app

@@ -58,13 +58,12 @@ void check_saved_environment(const Options& options) {
 cubemap::LightLayer disc_layer(const Options& options) {
     const glm::vec3 direction = parse_vec3("--disc", options.disc);
     if (!(glm::length(direction) > 0.0f))
-        throw CLI::ValidationError("--disc", "expected a direction, got 0,0,0");
+        throw UsageError("--disc", "expected a direction, got 0,0,0");
     const bool is_grey = options.gain.find(',') == std::string::npos;
     const glm::vec3 gain =
         parse_vec3("--gain", is_grey ? fmt::format("{0},{0},{0}", options.gain) : options.gain);
     if (!(gain.r >= 0.0f && gain.g >= 0.0f && gain.b >= 0.0f))
-        throw CLI::ValidationError("--gain",
-                                   fmt::format("expected numbers >= 0, got '{}'", options.gain));
+        throw UsageError("--gain", fmt::format("expected numbers >= 0, got '{}'", options.gain));
     cubemap::LightLayer layer;
     layer.name = "disc";
     layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
@@ -74,7 +73,7 @@ cubemap::LightLayer disc_layer(const Options& options) {
 
 cubemap::LightLayers layers_of(const Options& options) {
     if (options.layers.empty() == options.disc.empty())
-        throw CLI::ValidationError("edit", "expected either LAYERS or --disc");
+        throw UsageError("edit", "expected either LAYERS or --disc");
     if (!options.layers.empty())
         return cubemap::load_layers(options.layers);
     cubemap::LightLayers layers;
@@ -132,13 +131,13 @@ public:
             cubemap::save_environment(options_.saved_environment, editor_.environment());
         if (options_.watch)
             watch();
-        nlohmann::json result = {{"clusters", lit_.scene().transfer.num_clusters()},
-                                 {"clusters_touched", clusters_touched_},
-                                 {"seconds_edit", seconds_edit_},
-                                 {"seconds_full", seconds_full_},
-                                 {"edits", edits_}};
+        Report result = {{"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters_touched", clusters_touched_},
+                         {"seconds_edit", seconds_edit_},
+                         {"seconds_full", seconds_full_},
+                         {"edits", edits_}};
         if (!options_.lit_by.empty())
-            result["lit_by_share"] = lit_by_share_;
+            result.set("lit_by_share", lit_by_share_);
         session_.report(result);
     }
 
@@ -274,7 +273,7 @@ private:
     double seconds_edit_ = 0.0;
     double lit_by_share_ = 0.0;
     std::size_t clusters_touched_ = 0;
-    nlohmann::json edits_ = nlohmann::json::array();
+    std::vector<Report> edits_;
 };
 
 void run(const Options& options, Session& session) {
@@ -285,25 +284,27 @@ void run(const Options& options, Session& session) {
 
 } // namespace
 
-void add_edit(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand(
-        "edit", "put light layers over the environment and update the scene");
+void add_edit(Command& program, Session& session) {
+    Command command =
+        program.add_command("edit", "put light layers over the environment and update the scene");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)");
+    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)")
+        .file();
     options->output.add_to(command);
     command.add_option("--disc", options->disc,
                        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
                        "scene to the light");
-    command
-        .add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
-        ->check(number_between(1e-6, 180.0))
-        ->capture_default_str();
+    command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
+        .between(1e-6, 180.0)
+        .show_default();
     command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
-        ->capture_default_str();
-    command.add_option("--save-env", options->saved_environment,
-                       "write the edited environment: cube .exr or .hdr");
+        .show_default();
+    command
+        .add_option("--save-env", options->saved_environment,
+                    "write the edited environment: cube .exr or .hdr")
+        .file();
     command.add_option(
         "--who", options->who,
         "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
@@ -312,11 +313,11 @@ void add_edit(CLI::App& program, Session& session) {
             "--lit-by", options->lit_by,
             "write the scene as lit by a region of the environment alone: a layer's name, or "
             "X,Y,Z,RADIUS for a disc")
-        ->excludes("--who");
+        .excludes("--who");
     command.add_flag("--watch", options->watch,
                      "go on: when another program saves ENV, update and write OUT again");
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

@@ -53,9 +53,8 @@ cubemap::EnvironmentImage load(const Options& options, const cubemap::Convention
     if (!options.layout.empty()) {
         load_options.layout = parse_layout(options.layout);
         if (!from.reads(*load_options.layout))
-            throw CLI::ValidationError("--layout",
-                                       fmt::format("expected {} with --from {}, got {}",
-                                                   layouts_of(from), from.name, options.layout));
+            throw UsageError("--layout", fmt::format("expected {} with --from {}, got {}",
+                                                     layouts_of(from), from.name, options.layout));
     } else if (from.layouts.size() == 1) {
         load_options.layout = from.layouts.front();
     }
@@ -89,7 +88,7 @@ std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
     if ((found != 2 && !(found == 1 && text.find('x') == std::string::npos)) ||
         text.front() == '-' ||
         text != (found == 2 ? fmt::format("{}x{}", width, height) : fmt::format("{}", width)))
-        throw CLI::ValidationError("--size", fmt::format("expected W or WxH, got '{}'", text));
+        throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
     return cubemap::ImageSize{width, found == 2 ? height : 0};
 }
 
@@ -97,12 +96,11 @@ std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
 cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layout) {
     constexpr std::uint64_t MostPixels = std::uint64_t{1} << 28; // 3 GB
     if (!cubemap::fits(layout, size.width, size.height))
-        throw CLI::ValidationError("--size",
-                                   fmt::format("expected the proportions of a {}, got {}x{}",
+        throw UsageError("--size", fmt::format("expected the proportions of a {}, got {}x{}",
                                                cubemap::name(layout), size.width, size.height));
     if (std::uint64_t{size.width} * size.height > MostPixels)
-        throw CLI::ValidationError("--size", fmt::format("expected at most {} pixels, got {}x{}",
-                                                         MostPixels, size.width, size.height));
+        throw UsageError("--size", fmt::format("expected at most {} pixels, got {}x{}", MostPixels,
+                                               size.width, size.height));
     return size;
 }
 
@@ -110,7 +108,7 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
                                cubemap::Layout layout) {
     const auto size = parse_size(options.size);
     if (size && options.face_resolution != 0)
-        throw CLI::ValidationError("--size", "expected either --size or --face-resolution");
+        throw UsageError("--size", "expected either --size or --face-resolution");
     if (size) {
         if (size->height != 0)
             return checked(*size, layout);
@@ -120,9 +118,9 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
             : cubemap::has_faces(layout)       ? cubemap::natural_size(layout, 1)
                                                : cubemap::ImageSize{1, 1};
         if (size->width % unit.width != 0)
-            throw CLI::ValidationError(
-                "--size", fmt::format("expected a multiple of {} as the width of a {}, got {}",
-                                      unit.width, cubemap::name(layout), size->width));
+            throw UsageError("--size",
+                             fmt::format("expected a multiple of {} as the width of a {}, got {}",
+                                         unit.width, cubemap::name(layout), size->width));
         const std::uint64_t height = std::uint64_t{size->width} / unit.width * unit.height;
         return checked({size->width, static_cast<std::uint32_t>(std::min<std::uint64_t>(
                                          height, std::numeric_limits<std::uint32_t>::max()))},
@@ -131,9 +129,8 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
     if (options.face_resolution != 0) {
         constexpr std::uint32_t Largest = 16384;
         if (options.face_resolution > Largest)
-            throw CLI::ValidationError(
-                "--face-resolution",
-                fmt::format("expected 1 to {}, got {}", Largest, options.face_resolution));
+            throw UsageError("--face-resolution", fmt::format("expected 1 to {}, got {}", Largest,
+                                                              options.face_resolution));
         return checked(cubemap::natural_size(layout, options.face_resolution), layout);
     }
     return cubemap::conversion_size(image, layout);
@@ -148,24 +145,22 @@ cubemap::Layout target_layout(const Options& options, const cubemap::Environment
     if (!options.to_layout.empty())
         layout = parse_layout(options.to_layout);
     if (!to.reads(layout))
-        throw CLI::ValidationError("--to-layout",
-                                   fmt::format("expected {} with --to {}, got {}", layouts_of(to),
-                                               to.name, option_name(layout)));
+        throw UsageError("--to-layout", fmt::format("expected {} with --to {}, got {}",
+                                                    layouts_of(to), to.name, option_name(layout)));
     if (six_files && layout != cubemap::Layout::Cube)
-        throw CLI::ValidationError(
-            "--to-layout", fmt::format("expected cube for six files, got {}", option_name(layout)));
+        throw UsageError("--to-layout",
+                         fmt::format("expected cube for six files, got {}", option_name(layout)));
     return layout;
 }
 
-nlohmann::json described(const cubemap::EnvironmentImage& image,
-                         const cubemap::Convention& convention) {
+Report described(const cubemap::EnvironmentImage& image, const cubemap::Convention& convention) {
     const glm::dvec3 mean = cubemap::statistics(image).mean_radiance;
     return {{"layout", cubemap::name(image.layout)},
             {"convention", convention.name},
             {"width", image.width},
             {"height", image.height},
             {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
-            {"mean_radiance", {mean.x, mean.y, mean.z}}};
+            {"mean_radiance", mean}};
 }
 
 void run(const Options& options, Session& session) {
@@ -196,16 +191,17 @@ void run(const Options& options, Session& session) {
                                      : cubemap::Sampling::TexelCentres;
     if (options.samples == "centres")
         sampling = cubemap::Sampling::TexelCentres;
-    nlohmann::json result = {{"input", described(image, from)}};
+    Report result = {{"input", described(image, from)}};
     watch.lap();
     if (from.swaps_z_faces)
         cubemap::swap_z_faces(image);
     const cubemap::Reorientation turn = {.world_from_source = from.world_from(image.layout),
                                          .degrees_about_y = options.rotate_degrees,
                                          .world_from_target = to.world_from(layout)};
+    SunFile::Split sun;
     if (sun_file)
-        result["sun"] = sun_file->split(image, turn.world_from_target * turn.target_from_source(),
-                                        options.input);
+        sun = sun_file->split(image, turn.world_from_target * turn.target_from_source(),
+                              options.input);
     cubemap::EnvironmentImage converted =
         cubemap::convert(image, {layout, sampling, size.width, size.height}, turn);
     if (to.swaps_z_faces)
@@ -221,17 +217,19 @@ void run(const Options& options, Session& session) {
                             size.width, size.height, to.name));
     if (sun_file)
         session.say(fmt::format("{}: the sun, {:.2g} % of the light", sun_file->path(),
-                                100.0 * result["sun"]["share_of_power"].get<double>()));
-    result["output"] = described(converted, to);
-    result["assumptions"] = image.assumptions;
-    result["seconds_load"] = seconds_load;
-    result["seconds_convert"] = seconds_convert;
-    result["seconds_save"] = seconds_save;
+                                100.0 * sun.share_of_power));
+    if (sun_file)
+        result.set("sun", sun.report);
+    result.set("output", described(converted, to));
+    result.set("assumptions", image.assumptions);
+    result.set("seconds_load", seconds_load);
+    result.set("seconds_convert", seconds_convert);
+    result.set("seconds_save", seconds_save);
     session.report(result);
 }
 
-void add_convert(CLI::App& group, Session& session) {
-    CLI::App& command = *group.add_subcommand("convert", "from one layout and program to another");
+void add_convert(Command& group, Session& session) {
+    Command command = group.add_command("convert", "from one layout and program to another");
     auto options = std::make_shared<Options>();
     std::vector<std::string> names;
     std::string list =
@@ -244,22 +242,24 @@ void add_convert(CLI::App& group, Session& session) {
     command
         .add_option("IN", options->input,
                     "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
-        ->required();
+        .file()
+        .required();
     command
         .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
-        ->required();
+        .file()
+        .required();
     command.add_option("--layout", options->layout, "layout of IN, where the file does not tell")
-        ->check(CLI::IsMember(layout_names()));
+        .one_of(layout_names());
     command.add_option("--from", options->from, "whose convention IN follows")
-        ->check(CLI::IsMember(names))
-        ->capture_default_str();
+        .one_of(names)
+        .show_default();
     command
         .add_option("--to-layout", options->to_layout,
                     "layout of OUT (IN's; with --to, what that program reads)")
-        ->check(CLI::IsMember(layout_names()));
+        .one_of(layout_names());
     command.add_option("--to", options->to, "whose convention OUT follows")
-        ->check(CLI::IsMember(names))
-        ->capture_default_str();
+        .one_of(names)
+        .show_default();
     command.add_option(
         "--size", options->size,
         "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
@@ -270,27 +270,26 @@ void add_convert(CLI::App& group, Session& session) {
         .add_option("--samples", options->samples,
                     "centres: at texel centres and without the envmap attribute, even in OpenEXR's "
                     "lat-long and cube")
-        ->check(CLI::IsMember({"auto", "centres"}))
-        ->capture_default_str();
+        .one_of({"auto", "centres"})
+        .show_default();
     command
         .add_option("--rotate", options->rotate_degrees,
                     "turn the environment about +Y, degrees: +Z goes to +X at 90")
-        ->check(number_between(-36000.0, 36000.0))
-        ->capture_default_str();
+        .between(-36000.0, 36000.0)
+        .show_default();
     command.add_flag("--split-sun", options->split_sun,
                      "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
                      "light, in world axes");
     command.add_flag("--fix-env", options->fix,
                      "replace NaN and negative radiance by 0, infinite by the largest finite");
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace
 
-void add_env(CLI::App& program, Session& session) {
-    CLI::App& group = *program.add_subcommand("env", "environments: `env convert`");
-    group.require_subcommand(1);
+void add_env(Command& program, Session& session) {
+    Command group = program.add_command("env", "environments: `env convert`");
     add_convert(group, session);
 }
 

@@ -29,32 +29,33 @@ constexpr std::array<NamedLayout, cubemap::AllLayouts.size()> Layouts = {{
 
 } // namespace
 
-CLI::Option* EnvironmentOptions::add_to(CLI::App& command) {
-    CLI::Option* environment =
+Option EnvironmentOptions::add_to(Command& command) {
+    const Option environment =
         command
             .add_option(
                 "ENV", path,
                 "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz")
-            ->required();
+            .file()
+            .required();
     add_conversion_to(command);
     return environment;
 }
 
-void EnvironmentOptions::add_conversion_to(CLI::App& command) {
+void EnvironmentOptions::add_conversion_to(Command& command) {
     command
         .add_option("--layout", layout, "layout of the environment, where the file does not tell")
-        ->check(CLI::IsMember(layout_names()));
+        .one_of(layout_names());
     command
         .add_option("--face-resolution", face_resolution,
                     "texels along a cube face's edge, 0 for the environment's own")
-        ->capture_default_str();
+        .show_default();
     command.add_flag("--fix-env", fix,
                      "replace NaN and negative radiance by 0, infinite by the largest finite");
     command
         .add_option("--rotate", rotate_degrees,
                     "turn the environment about +Y, degrees: +Z goes to +X at 90")
-        ->check(number_between(-36000.0, 36000.0))
-        ->capture_default_str();
+        .between(-36000.0, 36000.0)
+        .show_default();
 }
 
 cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Session& session) {

@@ -6,8 +6,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "app/session.h"
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
@@ -25,9 +23,9 @@ struct EnvironmentOptions {
     double rotate_degrees = 0.0;
 
     /// Adds ENV and its options; returns ENV, which is required until its caller says otherwise.
-    CLI::Option* add_to(CLI::App& command);
+    Option add_to(Command& command);
     /// All but ENV.
-    void add_conversion_to(CLI::App& command);
+    void add_conversion_to(Command& command);
 };
 
 /// An environment ready to light, and where the time went.

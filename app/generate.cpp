@@ -27,7 +27,7 @@ struct Options {
 };
 
 void write_scene(const data_gen::Scene& scene, const Options& options, Session& session,
-                 nlohmann::json& files) {
+                 std::vector<Report>& files) {
     const mesh::TriangleMesh mesh = scene.make(options.num_vertices);
     session.poll();
     make_folder(options.folder);
@@ -42,7 +42,7 @@ void write_scene(const data_gen::Scene& scene, const Options& options, Session& 
 }
 
 void write_environment(const data_gen::Environment& environment, const Options& options,
-                       Session& session, nlohmann::json& files) {
+                       Session& session, std::vector<Report>& files) {
     const cubemap::CubeMap map = environment.make(options.face_resolution);
     session.poll();
     make_folder(options.folder);
@@ -66,10 +66,9 @@ void run(const Options& options, bool resolution_given, Session& session) {
         return;
     }
     if (!options.sequence.kind.empty())
-        throw CLI::ValidationError(
-            "KIND",
-            fmt::format("expected none but after `sequence`, got '{}'", options.sequence.kind));
-    nlohmann::json files = nlohmann::json::array();
+        throw UsageError("KIND", fmt::format("expected none but after `sequence`, got '{}'",
+                                             options.sequence.kind));
+    std::vector<Report> files;
     for (const data_gen::Scene& scene : data_gen::scenes())
         if (options.name == scene.name || options.name == "all")
             write_scene(scene, options, session, files);
@@ -81,8 +80,8 @@ void run(const Options& options, bool resolution_given, Session& session) {
 
 } // namespace
 
-void add_generate(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand(
+void add_generate(Command& program, Session& session) {
+    Command command = program.add_command(
         "generate", "make scenes (.ply), environments and sequences of them (.exr) from nothing");
     auto options = std::make_shared<Options>();
     std::vector<std::string> names = {"all", "sequence"};
@@ -101,27 +100,27 @@ void add_generate(CLI::App& program, Session& session) {
         list += fmt::format("  {:12} {}\n", sequence.name, sequence.description);
     command.footer(list);
     command.add_option("NAME", options->name, "what to make, see below")
-        ->required()
-        ->check(CLI::IsMember(names))
-        ->type_name("NAME");
+        .required()
+        .one_of(names)
+        .type_name("NAME");
     options->sequence.add_to(command);
     command
         .add_option("-o,--output", options->folder, "folder to write to; made where it is missing")
-        ->required();
+        .folder()
+        .required();
     command
         .add_option("--vertices", options->num_vertices,
                     "vertices of a scene, met within a few per cent")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    const CLI::Option* resolution = command
-                                        .add_option("--face-resolution", options->face_resolution,
-                                                    "R of an environment: cube 6 x R x R, lat-long "
-                                                    "4R x 2R; of a sequence 128 when it is not "
-                                                    "given, of `turn` that of its --env")
-                                        ->capture_default_str();
+        .show_default();
+    const Option resolution = command
+                                  .add_option("--face-resolution", options->face_resolution,
+                                              "R of an environment: cube 6 x R x R, lat-long "
+                                              "4R x 2R; of a sequence 128 when it is not "
+                                              "given, of `turn` that of its --env")
+                                  .show_default();
     session.add_common_options(command);
-    command.callback(
-        [options, resolution, &session] { run(*options, resolution->count() > 0, session); });
+    command.on_run(
+        [options, resolution, &session] { run(*options, resolution.is_given(), session); });
 }
 
 } // namespace relumine::app

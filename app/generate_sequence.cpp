@@ -21,9 +21,8 @@ const data_gen::Sequence& named(const std::string& kind) {
     for (const data_gen::Sequence& sequence : data_gen::sequences())
         if (sequence.name == kind)
             return sequence;
-    throw CLI::ValidationError("KIND", kind.empty()
-                                           ? "expected what sequence to make, got none"
-                                           : fmt::format("expected a sequence, got '{}'", kind));
+    throw UsageError("KIND", kind.empty() ? "expected what sequence to make, got none"
+                                          : fmt::format("expected a sequence, got '{}'", kind));
 }
 
 data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& options,
@@ -34,9 +33,9 @@ data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& option
     if (face_resolution)
         result.face_resolution = *face_resolution;
     if (sequence.needs_probe != !options.environment.empty())
-        throw CLI::ValidationError(
-            "--env", fmt::format("expected {} for `{}`",
-                                 sequence.needs_probe ? "an environment" : "none", sequence.name));
+        throw UsageError("--env", fmt::format("expected {} for `{}`",
+                                              sequence.needs_probe ? "an environment" : "none",
+                                              sequence.name));
     if (sequence.needs_probe) {
         EnvironmentOptions environment;
         environment.path = options.environment;
@@ -48,17 +47,17 @@ data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& option
 
 } // namespace
 
-void GenerateSequenceOptions::add_to(CLI::App& command) {
-    command.add_option("KIND", kind, "after `sequence`: which one, see below")->type_name("KIND");
+void GenerateSequenceOptions::add_to(Command& command) {
+    command.add_option("KIND", kind, "after `sequence`: which one, see below").type_name("KIND");
     command.add_option("--num-frames", num_frames, "frames of a sequence")
-        ->check(CLI::Range(1, 1000000))
-        ->capture_default_str();
-    command.add_option("--env", environment, "the environment that `sequence turn` turns");
+        .between(1, 1000000)
+        .show_default();
+    command.add_option("--env", environment, "the environment that `sequence turn` turns").file();
     command
         .add_option("--layout", layout,
                     "of a sequence's frames: cross (texels as they are), cube or latlong")
-        ->check(CLI::IsMember({"cross", "cube", "latlong"}))
-        ->capture_default_str();
+        .one_of({"cross", "cube", "latlong"})
+        .show_default();
 }
 
 void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,

@@ -6,8 +6,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "app/session.h"
 
 namespace relumine::app {
@@ -21,7 +19,7 @@ struct GenerateSequenceOptions {
     /// Which holds the texels of the cube map as they are
     std::string layout = "cross";
 
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 };
 
 /// Writes FOLDER/KIND.0000.exr and on. Without a face resolution: 128, or that of --env. After

@@ -28,10 +28,6 @@ struct Options {
     bool check = false;
 };
 
-nlohmann::json array(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
-
 /// One line more where they are not the vertices.
 void say_receivers(const prt::Scene& scene, const Session& session) {
     if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout)) {
@@ -76,26 +72,26 @@ void describe_scene(const Options& options, const Session& session) {
     session.say(fmt::format("file                {:.1f} MB{}",
                             static_cast<double>(file_bytes) * 1e-6,
                             options.check ? ", checked: whole and sound" : ""));
-    nlohmann::json result = {{"kind", "scene"},
-                             {"vertices", scene.mesh.num_vertices()},
-                             {"triangles", scene.mesh.num_triangles()},
-                             {"receivers", scene.receivers.size()},
-                             {"clusters", scene.transfer.num_clusters()},
-                             {"source", settings.source},
-                             {"source_hash", fmt::format("{:016x}", settings.source_hash)},
-                             {"min_depth", settings.min_level},
-                             {"face_resolution", settings.face_resolution},
-                             {"bias", settings.bias},
-                             {"floor", settings.floor_vertices},
-                             {"file_bytes", file_bytes}};
+    Report result = {{"kind", "scene"},
+                     {"vertices", scene.mesh.num_vertices()},
+                     {"triangles", scene.mesh.num_triangles()},
+                     {"receivers", scene.receivers.size()},
+                     {"clusters", scene.transfer.num_clusters()},
+                     {"source", settings.source},
+                     {"source_hash", fmt::format("{:016x}", settings.source_hash)},
+                     {"min_depth", settings.min_level},
+                     {"face_resolution", settings.face_resolution},
+                     {"bias", settings.bias},
+                     {"floor", settings.floor_vertices},
+                     {"file_bytes", file_bytes}};
     if (options.check)
-        result["checked"] = true;
+        result.set("checked", true);
     if (settings.epsilon)
-        result["epsilon"] = *settings.epsilon;
+        result.set("epsilon", *settings.epsilon);
     else
-        result["tolerance"] = settings.tolerance;
-    if (const nlohmann::json layout = layout_json(scene); !layout.empty())
-        result["layout"] = layout;
+        result.set("tolerance", settings.tolerance);
+    if (const Report layout = layout_json(scene); !layout.empty())
+        result.set("layout", layout);
     session.report(result);
 }
 
@@ -121,22 +117,22 @@ std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& ma
                        material.specular.g, material.specular.b, material.exponent);
 }
 
-nlohmann::json json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
-        return slot ? nlohmann::json(mesh.textures[slot->texture].name) : nlohmann::json();
+        return slot ? Report(mesh.textures[slot->texture].name) : Report(nullptr);
     };
     const bool is_phong = material.model == mesh::MaterialModel::Phong;
-    nlohmann::json result = {{"name", material.name},
-                             {"model", is_phong ? "phong" : "metallic-roughness"},
-                             {"base_color", array(material.base_color)},
-                             {"base_color_texture", texture(material.base_color_texture)}};
+    Report result = {{"name", material.name},
+                     {"model", is_phong ? "phong" : "metallic-roughness"},
+                     {"base_color", material.base_color},
+                     {"base_color_texture", texture(material.base_color_texture)}};
     if (is_phong) {
-        result["specular"] = array(material.specular);
-        result["exponent"] = material.exponent;
+        result.set("specular", material.specular);
+        result.set("exponent", material.exponent);
     } else {
-        result["metallic"] = material.metallic;
-        result["roughness"] = material.roughness;
-        result["metallic_roughness_texture"] = texture(material.metallic_roughness_texture);
+        result.set("metallic", material.metallic);
+        result.set("roughness", material.roughness);
+        result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
     }
     return result;
 }
@@ -154,7 +150,7 @@ void describe_mesh(const Options& options, const Session& session) {
                             !mesh.uvs.empty()          ? "yes"
                             : !mesh.corner_uvs.empty() ? "per corner"
                                                        : "no"));
-    nlohmann::json materials = nlohmann::json::array();
+    std::vector<Report> materials;
     for (const mesh::Material& material : mesh.materials) {
         session.say(
             fmt::format("material            {}: {}", material.name, description(mesh, material)));
@@ -167,8 +163,8 @@ void describe_mesh(const Options& options, const Session& session) {
     session.report({{"kind", "mesh"},
                     {"vertices", mesh.num_vertices()},
                     {"triangles", mesh.num_triangles()},
-                    {"min", array(box.min)},
-                    {"max", array(box.max)},
+                    {"min", box.min},
+                    {"max", box.max},
                     {"vertices_without_face", num_loose},
                     {"colors", !mesh.colors.empty()},
                     {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
@@ -197,26 +193,29 @@ void run(const Options& options, const Session& session) {
 
 } // namespace
 
-void add_info(CLI::App& program, Session& session) {
-    CLI::App& command =
-        *program.add_subcommand("info", "what a file is: a scene, an environment or a mesh");
+void add_info(Command& program, Session& session) {
+    Command command =
+        program.add_command("info", "what a file is: a scene, an environment or a mesh");
     auto options = std::make_shared<Options>();
     command
         .add_option("FILE", options->path,
                     ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
-        ->required();
+        .file()
+        .required();
     command
         .add_option("--layout", options->layout,
                     "layout of an environment, where the file does not tell")
-        ->check(CLI::IsMember(layout_names()));
-    command.add_option("--picture", options->picture,
-                       "draw an environment: lat-long .png with the axes and the sun marked");
+        .one_of(layout_names());
+    command
+        .add_option("--picture", options->picture,
+                    "draw an environment: lat-long .png with the axes and the sun marked")
+        .file();
     command.add_flag(
         "--check", options->check,
         "verify a scene: all checksums, sections and what must hold between them; exit code 1 and "
         "one line when something is wrong");
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

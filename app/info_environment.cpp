@@ -33,19 +33,15 @@ struct Findings {
     std::vector<cubemap::SeamFault> faults;
 };
 
-nlohmann::json array(const glm::dvec3& v) {
-    return {v.x, v.y, v.z};
-}
-
 std::string direction_text(const glm::dvec3& w) {
     const cubemap::SkyAngles angles = cubemap::sky_angles(w);
     return fmt::format("{:.4f} {:.4f} {:.4f}, azimuth {:.1f}, elevation {:.1f} degrees", w.x, w.y,
                        w.z, angles.azimuth_degrees, angles.elevation_degrees);
 }
 
-nlohmann::json direction_json(const glm::dvec3& w) {
+Report direction_json(const glm::dvec3& w) {
     const cubemap::SkyAngles angles = cubemap::sky_angles(w);
-    return {{"direction", array(w)},
+    return {{"direction", w},
             {"azimuth_degrees", angles.azimuth_degrees},
             {"elevation_degrees", angles.elevation_degrees}};
 }
@@ -96,65 +92,67 @@ void say_light(const Findings& found, const Session& session) {
         sun.irradiance.r, sun.irradiance.g, sun.irradiance.b, 100.0 * sun.share_of_power));
 }
 
-void say_warnings(const Findings& found, const Session& session) {
+void say_doubts(const Findings& found, const Session& session) {
     if (found.clipped)
         session.say(
-            fmt::format("warning             a clipped or veiled sun is likely towards {}: {}",
+            fmt::format("suspect             a clipped or veiled sun is likely towards {}: {}",
                         direction_text(found.clipped->direction), found.clipped->why));
     for (const cubemap::SeamFault& fault : found.faults)
         session.say(
-            fmt::format("warning             {} out of line: {:.2g} EV, beside it {:.2g} EV",
+            fmt::format("suspect             {} out of line: {:.2g} EV, beside it {:.2g} EV",
                         fault.where, fault.step_ev, fault.usual_step_ev));
     if (found.faults.empty())
         session.say("seams and poles     in line");
 }
 
-nlohmann::json report(const cubemap::EnvironmentImage& image, const Findings& found) {
+Report report(const cubemap::EnvironmentImage& image, const Findings& found) {
     const cubemap::EnvironmentStatistics& s = found.statistics;
-    nlohmann::json irradiance;
+    Report irradiance;
     for (std::size_t axis = 0; axis < AxisNames.size(); ++axis)
-        irradiance[AxisNames[axis]] = array(s.axis_irradiance[axis]);
-    nlohmann::json faults = nlohmann::json::array();
+        irradiance.set(std::string(AxisNames[axis]), s.axis_irradiance[axis]);
+    std::vector<Report> faults;
     for (const cubemap::SeamFault& fault : found.faults)
         faults.push_back({{"where", fault.where},
                           {"step_ev", fault.step_ev},
                           {"usual_step_ev", fault.usual_step_ev}});
-    nlohmann::json result = {{"kind", "environment"},
-                             {"layout", cubemap::name(image.layout)},
-                             {"assumptions", image.assumptions},
-                             {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
-                             {"width", image.width},
-                             {"height", image.height},
-                             {"face_resolution", cubemap::natural_resolution(image)},
-                             {"mean_radiance", array(s.mean_radiance)},
-                             {"mean_luminance", s.mean_luminance},
-                             {"max_luminance", s.max_luminance},
-                             {"min_positive_luminance", s.min_positive_luminance},
-                             {"dynamic_range_ev", s.dynamic_range_ev},
-                             {"brightest_direction", array(s.brightest_direction)},
-                             {"irradiance", irradiance},
-                             {"pixel_diameter_degrees", found.search.pixel_diameter_degrees},
-                             {"num_nan", image.bad_pixels.num_nan},
-                             {"num_infinite", image.bad_pixels.num_infinite},
-                             {"num_negative", image.bad_pixels.num_negative},
-                             {"sun", nullptr},
-                             {"clipped_sun", nullptr},
-                             {"seam_faults", faults}};
+    Report result = {{"kind", "environment"},
+                     {"layout", cubemap::name(image.layout)},
+                     {"assumptions", image.assumptions},
+                     {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
+                     {"width", image.width},
+                     {"height", image.height},
+                     {"face_resolution", cubemap::natural_resolution(image)},
+                     {"mean_radiance", s.mean_radiance},
+                     {"mean_luminance", s.mean_luminance},
+                     {"max_luminance", s.max_luminance},
+                     {"min_positive_luminance", s.min_positive_luminance},
+                     {"dynamic_range_ev", s.dynamic_range_ev},
+                     {"brightest_direction", s.brightest_direction},
+                     {"irradiance", irradiance},
+                     {"pixel_diameter_degrees", found.search.pixel_diameter_degrees},
+                     {"num_nan", image.bad_pixels.num_nan},
+                     {"num_infinite", image.bad_pixels.num_infinite},
+                     {"num_negative", image.bad_pixels.num_negative},
+                     {"sun", nullptr},
+                     {"clipped_sun", nullptr},
+                     {"seam_faults", faults}};
     if (found.search.sun) {
         const cubemap::Sun& sun = *found.search.sun;
-        result["sun"] = direction_json(sun.direction);
-        result["sun"].update({{"irradiance", array(sun.irradiance)},
-                              {"solid_angle", sun.solid_angle},
-                              {"diameter_degrees", cubemap::disc_diameter_degrees(sun.solid_angle)},
-                              {"share_of_power", sun.share_of_power},
-                              {"peak_luminance", sun.peak_luminance},
-                              {"sky_luminance", sun.sky_luminance}});
+        Report described = direction_json(sun.direction);
+        described.update({{"irradiance", sun.irradiance},
+                          {"solid_angle", sun.solid_angle},
+                          {"diameter_degrees", cubemap::disc_diameter_degrees(sun.solid_angle)},
+                          {"share_of_power", sun.share_of_power},
+                          {"peak_luminance", sun.peak_luminance},
+                          {"sky_luminance", sun.sky_luminance}});
+        result.set("sun", described);
     } else {
-        result["why_no_sun"] = found.search.why_none;
+        result.set("why_no_sun", found.search.why_none);
     }
     if (found.clipped) {
-        result["clipped_sun"] = direction_json(found.clipped->direction);
-        result["clipped_sun"]["why"] = found.clipped->why;
+        Report described = direction_json(found.clipped->direction);
+        described.set("why", found.clipped->why);
+        result.set("clipped_sun", described);
     }
     return result;
 }
@@ -188,7 +186,7 @@ void describe_environment(const EnvironmentInfoOptions& options, const Session& 
     }
     say_image(image, session);
     say_light(found, session);
-    say_warnings(found, session);
+    say_doubts(found, session);
     session.report(report(image, found));
 }
 

@@ -152,7 +152,7 @@ void compare_methods(const ComparisonOptions& options, const EnvironmentOptions&
     session.say(
         "| method | lights | relative L2 | choose | light the receivers |\n|---|---|---|---|---|");
     std::vector<Row> rows;
-    nlohmann::json report = nlohmann::json::array();
+    std::vector<Report> report;
     for (const std::string& method : all_methods())
         for (const std::size_t count : options.numbers) {
             try {

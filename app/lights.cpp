@@ -63,11 +63,11 @@ lights::LightFormat format_of(const Options& options) {
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const Options& options) {
     if (options.numbers.size() != 1)
-        throw CLI::ValidationError("--number", "expected one number of lights, or --compare");
+        throw UsageError("--number", "expected one number of lights, or --compare");
     if (!options.plot.empty())
-        throw CLI::ValidationError("--plot", "expected --compare with it");
+        throw UsageError("--plot", "expected --compare with it");
     if (options.path.empty() && options.picture.empty())
-        throw CLI::RequiredError("-o or --picture");
+        throw UsageError("expected -o or --picture, got neither");
     if (!options.path.empty()) {
         static_cast<void>(format_of(options));
         check_output(options.path, {options.environment.path});
@@ -138,8 +138,7 @@ lights::Placement place(const Options& options, const cubemap::EnvironmentImage&
 
 void compare(const Options& options, Session& session) {
     if (!options.path.empty() || !options.picture.empty() || !options.scene.empty())
-        throw CLI::ValidationError("--compare",
-                                   "expected neither -o nor --picture nor --scene with it");
+        throw UsageError("--compare", "expected neither -o nor --picture nor --scene with it");
     if (!options.plot.empty()) {
         if (std::filesystem::path(options.plot).extension() != ".svg")
             throw std::runtime_error(fmt::format("{}: expected .svg", options.plot));
@@ -160,7 +159,7 @@ void run(const Options& options, Session& session) {
     }
     check_outputs(options);
     if (options.method == TransferMethod && options.scene.empty())
-        throw CLI::ValidationError("--method", "expected --scene SCENE.prt with transfer");
+        throw UsageError("--method", "expected --scene SCENE.prt with transfer");
     Stopwatch watch;
     const cubemap::EnvironmentImage map = load_lat_long(options.environment, session);
     const double seconds_load = watch.lap();
@@ -205,54 +204,62 @@ void run(const Options& options, Session& session) {
     session.say(fmt::format(
         "power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
         power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
-    nlohmann::json result = {{"method", options.method},
-                             {"lights", placement.lights.size()},
-                             {"width", map.width},
-                             {"height", map.height},
-                             {"power", {power.r, power.g, power.b}},
-                             {"smallest_share", scale * *dimmest},
-                             {"largest_share", scale * *brightest},
-                             {"seconds_load", seconds_load},
-                             {"seconds_place", seconds_place}};
+    Report result = {{"method", options.method},
+                     {"lights", placement.lights.size()},
+                     {"width", map.width},
+                     {"height", map.height},
+                     {"power", power},
+                     {"smallest_share", scale * *dimmest},
+                     {"largest_share", scale * *brightest},
+                     {"seconds_load", seconds_load},
+                     {"seconds_place", seconds_place}};
     if (lit) {
         const double error = lit->error(placement.lights);
         session.say(fmt::format("{} lights: {:.2g} % relative L2 on this asset",
                                 placement.lights.size(), 100.0 * error));
-        result["relative_l2"] = error;
+        result.set("relative_l2", error);
     }
     session.report(result);
 }
 
 } // namespace
 
-void add_lights(CLI::App& program, Session& session) {
-    CLI::App& command =
-        *program.add_subcommand("lights", "a few distant lights that stand for an environment");
+void add_lights(Command& program, Session& session) {
+    Command command =
+        program.add_command("lights", "a few distant lights that stand for an environment");
     auto options = std::make_shared<Options>();
     options->environment.add_to(command);
-    command.add_option(
-        "-o,--output", options->path,
-        "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf");
-    command.add_option("--picture", options->picture,
-                       "the environment with regions and lights drawn: .png or .exr");
+    command
+        .add_option(
+            "-o,--output", options->path,
+            "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf")
+        .file();
+    command
+        .add_option("--picture", options->picture,
+                    "the environment with regions and lights drawn: .png or .exr")
+        .file();
     command
         .add_option("-n,--number", options->numbers,
                     "how many lights; with --compare several, 16,64,256")
-        ->delimiter(',')
-        ->check(number_between(1, 1e9))
-        ->capture_default_str();
-    command.add_option(
-        "--scene", options->scene,
-        "scene file: says how well the lights light it; --method transfer chooses for it");
-    command.add_option(
-        "--compare", options->compare,
-        "scene file: a table of all methods' errors on it against exact integration");
+        .separated_by(',')
+        .between(1, 1e9)
+        .show_default();
+    command
+        .add_option(
+            "--scene", options->scene,
+            "scene file: says how well the lights light it; --method transfer chooses for it")
+        .file();
+    command
+        .add_option("--compare", options->compare,
+                    "scene file: a table of all methods' errors on it against exact integration")
+        .file();
     command
         .add_option("--samples", options->num_samples,
                     "--compare: receivers chosen at random, 0 for all")
-        ->check(number_between(0, 1e9))
-        ->capture_default_str();
-    command.add_option("--plot", options->plot, "--compare: error against number of lights, .svg");
+        .between(0, 1e9)
+        .show_default();
+    command.add_option("--plot", options->plot, "--compare: error against number of lights, .svg")
+        .file();
     std::vector<std::string> methods;
     methods.reserve(lights::AllMethods.size());
     for (const lights::Method method : lights::AllMethods)
@@ -264,18 +271,18 @@ void add_lights(CLI::App& program, Session& session) {
             "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
             "close together (Viriyothai and Debevec); importance: random directions, stratified; "
             "transfer: those that light --scene most like the environment")
-        ->check(CLI::IsMember(methods))
-        ->capture_default_str();
+        .one_of(methods)
+        .show_default();
     command.add_option("--seed", options->seed, "of importance sampling")
-        ->check(number_between(0, 0x1p53))
-        ->capture_default_str();
+        .between(0, 0x1p53)
+        .show_default();
     std::vector<std::string> formats;
     formats.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         formats.emplace_back(lights::name(format));
     command
         .add_option("--format", options->format, "format of the light list, whatever its extension")
-        ->check(CLI::IsMember(formats));
+        .one_of(formats);
     command.add_flag("--soft", options->export_options.soft,
                      "lights as wide as the part of the sphere they stand for (USD, Blender)");
     command
@@ -283,10 +290,10 @@ void add_lights(CLI::App& program, Session& session) {
                     "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
                     "unit, 683 is "
                     "photometric")
-        ->check(number_between(1e-6, 1e6))
-        ->capture_default_str();
+        .between(1e-6, 1e6)
+        .show_default();
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

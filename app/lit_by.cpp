@@ -31,10 +31,9 @@ cubemap::Region lit_by_region(const std::string& text,
     if (layer != layers.end())
         return layer->region;
     const auto refuse = [&](const std::string& why) {
-        throw CLI::ValidationError("--lit-by",
-                                   fmt::format("expected the name of a layer or X,Y,Z,RADIUS "
-                                               "with a RADIUS in degrees, got '{}'{}",
-                                               text, why));
+        throw UsageError("--lit-by", fmt::format("expected the name of a layer or X,Y,Z,RADIUS "
+                                                 "with a RADIUS in degrees, got '{}'{}",
+                                                 text, why));
     };
     const std::size_t last_comma = text.rfind(',');
     if (last_comma == std::string::npos)
@@ -42,11 +41,13 @@ cubemap::Region lit_by_region(const std::string& text,
     cubemap::Disc disc;
     try {
         disc.direction = parse_vec3("--lit-by", text.substr(0, last_comma));
-    } catch (const CLI::ValidationError&) {
+    } catch (const UsageError&) {
         refuse("");
     }
-    if (!CLI::detail::lexical_cast(text.substr(last_comma + 1), disc.radius_degrees))
+    const std::optional<double> radius = parse_number(text.substr(last_comma + 1));
+    if (!radius)
         refuse("");
+    disc.radius_degrees = *radius;
     try {
         cubemap::validate(cubemap::Region(disc));
     } catch (const std::invalid_argument& error) {

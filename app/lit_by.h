@@ -14,7 +14,7 @@
 namespace relumine::app {
 
 /// The region of the layer of that name, or "X,Y,Z,RADIUS": a disc with a hard edge. Throws
-/// CLI::ValidationError for anything else.
+/// UsageError for anything else.
 [[nodiscard]] cubemap::Region lit_by_region(const std::string& text,
                                             std::span<const cubemap::LightLayer> layers);
 

@@ -11,12 +11,13 @@
 
 namespace relumine::app {
 
-void SceneOptions::add_to(CLI::App& command) {
+void SceneOptions::add_to(Command& command) {
     command
         .add_option("SCENE", path,
                     mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
                              : "scene file from `relumine precompute`")
-        ->required();
+        .file()
+        .required();
     command.add_flag("--clusters-only", clusters_only,
                      "light the sun through its cluster too, without shadow rays of its own");
     command.add_option("--surface-albedo", albedo,

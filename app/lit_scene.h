@@ -3,8 +3,7 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "app/command_line.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/light_packets.h"
@@ -22,7 +21,7 @@ struct SceneOptions {
     /// Of all highlights, likewise
     std::string specular = {};
 
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 };
 
 /// The scene with its ray accelerator. Not movable: the shadow rays point into it.

@@ -2,11 +2,11 @@
 #include <exception>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
+#include "app/command_line.h"
 #include "app/program.h"
 #include "prt/precompute.h"
 
@@ -28,16 +28,15 @@ std::string one_line(std::string message) {
 int main(int argc, char** argv) {
     using namespace relumine;
     app::Session session;
-    CLI::App program{
-        "Relights meshes under measured environment light. Exit code 0: done, 1: the work "
-        "failed, 2: wrong usage.",
-        "relumine"};
-    program.set_version_flag("--version", "relumine " RELUMINE_VERSION);
-    app::add_commands(program, session);
+    app::CommandLine program("relumine",
+                             "Relights meshes under measured environment light. Exit code 0: done, "
+                             "1: the work failed, 2: wrong usage.",
+                             RELUMINE_VERSION);
+    app::Command root = program.root();
+    app::add_commands(root, session);
 
-    // The subcommand runs after parsing, so that wrong usage and failed work cannot be confused.
     std::unique_ptr<tbb::global_control> thread_limit;
-    program.parse_complete_callback([&] {
+    program.before_run([&] {
         if (session.num_threads > 0)
             thread_limit = std::make_unique<tbb::global_control>(
                 tbb::global_control::max_allowed_parallelism, session.num_threads);
@@ -55,18 +54,12 @@ int main(int argc, char** argv) {
         return 0;
     };
     try {
-        program.parse(argc, argv);
+        std::fputs(program.run({argv + 1, argv + argc}).c_str(), stdout);
         return done();
-    } catch (const CLI::Success& success) { // --help, --version
-        program.exit(success);
-        return done();
-    } catch (const CLI::ParseError& error) {
-        const std::vector<std::string> rest = program.remaining();
-        const bool no_subcommand = program.get_subcommands().empty() && !rest.empty();
-        fmt::print(stderr, "relumine: {} (see relumine --help)\n",
-                   one_line(no_subcommand
-                                ? fmt::format("expected a subcommand, got '{}'", rest.front())
-                                : error.what()));
+    } catch (const app::UsageError& error) {
+        std::fputs(
+            fmt::format("relumine: {} (see relumine --help)\n", one_line(error.what())).c_str(),
+            stderr);
         return 2;
     } catch (const prt::Cancelled&) {
         return fail("cancelled; nothing was written");

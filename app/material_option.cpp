@@ -7,9 +7,10 @@
 #include <map>
 #include <string_view>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "app/command_line.h"
 
 namespace relumine::app {
 
@@ -39,7 +40,7 @@ public:
 
 private:
     [[noreturn]] void fail(const std::string& expected, std::string_view got) const {
-        throw CLI::ValidationError(option_, fmt::format("expected {}, got '{}'", expected, got));
+        throw UsageError(option_, fmt::format("expected {}, got '{}'", expected, got));
     }
     const Model& take_model(std::string_view& rest, MaterialOption& result) const;
     void read_values(std::string_view rest, const Model& model);
@@ -184,7 +185,7 @@ prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options
         }
         const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), material.group);
         if (found == mesh.groups.end())
-            throw CLI::ValidationError(
+            throw UsageError(
                 option,
                 mesh.groups.empty()
                     ? fmt::format("expected no group, since the mesh has none, got '{}'",

@@ -29,11 +29,11 @@ struct MaterialOption {
     [[nodiscard]] prt::Surface applied_to(const prt::Surface& surface) const;
 };
 
-/// Parses one option. Throws CLI::ValidationError "expected X, got Y" that names `option`.
+/// Parses one option. Throws UsageError "expected X, got Y" that names `option`.
 [[nodiscard]] MaterialOption parse_material(const std::string& text,
                                             const std::string& option = "--material");
 
-/// All options on a mesh, in their order: later ones win. Throws CLI::ValidationError for a group
+/// All options on a mesh, in their order: later ones win. Throws UsageError for a group
 /// that the mesh does not have.
 [[nodiscard]] prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options,
                                                     const mesh::TriangleMesh& mesh,

@@ -37,19 +37,19 @@ std::optional<std::uint64_t> parse_size(const std::string& text) {
     return static_cast<std::uint64_t>(bytes);
 }
 
-void MemoryOption::add_to(CLI::App& command) {
+void MemoryOption::add_to(Command& command) {
     command
-        .add_option_function<std::string>(
+        .add_option(
             "--max-memory",
             [this](const std::string& text) {
                 max_bytes_ = parse_size(text);
                 if (!max_bytes_)
-                    throw CLI::ValidationError(
+                    throw UsageError(
                         "--max-memory",
                         fmt::format("expected a size like 500M or 4G, got '{}'", text));
             },
             "refuse the work when it would take more memory, stop when it does: 500M, 4G")
-        ->type_name("SIZE");
+        .type_name("SIZE");
 }
 
 void MemoryOption::check_scene(const prt::SceneSizes& sizes, const std::string& mesh) const {
@@ -62,7 +62,7 @@ void MemoryOption::check_scene(const prt::SceneSizes& sizes, const std::string& 
 void MemoryOption::check_estimate(const prt::SceneSizes& sizes, const prt::Receivers& receivers,
                                   const prt::Blockers& blockers, const std::string& mesh,
                                   prt::PrecomputeOptions& precompute, const Session& session,
-                                  nlohmann::json& report) const {
+                                  Report& report) const {
     if (!max_bytes_)
         return;
     check_scene(sizes, mesh); // now with the receivers
@@ -80,8 +80,8 @@ void MemoryOption::check_estimate(const prt::SceneSizes& sizes, const prt::Recei
                         megabytes(estimate.peak_bytes), estimate.is_at_least ? "more than " : "",
                         estimate.num_clusters));
     precompute.max_column_bytes = prt::max_column_bytes(sizes, precompute.plane_bytes, *max_bytes_);
-    report["memory_estimate"] = estimate.peak_bytes;
-    report["clusters_estimate"] = estimate.num_clusters;
+    report.set("memory_estimate", estimate.peak_bytes);
+    report.set("clusters_estimate", estimate.num_clusters);
 }
 
 std::optional<std::uint64_t> MemoryOption::max_glossy_bytes(const prt::SceneSizes& sizes,

@@ -5,8 +5,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "app/session.h"
 #include "prt/memory_estimate.h"
 
@@ -14,7 +12,7 @@ namespace relumine::app {
 
 class MemoryOption {
 public:
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 
     /// Without the option nothing happens. With it: refuses the work when the scene alone is too
     /// large; `mesh` is for messages, as in all of these.
@@ -25,7 +23,7 @@ public:
     void check_estimate(const prt::SceneSizes& sizes, const prt::Receivers& receivers,
                         const prt::Blockers& blockers, const std::string& mesh,
                         prt::PrecomputeOptions& precompute, const Session& session,
-                        nlohmann::json& report) const;
+                        Report& report) const;
 
     /// What the highlights' part may take after clusters whose columns took `column_bytes`; none
     /// without the option.

@@ -33,7 +33,7 @@ relight::PictureOptions parse_size(const std::string& text) {
     char rest = 0;
     if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) !=
         2) // NOLINT(cert-err34-c): checked by the count
-        throw CLI::ValidationError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
+        throw UsageError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
     options.width = width;
     options.height = height;
     return options;
@@ -102,32 +102,35 @@ relight::Picture picture_of(const OutputOptions& options, const LitScene& lit,
 
 } // namespace
 
-void OutputOptions::add_to(CLI::App& command) {
-    command
-        .add_option("-o,--output", path,
-                    "what to write: .png .exr (picture), .ply .glb (mesh with vertex colours), "
-                    ".npy (numbers)")
-        ->required();
+Option OutputOptions::add_to(Command& command) {
+    const Option output =
+        command
+            .add_option("-o,--output", path,
+                        "what to write: .png .exr (picture), .ply .glb (mesh with vertex colours), "
+                        ".npy (numbers)")
+            .file()
+            .required();
     command
         .add_option("--albedo", albedo,
                     "reflectance: a number, R,G,B, or `mesh` for the mesh's vertex colours")
-        ->capture_default_str();
+        .show_default();
     exposure_option_ = command
                            .add_option("--exposure", exposure_ev,
                                        "brighten pictures and colours by this many stops")
-                           ->check(number_between(-100.0, 100.0))
-                           ->capture_default_str();
+                           .between(-100.0, 100.0)
+                           .show_default();
     camera_options_ = {
         command.add_option("--eye", eye, "camera position X,Y,Z (automatic)"),
         command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)"),
         command.add_option("--fov", fov_degrees, "vertical field of view in degrees")
-            ->capture_default_str(),
-        command.add_option("--size", size, "picture size WIDTHxHEIGHT")->capture_default_str()};
+            .show_default(),
+        command.add_option("--size", size, "picture size WIDTHxHEIGHT").show_default()};
     command.add_flag("--transparent", transparent,
                      "scenes of pixels: no environment behind, but alpha (premultiplied in .exr)");
     command.add_option("--gutter", gutter, "lightmaps: texels filled around the charts")
-        ->check(CLI::Range(0, 16384))
-        ->capture_default_str();
+        .between(0, 16384)
+        .show_default();
+    return output;
 }
 
 void OutputOptions::check(const std::vector<std::string>& inputs) const {
@@ -156,11 +159,11 @@ void OutputOptions::check_fits(const prt::Scene& scene) const {
         throw std::runtime_error(fmt::format(
             "{}: expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'", path,
             prt::description(scene.layout), extension));
-    for (const CLI::Option* option : camera_options_)
-        if (option->count() > 0)
+    for (const Option& option : camera_options_)
+        if (option.is_given())
             throw std::runtime_error(
                 fmt::format("{}: expected no camera for a scene whose receivers are {}, got one",
-                            option->get_name(), prt::description(scene.layout)));
+                            option.name(), prt::description(scene.layout)));
 }
 
 void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radiance,
@@ -184,7 +187,7 @@ void OutputOptions::save(const LitScene& lit, std::span<const glm::vec3> radianc
 std::string OutputOptions::exposure_hint(const prt::Scene& scene,
                                          std::span<const glm::vec3> radiance,
                                          const Session& session) const {
-    if (session.json || session.quiet || exposure_option_->count() > 0 ||
+    if (session.json || session.quiet || exposure_option_.is_given() ||
         extension_of(path) != ".png")
         return "";
     const float better = relight::suitable_exposure_ev(coloured(albedo, scene, radiance));

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <glm/vec3.hpp>
 
+#include "app/command_line.h"
 #include "app/lit_scene.h"
 #include "cubemap/cube_map.h"
 #include "relight/pictures/picture.h"
@@ -34,7 +34,8 @@ struct OutputOptions {
     /// Texel receivers: texels around the charts
     std::uint32_t gutter = 16;
 
-    void add_to(CLI::App& command);
+    /// Adds -o and the others; returns -o, which is required until its caller says otherwise.
+    Option add_to(Command& command);
 
     /// Refuses what cannot be written, or is one of the inputs, before any work is done.
     void check(const std::vector<std::string>& inputs) const;
@@ -55,9 +56,9 @@ struct OutputOptions {
                                             const Session& session) const;
 
 private:
-    const CLI::Option* exposure_option_ = nullptr;
+    Option exposure_option_;
     /// --eye, --target, --fov, --size
-    std::vector<const CLI::Option*> camera_options_;
+    std::vector<Option> camera_options_;
 };
 
 /// Writes many frames of a scene that stands still: what the camera sees is found once.

@@ -45,7 +45,7 @@ struct Options {
 /// needs memory of its own.
 void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& precompute,
              std::unique_ptr<prt::CheckpointFile>& checkpoint,
-             prt::PrecomputeStatistics& statistics, Session& session, nlohmann::json& report) {
+             prt::PrecomputeStatistics& statistics, Session& session, Report& report) {
     prt::SceneSizes sizes{.num_vertices = scene.mesh.num_vertices(),
                           .num_triangles = scene.mesh.num_triangles(),
                           .has_beams = options.engine == "beam"};
@@ -123,7 +123,7 @@ void run(const Options& options, Session& session) {
     precompute.stop = session.stop();
     precompute.on_progress = session.progress("precompute");
     prt::PrecomputeStatistics statistics;
-    nlohmann::json report = nlohmann::json::object();
+    Report report;
     std::unique_ptr<prt::CheckpointFile> checkpoint;
     std::uint64_t file_bytes = 0;
     try {
@@ -169,51 +169,51 @@ void run(const Options& options, Session& session) {
 
 } // namespace
 
-void add_precompute(CLI::App& program, Session& session) {
-    CLI::App& command =
-        *program.add_subcommand("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
+void add_precompute(Command& program, Session& session) {
+    Command command =
+        program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<Options>();
     command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
-        ->required();
-    command.add_option("-o,--output", options->output, "the scene file to write, .prt")->required();
+        .file()
+        .required();
+    command.add_option("-o,--output", options->output, "the scene file to write, .prt")
+        .file()
+        .required();
     command
-        .add_option_function<std::vector<std::string>>(
+        .add_option(
             "--floor",
-            [options](const std::vector<std::string>& values) {
-                std::uint32_t n = 193;
-                if (!values.empty() && !values.front().empty() &&
-                    !CLI::detail::lexical_cast(values.front(), n))
-                    throw CLI::ValidationError(
-                        "--floor", fmt::format("expected a number, got '{}'", values.front()));
-                options->floor_vertices = n;
+            [options](const std::string& text) {
+                options->floor_vertices = text.empty() ? 193 : parse_count(text);
+                if (!options->floor_vertices)
+                    throw UsageError("--floor", fmt::format("expected a number, got '{}'", text));
             },
             "add a floor of N x N vertices under the mesh; 193 when no N is given")
-        ->expected(0, 1)
-        ->type_name("[N]");
+        .value_is_optional()
+        .type_name("[N]");
     command
         .add_option("--floor-scale", options->floor_scale,
                     "side of the floor over the mesh's width")
-        ->needs("--floor")
-        ->capture_default_str();
+        .needs("--floor")
+        .show_default();
     command
         .add_option("--normals", options->normals,
                     "vertex normals: the file's where it has them, or always smooth")
-        ->check(CLI::IsMember({"file", "smooth"}))
-        ->capture_default_str();
+        .one_of({"file", "smooth"})
+        .show_default();
     command
         .add_option("--tolerance", options->precompute.tolerance,
                     "RMS error of the transfer allowed within a cluster, 1/sr")
-        ->capture_default_str();
+        .show_default();
     command.add_option("--epsilon", options->precompute.epsilon,
                        "the paper's form of the tolerance: grows lax with the mesh's size");
     command
         .add_option("--min-depth", options->precompute.min_level,
                     "every cell is split at least this often")
-        ->capture_default_str();
+        .show_default();
     command
         .add_option("--face-resolution", options->precompute.face_resolution,
                     "R: cells stop at single texels of a 6 x R x R environment")
-        ->capture_default_str();
+        .show_default();
     command.add_option("--bias", options->bias,
                        "lift of the rays' origins off the surface, in the mesh's unit");
     command
@@ -221,14 +221,14 @@ void add_precompute(CLI::App& program, Session& session) {
                     "how visibility is traced: whole beams of rays, or each ray with Embree; the "
                     "results are "
                     "the same")
-        ->check(CLI::IsMember({"beam", "embree"}))
-        ->capture_default_str();
+        .one_of({"beam", "embree"})
+        .show_default();
     options->receivers.add_to(command);
     options->surfaces.add_to(command);
     options->checkpoint.add_to(command);
     options->memory.add_to(command);
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

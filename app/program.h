@@ -1,14 +1,13 @@
-// The program's command line: all subcommands and what is asked of each of their options.
+// The program's command line: all subcommands.
 #pragma once
 
-#include <CLI/CLI.hpp>
-
+#include "app/command_line.h"
 #include "app/session.h"
 
 namespace relumine::app {
 
-/// Adds the subcommands, whose work runs when the line is parsed, and refuses empty values. The
-/// session must outlive the program.
-void add_commands(CLI::App& program, Session& session);
+/// Adds the subcommands, whose work runs when the line is read. The session must outlive the
+/// program.
+void add_commands(Command& program, Session& session);
 
 } // namespace relumine::app

@@ -12,21 +12,15 @@
 
 namespace relumine::app {
 
-namespace {
+namespace {} // namespace
 
-nlohmann::json array(const glm::vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
-} // namespace
-
-void ReceiverOptions::add_to(CLI::App& command) {
+void ReceiverOptions::add_to(Command& command) {
     command
         .add_option(
             "--receivers", receivers_,
             "what is lit: vertices, pixels:WxH[:N] (of --view, N x N samples each) or texels:WxH "
             "(a lightmap on the mesh's uvs)")
-        ->capture_default_str();
+        .show_default();
     command.add_option(
         "--view", view_,
         "the camera of pixels, and the eye that highlights are for: EX,EY,EZ,TX,TY,TZ[,FOV] "
@@ -38,7 +32,7 @@ ReceiverOptions::Wanted ReceiverOptions::wanted() const {
     if (receivers_ == "vertices")
         return wanted;
     const auto refuse = [&] {
-        throw CLI::ValidationError(
+        throw UsageError(
             "--receivers",
             fmt::format("expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got '{}'",
                         receivers_));
@@ -62,17 +56,14 @@ ReceiverOptions::Wanted ReceiverOptions::wanted() const {
         return size >= 1 && size <= prt::MaxPictureSize;
     };
     if (!is_size(width) || !is_size(height))
-        throw CLI::ValidationError("--receivers",
-                                   fmt::format("expected a size of 1 to {} a side, got '{}'",
-                                               prt::MaxPictureSize, receivers_));
+        throw UsageError("--receivers", fmt::format("expected a size of 1 to {} a side, got '{}'",
+                                                    prt::MaxPictureSize, receivers_));
     if (samples < 1 || samples > prt::MaxSamplesPerAxis)
-        throw CLI::ValidationError("--receivers",
-                                   fmt::format("expected 1 to {} samples a side, got '{}'",
-                                               prt::MaxSamplesPerAxis, receivers_));
+        throw UsageError("--receivers", fmt::format("expected 1 to {} samples a side, got '{}'",
+                                                    prt::MaxSamplesPerAxis, receivers_));
     if (static_cast<std::size_t>(width * height * samples * samples) > prt::MaxLayoutPlaces)
-        throw CLI::ValidationError("--receivers",
-                                   fmt::format("expected at most {} samples in all, got '{}'",
-                                               prt::MaxLayoutPlaces, receivers_));
+        throw UsageError("--receivers", fmt::format("expected at most {} samples in all, got '{}'",
+                                                    prt::MaxLayoutPlaces, receivers_));
     wanted.width = static_cast<std::uint32_t>(width);
     wanted.height = static_cast<std::uint32_t>(height);
     wanted.samples_per_axis = static_cast<std::uint32_t>(samples);
@@ -85,15 +76,14 @@ std::optional<prt::Camera> ReceiverOptions::camera() const {
     std::vector<float> numbers;
     std::istringstream text(view_);
     for (std::string word; std::getline(text, word, ',');) {
-        float number = 0.0f;
-        if (!CLI::detail::lexical_cast(word, number))
-            numbers.clear();
+        if (const std::optional<double> number = parse_number(word))
+            numbers.push_back(static_cast<float>(*number));
         else
-            numbers.push_back(number);
+            numbers.clear();
     }
     if (numbers.size() != 6 && numbers.size() != 7)
-        throw CLI::ValidationError(
-            "--view", fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV], got '{}'", view_));
+        throw UsageError("--view",
+                         fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV], got '{}'", view_));
     prt::Camera camera{.eye = {numbers[0], numbers[1], numbers[2]},
                        .target = {numbers[3], numbers[4], numbers[5]}};
     if (numbers.size() == 7)
@@ -101,7 +91,7 @@ std::optional<prt::Camera> ReceiverOptions::camera() const {
     try {
         static_cast<void>(prt::axes_of(camera, 1.0f));
     } catch (const std::invalid_argument& error) {
-        throw CLI::ValidationError("--view", error.what());
+        throw UsageError("--view", error.what());
     }
     return camera;
 }
@@ -109,15 +99,13 @@ std::optional<prt::Camera> ReceiverOptions::camera() const {
 void ReceiverOptions::check() const {
     const bool pixels = wanted().kind == Kind::Pixels;
     if (pixels && view_.empty())
-        throw CLI::ValidationError("--receivers",
-                                   "expected --view (a camera, or auto) with pixels");
+        throw UsageError("--receivers", "expected --view (a camera, or auto) with pixels");
     if (!view_.empty())
         static_cast<void>(camera());
 }
 
 void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays,
-                            const std::string& mesh_name, const Session& session,
-                            nlohmann::json& report) const {
+                            const std::string& mesh_name, Session& session, Report& report) const {
     const Wanted wanted = this->wanted();
     try {
         if (wanted.kind == Kind::Pixels)
@@ -142,7 +130,7 @@ void ReceiverOptions::apply_eye(prt::Scene& scene) const {
 
 void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene,
                                    const prt::RayScene& rays, const Session& session,
-                                   nlohmann::json& report) const {
+                                   Report& report) const {
     const std::optional<prt::Camera> own = camera();
     prt::PixelReceivers pixels = prt::pixel_receivers(
         scene.mesh, rays,
@@ -154,49 +142,48 @@ void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene,
          .samples_per_axis = wanted.samples_per_axis});
     scene.receivers = std::move(pixels.receivers);
     scene.layout = std::move(pixels.layout);
-    report["layout"] = layout_json(scene);
+    report.set("layout", layout_json(scene));
     session.detail(fmt::format("{}: {} samples hit the mesh", prt::description(scene.layout),
                                scene.receivers.size()));
 }
 
-void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, const Session& session,
-                                   nlohmann::json& report) {
+void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, Session& session,
+                                   Report& report) {
     prt::TexelReceivers texels =
         prt::texel_receivers(scene.mesh, {.width = wanted.width, .height = wanted.height});
     const prt::AtlasReport& atlas = texels.report;
     if (atlas.num_overlapping > 0)
-        session.say(
-            fmt::format("warning: {} texels lie in several triangles, the first at column {}, row "
-                        "{}: charts overlap, the first triangle of the mesh wins",
-                        atlas.num_overlapping, atlas.first_overlap % wanted.width,
-                        atlas.first_overlap / wanted.width));
+        session.warn(fmt::format("{} texels lie in several triangles, the first at column {}, row "
+                                 "{}: charts overlap, the first triangle of the mesh wins",
+                                 atlas.num_overlapping, atlas.first_overlap % wanted.width,
+                                 atlas.first_overlap / wanted.width));
     if (atlas.num_outside > 0)
-        session.say(fmt::format("warning: {} triangles have uvs outside of 0 to 1: cut off there",
-                                atlas.num_outside));
+        session.warn(fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
+                                 atlas.num_outside));
     if (atlas.num_flat > 0)
         session.detail(
             fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
     scene.receivers = std::move(texels.receivers);
     scene.layout = std::move(texels.layout);
-    report["layout"] = layout_json(scene);
-    report["texels_overlapping"] = atlas.num_overlapping;
-    report["texels_on_borders"] = atlas.num_borders;
-    report["triangles_outside"] = atlas.num_outside;
-    report["triangles_flat_in_uv"] = atlas.num_flat;
+    report.set("layout", layout_json(scene));
+    report.set("texels_overlapping", atlas.num_overlapping);
+    report.set("texels_on_borders", atlas.num_borders);
+    report.set("triangles_outside", atlas.num_outside);
+    report.set("triangles_flat_in_uv", atlas.num_flat);
     if (atlas.num_overlapping > 0)
-        report["first_overlap"] = {atlas.first_overlap % wanted.width,
-                                   atlas.first_overlap / wanted.width};
+        report.set("first_overlap", std::vector<Report>{atlas.first_overlap % wanted.width,
+                                                        atlas.first_overlap / wanted.width});
 }
 
-nlohmann::json layout_json(const prt::Scene& scene) {
+Report layout_json(const prt::Scene& scene) {
     const auto num_receivers = static_cast<double>(scene.receivers.size());
     if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout))
         return {{"kind", "pixels"},
                 {"width", pixels->width},
                 {"height", pixels->height},
                 {"samples_per_axis", pixels->samples_per_axis},
-                {"eye", array(pixels->camera.eye)},
-                {"target", array(pixels->camera.target)},
+                {"eye", pixels->camera.eye},
+                {"target", pixels->camera.target},
                 {"fov", pixels->camera.fov_degrees},
                 {"coverage", num_receivers / static_cast<double>(pixels->num_samples())}};
     if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
@@ -204,7 +191,7 @@ nlohmann::json layout_json(const prt::Scene& scene) {
                 {"width", texels->width},
                 {"height", texels->height},
                 {"coverage", num_receivers / static_cast<double>(texels->num_texels())}};
-    return nlohmann::json::object();
+    return {};
 }
 
 void require_vertices(const prt::Scene& scene, const std::string& path) {

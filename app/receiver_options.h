@@ -6,8 +6,6 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "app/session.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
@@ -17,7 +15,7 @@ namespace relumine::app {
 /// --receivers and --view.
 class ReceiverOptions {
 public:
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 
     /// Refuses wrong usage before any work is done.
     void check() const;
@@ -25,7 +23,7 @@ public:
     /// Gives the scene its receivers and layout; says and reports what they are. `mesh_name` is for
     /// messages. Throws std::runtime_error for a view that sees nothing and a mesh without uvs.
     void apply(prt::Scene& scene, const prt::RayScene& rays, const std::string& mesh_name,
-               const Session& session, nlohmann::json& report) const;
+               Session& session, Report& report) const;
 
 private:
     enum class Kind { Vertices, Pixels, Texels };
@@ -38,9 +36,9 @@ private:
     [[nodiscard]] std::optional<prt::Camera> camera() const;
     void apply_eye(prt::Scene& scene) const;
     void apply_pixels(const Wanted& wanted, prt::Scene& scene, const prt::RayScene& rays,
-                      const Session& session, nlohmann::json& report) const;
-    static void apply_texels(const Wanted& wanted, prt::Scene& scene, const Session& session,
-                             nlohmann::json& report);
+                      const Session& session, Report& report) const;
+    static void apply_texels(const Wanted& wanted, prt::Scene& scene, Session& session,
+                             Report& report);
 
     std::string receivers_ = "vertices";
     /// Empty: none
@@ -48,7 +46,7 @@ private:
 };
 
 /// The layout for people and for --json: size, camera, coverage. Empty for vertices.
-[[nodiscard]] nlohmann::json layout_json(const prt::Scene& scene);
+[[nodiscard]] Report layout_json(const prt::Scene& scene);
 
 /// Throws std::runtime_error "path: expected a scene whose receivers are vertices, got ..." for
 /// other layouts.

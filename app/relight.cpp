@@ -108,7 +108,7 @@ void light_with_list(const Options& options, Session& session) {
 
 void run(const Options& options, Session& session) {
     if (options.environment.path.empty() == options.lights.empty())
-        throw CLI::ValidationError("relight", "expected either ENV or --lights");
+        throw UsageError("relight", "expected either ENV or --lights");
     const bool with_list = !options.lights.empty();
     options.output.check(
         {options.scene.path, with_list ? options.lights : options.environment.path});
@@ -120,19 +120,21 @@ void run(const Options& options, Session& session) {
 
 } // namespace
 
-void add_relight(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand(
+void add_relight(Command& program, Session& session) {
+    Command command = program.add_command(
         "relight",
         "light a scene with an environment or a light list: a picture, a mesh or numbers");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
-    options->environment.add_to(command)->required(false);
-    command.add_option("--lights", options->lights,
-                       "in place of ENV: a light list (.json, from `relumine lights`), a shadow "
-                       "ray for each light");
+    options->environment.add_to(command).required(false);
+    command
+        .add_option("--lights", options->lights,
+                    "in place of ENV: a light list (.json, from `relumine lights`), a shadow "
+                    "ray for each light")
+        .file();
     options->output.add_to(command);
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

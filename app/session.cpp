@@ -9,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <pthread.h>
@@ -85,11 +86,11 @@ Session::Session() {
     }).detach();
 }
 
-void Session::add_common_options(CLI::App& command) {
+void Session::add_common_options(Command& command) {
     command.add_flag("--json", json, "print one JSON object with all figures on stdout");
     command.add_option("--threads", num_threads, "threads to use, 0 for all")
-        ->check(CLI::Range(0, 4096))
-        ->capture_default_str();
+        .between(0, 4096)
+        .show_default();
     command.add_flag("-q,--quiet", quiet, "print errors only");
     command.add_flag("-v,--verbose", verbose, "print more");
 }
@@ -160,9 +161,9 @@ void Session::warn(const std::string& message) {
         std::fputs(fmt::format("warning: {}\n", message).c_str(), stderr);
 }
 
-void Session::report(const nlohmann::json& result) const {
+void Session::report(const Report& result) const {
     if (json)
-        fmt::print("{}\n", result.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+        fmt::print("{}\n", result.text());
 }
 
 Stopwatch::Stopwatch() : start_(now()), last_(start_) {}
@@ -179,7 +180,7 @@ double Stopwatch::total() const {
 glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
     const std::optional<glm::vec3> result = three_numbers(text);
     if (!result)
-        throw CLI::ValidationError(option, fmt::format("expected X,Y,Z, got '{}'", text));
+        throw UsageError(option, fmt::format("expected X,Y,Z, got '{}'", text));
     return *result;
 }
 
@@ -188,22 +189,10 @@ glm::vec3 parse_color(const std::string& option, const std::string& text) {
     const std::optional<glm::vec3> color =
         three_numbers(is_grey ? fmt::format("{0},{0},{0}", text) : text);
     if (!color)
-        throw CLI::ValidationError(option,
-                                   fmt::format("expected R,G,B or one number, got '{}'", text));
+        throw UsageError(option, fmt::format("expected R,G,B or one number, got '{}'", text));
     if (color->r < 0.0f || color->g < 0.0f || color->b < 0.0f)
-        throw CLI::ValidationError(option, fmt::format("expected numbers >= 0, got '{}'", text));
+        throw UsageError(option, fmt::format("expected numbers >= 0, got '{}'", text));
     return *color;
-}
-
-CLI::Validator number_between(double min, double max) {
-    return {[min, max](const std::string& text) {
-                double value = 0.0;
-                const bool inside =
-                    CLI::detail::lexical_cast(text, value) && value >= min && value <= max;
-                return inside ? std::string()
-                              : fmt::format("expected {} to {}, got '{}'", min, max, text);
-            },
-            fmt::format("{} to {}", min, max)};
 }
 
 std::uint64_t peak_bytes() {

@@ -9,9 +9,10 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
 #include <glm/vec3.hpp>
-#include <nlohmann/json.hpp>
+
+#include "app/command_line.h"
+#include "app/report.h"
 
 namespace relumine::app {
 
@@ -27,7 +28,7 @@ public:
     Session();
 
     /// Adds --json, --threads, -q and -v to a subcommand.
-    void add_common_options(CLI::App& command);
+    void add_common_options(Command& command);
 
     /// Set by Ctrl-C, SIGTERM and SIGHUP. Another of them, a second later or more, ends the program
     /// at once.
@@ -48,7 +49,7 @@ public:
     /// One line on stderr, "warning: ..."; nothing with -q.
     void warn(const std::string& message);
     /// The result: with --json the object on stdout.
-    void report(const nlohmann::json& result) const;
+    void report(const Report& result) const;
 
 private:
     std::stop_source stop_source_;
@@ -69,15 +70,12 @@ private:
     double last_;
 };
 
-/// Three numbers "X,Y,Z" of an option. Throws CLI::ValidationError (wrong usage) for anything else.
+/// Three numbers "X,Y,Z" of an option. Throws UsageError (wrong usage) for anything else.
 [[nodiscard]] glm::vec3 parse_vec3(const std::string& option, const std::string& text);
 
-/// A colour "R,G,B" or one number for all three, >= 0. Throws CLI::ValidationError for anything
+/// A colour "R,G,B" or one number for all three, >= 0. Throws UsageError for anything
 /// else.
 [[nodiscard]] glm::vec3 parse_color(const std::string& option, const std::string& text);
-
-/// Accepts numbers from `min` to `max`. Unlike CLI::Range not NaN.
-[[nodiscard]] CLI::Validator number_between(double min, double max);
 
 /// Largest memory use of this process so far.
 [[nodiscard]] std::uint64_t peak_bytes();

@@ -2,6 +2,7 @@
 
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -18,7 +19,7 @@ std::filesystem::path SunFile::path_beside(std::filesystem::path map_path) {
 
 SunFile::SunFile(const std::filesystem::path& map_path) : file_(path_beside(map_path)) {}
 
-nlohmann::json SunFile::split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
+SunFile::Split SunFile::split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
                               const std::string& source) {
     const cubemap::SunSearch found = cubemap::find_sun(image);
     if (!found.sun)
@@ -34,14 +35,15 @@ nlohmann::json SunFile::split(cubemap::EnvironmentImage& image, const glm::dmat3
                            .method = "sun"});
     file_.write(std::as_bytes(std::span(text)));
     const cubemap::SkyAngles angles = cubemap::sky_angles(light.direction);
-    return {{"file", path()},
-            {"direction", {light.direction.x, light.direction.y, light.direction.z}},
-            {"azimuth_degrees", angles.azimuth_degrees},
-            {"elevation_degrees", angles.elevation_degrees},
-            {"irradiance", {light.irradiance.x, light.irradiance.y, light.irradiance.z}},
-            {"solid_angle", light.solid_angle},
-            {"diameter_degrees", cubemap::disc_diameter_degrees(light.solid_angle)},
-            {"share_of_power", found.sun->share_of_power}};
+    Report report = {{"file", path()},
+                     {"direction", light.direction},
+                     {"azimuth_degrees", angles.azimuth_degrees},
+                     {"elevation_degrees", angles.elevation_degrees},
+                     {"irradiance", light.irradiance},
+                     {"solid_angle", light.solid_angle},
+                     {"diameter_degrees", cubemap::disc_diameter_degrees(light.solid_angle)},
+                     {"share_of_power", found.sun->share_of_power}};
+    return {.report = std::move(report), .share_of_power = found.sun->share_of_power};
 }
 
 } // namespace relumine::app

@@ -5,8 +5,8 @@
 #include <string>
 
 #include <glm/mat3x3.hpp>
-#include <nlohmann/json.hpp>
 
+#include "app/report.h"
 #include "cubemap/image/environment.h"
 #include "files/output_file.h"
 
@@ -23,12 +23,18 @@ public:
     /// work is done.
     explicit SunFile(const std::filesystem::path& map_path);
 
+    /// The sun that was split off
+    struct Split {
+        Report report = {};
+        /// Of the whole map's light
+        double share_of_power = 0.0;
+    };
     /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary
-    /// file, its direction carried by `world_from_image`. Returns the sun's figures for the
-    /// session's report. Throws std::runtime_error "source: expected a sun to split off, got none:
-    /// why"; `source` names the map.
-    nlohmann::json split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
-                         const std::string& source);
+    /// file, its direction carried by `world_from_image`. Returns the sun's figures. Throws
+    /// std::runtime_error "source: expected a sun to split off, got none: why"; `source` names the
+    /// map.
+    Split split(cubemap::EnvironmentImage& image, const glm::dmat3& world_from_image,
+                const std::string& source);
 
     /// Lets the file appear. To be called when the map without the sun is written.
     void commit() { file_.commit(); }

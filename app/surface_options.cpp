@@ -10,7 +10,7 @@
 
 namespace relumine::app {
 
-void SurfaceOptions::add_to(CLI::App& command) {
+void SurfaceOptions::add_to(Command& command) {
     command.add_option(
         "--material", materials_,
         "surface in place of the file's: ggx:roughness=0.3,albedo=0.5,f0=0.04, "
@@ -19,8 +19,8 @@ void SurfaceOptions::add_to(CLI::App& command) {
     command
         .add_option("--glossy-tolerance", glossy_tolerance_,
                     "relative error of a highlight under a small light anywhere")
-        ->check(number_between(1e-4, 1.0))
-        ->capture_default_str();
+        .between(1e-4, 1.0)
+        .show_default();
 }
 
 void SurfaceOptions::check() const {
@@ -28,7 +28,7 @@ void SurfaceOptions::check() const {
         static_cast<void>(parse_material(material));
 }
 
-void SurfaceOptions::apply(prt::Scene& scene, const Session& session) const {
+void SurfaceOptions::apply(prt::Scene& scene, Session& session) const {
     const mesh::TriangleMesh& mesh = scene.mesh;
     if (mesh.materials.empty() && materials_.empty())
         return;
@@ -54,16 +54,16 @@ void SurfaceOptions::apply(prt::Scene& scene, const Session& session) const {
         surface.highlight = prt::Highlight::None;
     }
     if (num_highlights != 0)
-        session.say(fmt::format("warning: {} receivers have highlights, which need --view: left "
-                                "out, the scene is diffuse",
-                                num_highlights));
+        session.warn(fmt::format("{} receivers have highlights, which need --view: left "
+                                 "out, the scene is diffuse",
+                                 num_highlights));
 }
 
 void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
                                            const prt::PrecomputeOptions& precompute,
                                            std::optional<std::uint64_t> max_bytes,
                                            const std::string& mesh, Session& session,
-                                           nlohmann::json& report) const {
+                                           Report& report) const {
     if (!prt::has_highlights(scene.receivers)) {
         prt::set_surfaces(scene.transfer, scene.receivers);
         return;
@@ -75,10 +75,9 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
     const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
     if (const auto count = std::count_if(surfaces.begin(), surfaces.end(), is_too_sharp);
         count != 0)
-        session.say(
-            fmt::format("warning: {} receivers are smoother than roughness {:.3f}: cells of the "
-                        "quadtree cannot hold so sharp a highlight, it comes out wider",
-                        count, narrowest));
+        session.warn(fmt::format("{} receivers are smoother than roughness {:.3f}: cells of the "
+                                 "quadtree cannot hold so sharp a highlight, it comes out wider",
+                                 count, narrowest));
     prt::GlossyOptions glossy{.tolerance = glossy_tolerance_,
                               .face_resolution = precompute.face_resolution,
                               .bias = precompute.bias,
@@ -96,7 +95,7 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
             prt::estimate_glossy_entries(scene.receivers, rays, scene.transfer, glossy);
         if (estimate * prt::BytesPerEntry > *max_bytes)
             throw refused("an estimate of", estimate);
-        report["highlights_estimate"] = estimate;
+        report.set("highlights_estimate", estimate);
         glossy.max_bytes = *max_bytes;
     }
     prt::GlossyStatistics statistics;
@@ -115,11 +114,13 @@ void SurfaceOptions::precompute_highlights(prt::Scene& scene, const prt::RayScen
         fmt::format("highlights: {:.0f} cells per block of {} receivers in {:.1f} s, {:.1f} MB",
                     cells_per_block, prt::BlockSize, statistics.seconds,
                     static_cast<double>(scene.transfer.glossy->num_bytes()) * 1e-6));
-    report["glossy"] = {
-        {"tolerance", glossy_tolerance_},     {"cells", statistics.num_entries},
-        {"cells_per_block", cells_per_block}, {"rays", statistics.num_rays},
-        {"seconds", statistics.seconds},      {"bytes", scene.transfer.glossy->num_bytes()},
-        {"narrowest_roughness", narrowest}};
+    report.set("glossy", {{"tolerance", glossy_tolerance_},
+                          {"cells", statistics.num_entries},
+                          {"cells_per_block", cells_per_block},
+                          {"rays", statistics.num_rays},
+                          {"seconds", statistics.seconds},
+                          {"bytes", scene.transfer.glossy->num_bytes()},
+                          {"narrowest_roughness", narrowest}});
 }
 
 } // namespace relumine::app

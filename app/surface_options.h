@@ -4,8 +4,6 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "app/session.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
@@ -17,14 +15,14 @@ namespace relumine::app {
 /// --material and --glossy-tolerance.
 class SurfaceOptions {
 public:
-    void add_to(CLI::App& command);
+    void add_to(Command& command);
 
     /// Refuses wrong usage before any work is done.
     void check() const;
 
     /// Gives the scene's receivers their surfaces: the mesh's materials, changed by the options.
     /// None where there are neither.
-    void apply(prt::Scene& scene, const Session& session) const;
+    void apply(prt::Scene& scene, Session& session) const;
 
     [[nodiscard]] float glossy_tolerance() const { return glossy_tolerance_; }
 
@@ -35,7 +33,7 @@ public:
     void precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
                                const prt::PrecomputeOptions& precompute,
                                std::optional<std::uint64_t> max_bytes, const std::string& mesh,
-                               Session& session, nlohmann::json& report) const;
+                               Session& session, Report& report) const;
 
 private:
     std::vector<std::string> materials_;

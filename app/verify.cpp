@@ -54,27 +54,24 @@ void run(const Options& options, Session& session) {
                     {"samples", sample.size()},
                     {"mean_radiance", error.mean_radiance},
                     {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
-                    {"worst_position", {worst.x, worst.y, worst.z}},
+                    {"worst_position", worst},
                     {"face_resolution", environment.map.resolution},
                     {"seconds", seconds}});
 }
 
 } // namespace
 
-void add_verify(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand(
+void add_verify(Command& program, Session& session) {
+    Command command = program.add_command(
         "verify", "compare relighting with exact integration: every texel, every shadow ray");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command);
     command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
-    command.add_option("--seed", options->seed, "seed of the choice")
-        ->check(CLI::NonNegativeNumber)
-        ->capture_default_str();
+        .show_default();
+    command.add_option("--seed", options->seed, "seed of the choice").show_default();
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

@@ -45,16 +45,13 @@ void run(const Options& /*options*/, Session& /*session*/) {
 void set_size(const std::string& text, viewer::ViewOptions& view) {
     const std::size_t x = text.find('x');
     const auto number = [](const std::string& digits) {
-        int value = 0;
-        const bool good =
-            CLI::detail::lexical_cast(digits, value) && value >= 320 && value <= 16384;
-        return good ? value : 0;
+        const std::uint32_t value = parse_count(digits).value_or(0);
+        return value >= 320 && value <= 16384 ? static_cast<int>(value) : 0;
     };
     view.width = x == std::string::npos ? 0 : number(text.substr(0, x));
     view.height = x == std::string::npos ? 0 : number(text.substr(x + 1));
     if (view.width == 0 || view.height == 0)
-        throw CLI::ValidationError("--size",
-                                   fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
+        throw UsageError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
 }
 
 /// Without an environment: an even grey, in which layers show.
@@ -132,24 +129,25 @@ void run(const Options& options, Session& session) {
 
 } // namespace
 
-void add_view(CLI::App& program, Session& session) {
-    CLI::App& command = *program.add_subcommand("view", "light the scene by hand, in a window");
+void add_view(Command& program, Session& session) {
+    Command command = program.add_command("view", "light the scene by hand, in a window");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
-    options->environment.add_to(command);
-    command.get_option("ENV")->required(false);
-    command.add_option("--layers", options->layers, "light layers to begin with, .json");
+    options->environment.add_to(command).required(false);
+    command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
+    command.add_option("--exposure", options->exposure_ev, "stops; without it what suits the scene")
+        .between(-100.0, 100.0);
+    command.add_option("--size", options->size, "the window's size").show_default();
     command
-        .add_option("--exposure", options->exposure_ev, "stops; without it what suits the scene")
-        ->check(number_between(-100.0, 100.0));
-    command.add_option("--size", options->size, "the window's size")->capture_default_str();
-    command.add_option("--script", options->script,
-                       "play a script instead of waiting for a person (docs/viewer.md)");
-    command.add_option(
-        "--screenshot", options->screenshot,
-        "write the last frame of the script, or the first there is, as .png or .exr");
+        .add_option("--script", options->script,
+                    "play a script instead of waiting for a person (docs/viewer.md)")
+        .file();
+    command
+        .add_option("--screenshot", options->screenshot,
+                    "write the last frame of the script, or the first there is, as .png or .exr")
+        .file();
     session.add_common_options(command);
-    command.callback([options, &session] { run(*options, session); });
+    command.on_run([options, &session] { run(*options, session); });
 }
 
 } // namespace relumine::app

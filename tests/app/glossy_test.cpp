@@ -92,10 +92,10 @@ TEST_F(Glossy, LimitsAreSaid) {
     const std::string sharp = "ggx:roughness=0.05,f0=0.5";
     const Result warned = succeed({"precompute", "mesh.obj", "-o", "s.prt", "--face-resolution",
                                    "16", "--material", sharp, "--view", "auto"});
-    EXPECT_NE(warned.out.find("smoother than roughness"), std::string::npos) << warned.out;
+    EXPECT_NE(warned.err.find("smoother than roughness"), std::string::npos) << warned.described();
     const Result no_view = succeed(
         {"precompute", "mesh.obj", "-o", "d.prt", "--face-resolution", "16", "--material", sharp});
-    EXPECT_NE(no_view.out.find("--view"), std::string::npos) << no_view.out;
+    EXPECT_NE(no_view.err.find("--view"), std::string::npos) << no_view.described();
     fail({"lights", "white.hdr", "-n", "4", "--method", "transfer", "--scene", "s.prt", "-o",
           "l.json"},
          {"s.prt", "highlights"});

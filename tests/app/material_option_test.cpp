@@ -1,9 +1,10 @@
 // Materials on the command line.
 #include "app/material_option.h"
 
-#include <CLI/CLI.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "app/command_line.h"
 
 namespace relumine::app {
 namespace {
@@ -12,7 +13,7 @@ void expect_refusal(const std::string& text, const std::string& part) {
     try {
         static_cast<void>(parse_material(text));
         ADD_FAILURE() << "accepted: " << text;
-    } catch (const CLI::ValidationError& error) {
+    } catch (const UsageError& error) {
         EXPECT_THAT(error.what(), testing::HasSubstr("--material"));
         EXPECT_THAT(error.what(), testing::HasSubstr("expected"));
         EXPECT_THAT(error.what(), testing::HasSubstr(part)) << text;
@@ -70,10 +71,10 @@ TEST(MaterialOption, Groups) {
     const auto unknown = [&mesh] {
         static_cast<void>(surface_override({parse_material("lid=lambert")}, mesh));
     };
-    EXPECT_THROW(unknown(), CLI::ValidationError);
+    EXPECT_THROW(unknown(), UsageError);
     mesh.groups.clear();
     mesh.triangle_groups.clear();
-    EXPECT_THROW(unknown(), CLI::ValidationError);
+    EXPECT_THROW(unknown(), UsageError);
     EXPECT_EQ(surface_override({parse_material("lambert:albedo=1")}, mesh)(mesh, 0, Gold).albedo,
               glm::vec3(1.0f));
     EXPECT_EQ(surface_override({}, mesh)(mesh, 0, Gold), Gold);

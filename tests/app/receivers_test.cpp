@@ -115,12 +115,23 @@ TEST_F(Receivers, TexelsBecomeALightmap) {
 TEST_F(Receivers, OverlappingChartsAreAWarning) {
     // The centres of the four on the diagonal are inside no triangle, but on edges.
     write("twice.ply", square_ply(true));
-    const Result made = succeed({"precompute", "twice.ply", "-o", "tx.prt", "--face-resolution",
-                                 "8", "--receivers", "texels:4x4"});
-    EXPECT_NE(
-        made.out.find("warning: 12 texels lie in several triangles, the first at column 1, row 0"),
-        std::string::npos)
-        << made.out;
+    const std::vector<std::string> command = {"precompute",  "twice.ply",         "-o",
+                                              "tx.prt",      "--face-resolution", "8",
+                                              "--receivers", "texels:4x4"};
+    const auto with = [&command](const std::string& option) {
+        std::vector<std::string> arguments = command;
+        arguments.push_back(option);
+        return arguments;
+    };
+    const std::string warning =
+        "warning: 12 texels lie in several triangles, the first at column 1, row 0";
+    const Result made = succeed(command);
+    EXPECT_NE(made.err.find(warning), std::string::npos) << made.described();
+    EXPECT_EQ(made.out.find("warning"), std::string::npos) << made.described();
+    const Result as_json = succeed(with("--json"));
+    EXPECT_NE(as_json.err.find(warning), std::string::npos) << as_json.described();
+    EXPECT_EQ(as_json.json()["texels_overlapping"], 12);
+    EXPECT_EQ(succeed(with("-q")).err, "");
 }
 
 TEST_F(Receivers, OutputsThatDoNotFit) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "app/command_line.h"
 #include "app/program.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -29,15 +30,11 @@ app::Session& fresh_session() {
     return session;
 }
 
-void run(CLI::App& program, std::vector<std::string> arguments) {
-    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+void run(app::CommandLine& program, const std::vector<std::string>& arguments) {
     try {
-        program.parse(std::move(arguments));
+        static_cast<void>(program.run(arguments));
         ++fuzz::num_accepted;
-    } catch (const CLI::Success&) {
-        static_cast<void>(program.help());
-        ++fuzz::num_accepted;
-    } catch (const CLI::ParseError& error) {
+    } catch (const app::UsageError& error) {
         fuzz::require(std::string_view(error.what()).size() > 0, "wrong usage is told");
     } catch (const std::invalid_argument&) {
     } catch (const std::runtime_error& error) {
@@ -60,10 +57,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!is_inside || text.find('\0') != std::string_view::npos ||
         text.find('/') != std::string_view::npos)
         return 0;
-    CLI::App program("", "relumine");
-    app::add_commands(program, fresh_session());
+    app::CommandLine program("relumine", "", "");
+    app::Command root = program.root();
+    app::add_commands(root, fresh_session());
     for (const char* name : {"generate", "view"})
-        program.get_subcommand(name)->parse_complete_callback([] { throw CLI::Success(); });
+        root.command(name).on_run([] {});
     run(program, lines(text));
     fuzz::require(std::filesystem::is_empty(std::filesystem::current_path()),
                   "a failed command leaves no file");

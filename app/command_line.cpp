@@ -1,0 +1,399 @@
+#include "app/command_line.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "app/command_table.h"
+
+namespace relumine::app {
+
+struct Option::Data {
+    CLI::Option* option = nullptr;
+    OptionTable::Value value = OptionTable::Value::Text;
+    std::vector<std::string> choices = {};
+    std::string range = {};
+    /// Without what its checks say
+    std::string type = {};
+};
+
+struct Command::Data {
+    CLI::App* app = nullptr;
+    /// Of the program itself
+    std::unique_ptr<CLI::App> owned = {};
+    std::vector<std::unique_ptr<Option::Data>> options = {};
+    std::vector<std::unique_ptr<Command::Data>> commands = {};
+
+    [[nodiscard]] CommandTable table() const;
+};
+
+namespace {
+
+/// `long double`, so that a float is rounded once from the decimal number, as good as always.
+std::optional<long double> long_number(const std::string& text) {
+    char* end = nullptr;
+    const long double value = std::strtold(text.c_str(), &end);
+    if (text.empty() || end != text.c_str() + text.size())
+        return std::nullopt;
+    return value;
+}
+
+template<typename T>
+std::optional<T> whole_number(const std::string& text) {
+    T value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size())
+        return std::nullopt;
+    return value;
+}
+
+/// How the values of one type are read and shown. `check` returns what is wrong, or nothing.
+template<typename T>
+struct Value;
+
+template<>
+struct Value<std::string> {
+    static constexpr const char* TypeName = "TEXT";
+    static std::string check(const std::string& /*text*/) { return {}; }
+    static std::string read(const std::string& text) { return text; }
+    static std::string show(const std::string& value) { return value; }
+};
+
+template<typename T>
+requires std::is_unsigned_v<T>
+struct Value<T> {
+    static constexpr const char* TypeName = "UINT";
+    static std::string check(const std::string& text) {
+        return whole_number<T>(text) ? std::string()
+                                     : fmt::format("expected a whole number of 0 to {}, got '{}'",
+                                                   std::numeric_limits<T>::max(), text);
+    }
+    static T read(const std::string& text) { return whole_number<T>(text).value(); }
+    static std::string show(T value) { return fmt::format("{}", value); }
+};
+
+template<typename T>
+requires std::is_floating_point_v<T>
+struct Value<T> {
+    static constexpr const char* TypeName = "FLOAT";
+    static std::string check(const std::string& text) {
+        return long_number(text) ? std::string() : fmt::format("expected a number, got '{}'", text);
+    }
+    static T read(const std::string& text) { return static_cast<T>(long_number(text).value()); }
+    static std::string show(T value) { return fmt::format("{}", value); }
+};
+
+template<typename T>
+struct Value<std::optional<T>> : Value<T> {
+    static std::string show(const std::optional<T>& value) {
+        return value ? Value<T>::show(*value) : std::string();
+    }
+};
+
+template<typename T>
+struct Value<std::vector<T>> : Value<T> {
+    static std::vector<T> read(const std::vector<std::string>& texts) {
+        std::vector<T> values;
+        for (const std::string& text : texts)
+            values.push_back(Value<T>::read(text));
+        return values;
+    }
+    static std::string show(const std::vector<T>& values) {
+        std::string text;
+        for (const T& value : values)
+            text += (text.empty() ? "" : ",") + Value<T>::show(value);
+        return text;
+    }
+};
+
+template<typename T>
+constexpr bool IsVector = false;
+template<typename T>
+constexpr bool IsVector<std::vector<T>> = true;
+
+std::string not_empty(const std::string& text) {
+    return text.empty() ? "expected a value, got ''" : "";
+}
+
+/// The CLI11 option that calls `read` with its texts; values are checked before.
+CLI::Option& add(CLI::App& app, const std::string& name, const std::string& description,
+                 CLI::callback_t read, std::function<std::string()> show = {}) {
+    return *app.add_option(name, std::move(read), description, false, std::move(show));
+}
+
+} // namespace
+
+CommandTable Command::Data::table() const {
+    CommandTable table{.name = app->get_name(),
+                       .description = app->get_description(),
+                       .footer = app->get_footer()};
+    for (const CLI::Option* option : std::as_const(*app).get_options()) {
+        const auto own = std::find_if(options.begin(), options.end(), [option](const auto& each) {
+            return each->option == option;
+        });
+        OptionTable row{.argument = option->get_positional() ? option->get_name(true) : "",
+                        .description = option->get_description(),
+                        .default_value = option->get_default_str(),
+                        .is_required = option->get_required(),
+                        .value_is_optional = option->get_expected_min() == 0,
+                        .repeats = option->get_expected_max() > 1};
+        for (const std::string& name : option->get_snames())
+            row.names.push_back("-" + name);
+        for (const std::string& name : option->get_lnames())
+            row.names.push_back("--" + name);
+        if (own != options.end()) {
+            row.value = (*own)->value;
+            row.choices = (*own)->choices;
+            row.range = (*own)->range;
+        }
+        if (row.value != OptionTable::Value::None)
+            row.type = (*own)->type;
+        table.options.push_back(std::move(row));
+    }
+    for (const std::unique_ptr<Data>& command : commands)
+        table.commands.push_back(command->table());
+    return table;
+}
+
+UsageError::UsageError(const std::string& option, const std::string& message)
+    : std::runtime_error(fmt::format("{}: {}", option, message)) {}
+
+Option Option::required(bool is_required) {
+    data_->option->required(is_required);
+    return *this;
+}
+
+Option Option::show_default() {
+    data_->option->capture_default_str();
+    return *this;
+}
+
+Option Option::one_of(const std::vector<std::string>& choices) {
+    data_->option->check(CLI::IsMember(choices));
+    data_->value = OptionTable::Value::Choice;
+    data_->choices = choices;
+    return *this;
+}
+
+Option Option::between(double min, double max) {
+    data_->range = fmt::format("{} to {}", min, max);
+    data_->option->check(CLI::Validator(
+        [min, max](const std::string& text) {
+            const std::optional<double> value = parse_number(text);
+            return value && *value >= min && *value <= max
+                       ? std::string()
+                       : fmt::format("expected {} to {}, got '{}'", min, max, text);
+        },
+        data_->range));
+    return *this;
+}
+
+Option Option::type_name(const std::string& name) {
+    data_->type = name;
+    data_->option->type_name(name);
+    return *this;
+}
+
+Option Option::description(const std::string& text) {
+    data_->option->description(text);
+    return *this;
+}
+
+Option Option::file() {
+    data_->value = OptionTable::Value::File;
+    return type_name("FILE");
+}
+
+Option Option::folder() {
+    data_->value = OptionTable::Value::Folder;
+    return type_name("FOLDER");
+}
+
+Option Option::value_is_optional() {
+    data_->option->expected(0, 1);
+    return *this;
+}
+
+Option Option::separated_by(char delimiter) {
+    data_->option->delimiter(delimiter);
+    return *this;
+}
+
+Option Option::needs(const std::string& name) {
+    data_->option->needs(name);
+    return *this;
+}
+
+Option Option::excludes(const std::string& name) {
+    data_->option->excludes(name);
+    return *this;
+}
+
+bool Option::is_given() const {
+    return data_ != nullptr && data_->option->count() > 0;
+}
+
+std::string Option::name() const {
+    return data_->option->get_name();
+}
+
+Command Command::add_command(const std::string& name, const std::string& description) {
+    data_->app->require_subcommand(1);
+    auto data = std::make_unique<Data>();
+    data->app = data_->app->add_subcommand(name, description);
+    data_->commands.push_back(std::move(data));
+    return Command(*data_->commands.back());
+}
+
+template<typename T>
+Option Command::add_value(const std::string& name, T& value, const std::string& description) {
+    CLI::Option& option = add(
+        *data_->app, name, description,
+        [&value](const CLI::results_t& texts) {
+            if constexpr (IsVector<T>)
+                value = Value<T>::read(texts);
+            else
+                value = Value<T>::read(texts.back());
+            return true;
+        },
+        [&value] { return Value<T>::show(value); });
+    option.check(CLI::Validator(not_empty, ""));
+    option.check(CLI::Validator(Value<T>::check, ""));
+    if constexpr (IsVector<T>)
+        option.expected(CLI::detail::expected_max_vector_size);
+    data_->options.push_back(std::make_unique<Option::Data>(Option::Data{&option}));
+    return Option(*data_->options.back()).type_name(Value<T>::TypeName);
+}
+
+Option Command::add_option(const std::string& name, std::string& value,
+                           const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, std::uint32_t& value,
+                           const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, std::uint64_t& value,
+                           const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, float& value, const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, double& value, const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, std::optional<float>& value,
+                           const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, std::optional<double>& value,
+                           const std::string& description) {
+    return add_value(name, value, description);
+}
+
+Option Command::add_option(const std::string& name, std::vector<std::string>& values,
+                           const std::string& description) {
+    return add_value(name, values, description);
+}
+
+Option Command::add_option(const std::string& name, std::vector<std::uint64_t>& values,
+                           const std::string& description) {
+    return add_value(name, values, description);
+}
+
+Option Command::add_option(const std::string& name, std::function<void(const std::string&)> read,
+                           const std::string& description) {
+    CLI::Option& option =
+        add(*data_->app, name, description, [read = std::move(read)](const CLI::results_t& texts) {
+            read(texts.back());
+            return true;
+        });
+    data_->options.push_back(std::make_unique<Option::Data>(Option::Data{&option}));
+    return Option(*data_->options.back());
+}
+
+Option Command::add_flag(const std::string& name, bool& value, const std::string& description) {
+    CLI::Option* option = data_->app->add_flag(name, value, description);
+    data_->options.push_back(
+        std::make_unique<Option::Data>(Option::Data{option, OptionTable::Value::None}));
+    return Option(*data_->options.back());
+}
+
+void Command::footer(const std::string& text) {
+    data_->app->footer(text);
+}
+
+void Command::on_run(std::function<void()> work) {
+    data_->app->callback(std::move(work));
+}
+
+Command Command::command(const std::string& name) const {
+    for (const std::unique_ptr<Data>& each : data_->commands)
+        if (each->app->get_name() == name)
+            return Command(*each);
+    throw std::out_of_range(fmt::format("no command {}", name));
+}
+
+CommandLine::CommandLine(const std::string& name, const std::string& description,
+                         const std::string& version)
+    : data_(std::make_unique<Command::Data>()) {
+    data_->owned = std::make_unique<CLI::App>(description, name);
+    data_->app = data_->owned.get();
+    data_->app->set_version_flag("--version", fmt::format("{} {}", name, version));
+}
+
+CommandLine::~CommandLine() = default;
+
+Command CommandLine::root() const {
+    return Command(*data_);
+}
+
+void CommandLine::before_run(std::function<void()> work) {
+    data_->app->parse_complete_callback(std::move(work));
+}
+
+std::string CommandLine::run(std::vector<std::string> arguments) {
+    CLI::App& app = *data_->app;
+    std::reverse(arguments.begin(), arguments.end()); // as CLI11 wants them
+    try {
+        app.parse(std::move(arguments));
+        return {};
+    } catch (const CLI::CallForHelp&) {
+        return app.help();
+    } catch (const CLI::CallForVersion& version) {
+        return fmt::format("{}\n", version.what());
+    } catch (const CLI::ParseError& error) {
+        const std::vector<std::string> rest = app.remaining();
+        if (app.get_subcommands().empty() && !rest.empty())
+            throw UsageError(fmt::format("expected a subcommand, got '{}'", rest.front()));
+        throw UsageError(error.what());
+    }
+}
+
+CommandTable CommandLine::table() const {
+    return data_->table();
+}
+
+std::optional<double> parse_number(const std::string& text) {
+    const std::optional<long double> number = long_number(text);
+    return number ? std::optional(static_cast<double>(*number)) : std::nullopt;
+}
+
+std::optional<std::uint32_t> parse_count(const std::string& text) {
+    return whole_number<std::uint32_t>(text);
+}
+
+} // namespace relumine::app

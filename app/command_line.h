@@ -1,0 +1,146 @@
+// The command line: commands, their options, and the work that runs when the line has been read.
+// The parser behind it is CLI11, which only command_line.cpp sees: it takes seconds to compile.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace relumine::app {
+
+struct CommandTable;
+
+/// Wrong usage, which the program answers with one line and exit code 2.
+class UsageError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+    /// "OPTION: message"
+    UsageError(const std::string& option, const std::string& message);
+};
+
+/// A handle of one option of a command, valid as long as its CommandLine. Each setting returns the
+/// handle, so that settings can be chained.
+class Option {
+public:
+    /// No option: was never given.
+    Option() = default;
+
+    Option required(bool is_required = true);
+    /// Shows the variable's value of now in the help.
+    Option show_default();
+    /// Refuses all values but these.
+    Option one_of(const std::vector<std::string>& choices);
+    /// Refuses numbers outside and NaN.
+    Option between(double min, double max);
+    /// What the help calls the value: SIZE
+    Option type_name(const std::string& name);
+    Option description(const std::string& text);
+    /// The value names a file, or a folder: for the help and for completion.
+    Option file();
+    Option folder();
+    /// The option may stand without its value, which is then empty.
+    Option value_is_optional();
+    /// One argument may hold several values with this between them.
+    Option separated_by(char delimiter);
+    /// Refused unless the option of that name is given, too.
+    Option needs(const std::string& name);
+    /// Refused when the option of that name is given, too.
+    Option excludes(const std::string& name);
+
+    /// Whether the line that was read has it.
+    [[nodiscard]] bool is_given() const;
+    /// The long name where it has one: "--output"
+    [[nodiscard]] std::string name() const;
+
+private:
+    friend class Command;
+    struct Data;
+    explicit Option(Data& data) : data_(&data) {}
+    Data* data_ = nullptr;
+};
+
+/// A handle of one command, valid as long as its CommandLine. Variables and functions that it is
+/// given must live until the line has been read and the work is done.
+class Command {
+public:
+    /// A command of its own below this one, which then asks for one of its commands.
+    Command add_command(const std::string& name, const std::string& description);
+
+    /// An option "-o,--output" or an argument "MESH" that writes to a variable. It takes one value,
+    /// or any number of values where the variable is a vector. Empty values are refused: an unset
+    /// variable of a script must not read as 0 or as the current folder.
+    Option add_option(const std::string& name, std::string& value, const std::string& description);
+    Option add_option(const std::string& name, std::uint32_t& value,
+                      const std::string& description);
+    Option add_option(const std::string& name, std::uint64_t& value,
+                      const std::string& description);
+    Option add_option(const std::string& name, float& value, const std::string& description);
+    Option add_option(const std::string& name, double& value, const std::string& description);
+    Option add_option(const std::string& name, std::optional<float>& value,
+                      const std::string& description);
+    Option add_option(const std::string& name, std::optional<double>& value,
+                      const std::string& description);
+    Option add_option(const std::string& name, std::vector<std::string>& values,
+                      const std::string& description);
+    Option add_option(const std::string& name, std::vector<std::uint64_t>& values,
+                      const std::string& description);
+    /// An option with a value of its own kind: `read` throws UsageError for wrong text.
+    Option add_option(const std::string& name, std::function<void(const std::string&)> read,
+                      const std::string& description);
+    /// An option without a value.
+    Option add_flag(const std::string& name, bool& value, const std::string& description);
+
+    /// Text below the options in the help.
+    void footer(const std::string& text);
+    /// The command's work, in place of an earlier one.
+    void on_run(std::function<void()> work);
+
+    /// The command of that name below this one. Throws std::out_of_range where there is none.
+    [[nodiscard]] Command command(const std::string& name) const;
+
+private:
+    friend class CommandLine;
+    struct Data;
+    explicit Command(Data& data) : data_(&data) {}
+    template<typename T>
+    Option add_value(const std::string& name, T& value, const std::string& description);
+    Data* data_ = nullptr;
+};
+
+/// The whole program's command line.
+class CommandLine {
+public:
+    CommandLine(const std::string& name, const std::string& description,
+                const std::string& version);
+    ~CommandLine();
+    CommandLine(const CommandLine&) = delete;
+    CommandLine& operator=(const CommandLine&) = delete;
+
+    /// The program itself, to add commands to.
+    [[nodiscard]] Command root() const;
+    /// Runs when the line has been read, before a command's work.
+    void before_run(std::function<void()> work);
+
+    /// Reads the arguments, without the program's name, and does the command's work. Returns the
+    /// text that --help or --version ask for, and nothing after work. Throws UsageError for wrong
+    /// usage, and whatever the work throws.
+    [[nodiscard]] std::string run(std::vector<std::string> arguments);
+
+    /// All commands and options, for documentation and completion.
+    [[nodiscard]] CommandTable table() const;
+
+private:
+    std::unique_ptr<Command::Data> data_;
+};
+
+/// A number and nothing else, as options read it: "1.5", "-2e3". None for other text.
+[[nodiscard]] std::optional<double> parse_number(const std::string& text);
+
+/// Decimal digits and nothing else, not above 2^32 - 1. None for other text.
+[[nodiscard]] std::optional<std::uint32_t> parse_count(const std::string& text);
+
+} // namespace relumine::app
