@@ -52,12 +52,12 @@ public:
     Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence,
               Session& session)
         : options_(options), sequence_(sequence), session_(session),
-          pattern_(options.output_pattern()), lit_(options.scene),
+          pattern_(options.output_pattern()), lit_(lit_scene(options.scene)),
           relighter_(lit_.scene().transfer, lit_.shadow_rays()),
           binner_(lit_.scene().transfer, relighter_.shadow_rays().blockers != nullptr
                                              ? relighter_.shadow_rays().tolerance
                                              : 0.0f),
-          writer_(options.output, lit_) {}
+          writer_(lit_, options.output.for_scene(lit_.scene())) {}
 
     void run() {
         if (pattern_)
@@ -298,7 +298,7 @@ private:
     LitScene lit_;
     relight::Relighter relighter_;
     relight::EnvironmentBinner binner_;
-    FrameWriter writer_;
+    Painter writer_;
     std::optional<FrameRecord> record_;
     std::vector<bool> is_there_;
     std::vector<std::size_t> todo_;

@@ -1,12 +1,7 @@
 // How `relumine precompute` survives what stops it.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-
 #include "app/session.h"
-#include "prt/scene/checkpoint_file.h"
 
 namespace relumine::app {
 
@@ -15,10 +10,8 @@ class CheckpointOptions {
 public:
     void add_to(Command& command);
 
-    /// The checkpoint beside `output`; none where it is switched off. Throws std::runtime_error
-    /// when one is to be resumed from that does not fit.
-    [[nodiscard]] std::unique_ptr<prt::CheckpointFile>
-    open(const std::string& output, prt::Fingerprint fingerprint, Session& session) const;
+    [[nodiscard]] bool resume() const { return resume_; }
+    [[nodiscard]] double seconds() const { return seconds_; }
 
 private:
     bool resume_ = false;

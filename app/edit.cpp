@@ -21,7 +21,6 @@
 #include "app/output_options.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/layer_file.h"
-#include "relight/contribution.h"
 #include "relight/light_editor.h"
 
 namespace relumine::app {
@@ -117,13 +116,13 @@ void check_outputs(const Options& options, const cubemap::LightLayers& layers) {
 class Edit {
 public:
     Edit(const Options& options, cubemap::LightLayers layers, Session& session)
-        : options_(options), session_(session), layers_(std::move(layers)), lit_(options.scene),
-          editor_(lit_.scene().transfer, lit_.shadow_rays()) {}
+        : options_(options), session_(session), layers_(std::move(layers)),
+          lit_(lit_scene(options.scene)), editor_(lit_.editor()) {}
 
     void run() {
         check_receivers();
-        LoadedEnvironment environment = load_environment(options_.environment, session_);
-        const relight::RelightTimes full = editor_.set_base(std::move(environment.map));
+        Environment environment = load_environment(options_.environment, session_);
+        const RelightTimes full = editor_.set_base(std::move(environment.map));
         seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
         apply_one_by_one();
         write_output();
@@ -206,23 +205,18 @@ private:
     /// The environment weighted by what it gives to the receiver nearest to the position.
     void save_who() const {
         const glm::vec3 position = parse_vec3("--who", options_.who);
-        const std::vector<glm::vec3>& positions = lit_.scene().receivers.positions;
-        const auto nearest =
-            std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
-                return glm::dot(a - position, a - position) < glm::dot(b - position, b - position);
-            });
-        const auto receiver = static_cast<std::uint32_t>(nearest - positions.begin());
-        const cubemap::CubeMap map = relight::contribution_map(editor_.relighter(), {&receiver, 1});
+        const std::uint32_t receiver = nearest_receiver(lit_.scene(), position);
+        const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
+        const cubemap::CubeMap map = lit_.contribution_map({&receiver, 1});
         save_map(options_.output.path, map, options_.output.exposure_ev);
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
-                                 prt::receiver_name(lit_.scene().layout), receiver, nearest->x,
-                                 nearest->y, nearest->z));
+                                 prt::receiver_name(lit_.scene().layout), receiver, nearest.x,
+                                 nearest.y, nearest.z));
     }
 
     /// The scene as a region of the environment lights it, with that region behind it.
     void save_lit_by() {
-        const LitBy part =
-            lit_by(editor_.relighter(), lit_by_region(options_.lit_by, editor_.layers()));
+        const Share part = lit_.lit_by(lit_by_region(options_.lit_by, editor_.layers()));
         save(options_.output.path, part.radiance, part.environment);
         lit_by_share_ = part.share;
         session_.say(
@@ -237,7 +231,7 @@ private:
         while (const std::optional<Clock::time_point> saved = file.wait(session_.stop())) {
             // A program may save in several steps; what does not load yet will be saved again.
             try {
-                LoadedEnvironment environment = load_environment(options_.environment, session_);
+                Environment environment = load_environment(options_.environment, session_);
                 const double seconds_load = environment.seconds_load + environment.seconds_resample;
                 const relight::UpdateReport report =
                     editor_.update_base(std::move(environment.map));
@@ -268,7 +262,7 @@ private:
     Session& session_;
     cubemap::LightLayers layers_;
     LitScene lit_;
-    relight::LightEditor editor_;
+    relight::LightEditor& editor_;
     double seconds_full_ = 0.0;
     double seconds_edit_ = 0.0;
     double lit_by_share_ = 0.0;

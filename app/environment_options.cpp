@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "cubemap/resample/resample.h"
-
 namespace relumine::app {
 
 namespace {
@@ -26,6 +24,23 @@ constexpr std::array<NamedLayout, cubemap::AllLayouts.size()> Layouts = {{
     {"mirrorball", cubemap::Layout::MirrorBall},
     {"octahedral", cubemap::Layout::Octahedral},
 }};
+
+relumine::EnvironmentOptions options_of(const EnvironmentOptions& options) {
+    relumine::EnvironmentOptions result{.face_resolution = options.face_resolution,
+                                        .fix_bad_pixels = options.fix,
+                                        .rotate_degrees = options.rotate_degrees};
+    if (!options.layout.empty())
+        result.layout = parse_layout(options.layout);
+    return result;
+}
+
+void tell(const EnvironmentOptions& options, const std::string& assumptions,
+          std::size_t num_fixed_pixels, const Session& session) {
+    session.detail(fmt::format("{}: {}", options.path, assumptions));
+    if (num_fixed_pixels != 0)
+        session.say(fmt::format("{}: replaced {} bad pixels", options.path, num_fixed_pixels));
+    session.poll();
+}
 
 } // namespace
 
@@ -59,38 +74,20 @@ void EnvironmentOptions::add_conversion_to(Command& command) {
 }
 
 cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Session& session) {
-    cubemap::LoadOptions load_options{.fix_bad_pixels = options.fix};
-    if (!options.layout.empty())
-        load_options.layout = parse_layout(options.layout);
-    cubemap::EnvironmentImage image = cubemap::load_environment(options.path, load_options);
-    session.detail(fmt::format("{}: {}", options.path, image.assumptions));
-    if (image.fixed)
-        session.say(
-            fmt::format("{}: replaced {} bad pixels", options.path, image.bad_pixels.count()));
-    session.poll();
+    cubemap::EnvironmentImage image = load_environment_image(options.path, options_of(options));
+    tell(options, image.assumptions, image.fixed ? image.bad_pixels.count() : 0, session);
     return image;
 }
 
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                              const EnvironmentOptions& options) {
-    const std::uint32_t resolution =
-        options.face_resolution != 0 ? options.face_resolution : cubemap::natural_resolution(image);
-    cubemap::CubeMap map = cubemap::resample(image, resolution);
-    if (options.rotate_degrees != 0.0)
-        map = cubemap::rotated(map, options.rotate_degrees);
-    return map;
+    return relumine::cube_map_of(image, options_of(options));
 }
 
-LoadedEnvironment load_environment(const EnvironmentOptions& options, const Session& session) {
-    LoadedEnvironment result;
-    Stopwatch watch;
-    const cubemap::EnvironmentImage image = load_image(options, session);
-    result.assumptions = image.assumptions;
-    result.seconds_load = watch.lap();
-    result.map = cube_map_of(image, options);
-    result.seconds_resample = watch.lap();
-    session.poll();
-    return result;
+Environment load_environment(const EnvironmentOptions& options, const Session& session) {
+    Environment environment = relumine::load_environment(options.path, options_of(options));
+    tell(options, environment.assumptions, environment.num_fixed_pixels, session);
+    return environment;
 }
 
 const std::vector<std::string>& layout_names() {

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "app/session.h"
-#include "cubemap/cube_map.h"
-#include "cubemap/image/environment.h"
+#include "relumine/environment.h"
 
 namespace relumine::app {
 
@@ -28,15 +27,6 @@ struct EnvironmentOptions {
     void add_conversion_to(Command& command);
 };
 
-/// An environment ready to light, and where the time went.
-struct LoadedEnvironment {
-    cubemap::CubeMap map;
-    std::string assumptions;
-    double seconds_load = 0.0;
-    /// With the rotation
-    double seconds_resample = 0.0;
-};
-
 /// The image as the file has it. Says on -v what was assumed, and always when pixels were fixed.
 [[nodiscard]] cubemap::EnvironmentImage load_image(const EnvironmentOptions& options,
                                                    const Session& session);
@@ -46,8 +36,8 @@ struct LoadedEnvironment {
                                            const EnvironmentOptions& options);
 
 /// Loads, resamples and rotates. Says on -v what was assumed, and always when pixels were fixed.
-[[nodiscard]] LoadedEnvironment load_environment(const EnvironmentOptions& options,
-                                                 const Session& session);
+[[nodiscard]] Environment load_environment(const EnvironmentOptions& options,
+                                           const Session& session);
 
 /// The names that --layout takes.
 [[nodiscard]] const std::vector<std::string>& layout_names();

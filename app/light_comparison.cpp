@@ -45,13 +45,13 @@ class Comparison {
 public:
     Comparison(const ComparisonOptions& options, const EnvironmentOptions& environment,
                Session& session)
-        : options_(options), session_(session), lit_({.path = options.scene}),
+        : options_(options), session_(session), lit_(lit_scene({.path = options.scene})),
           map_(cube_map_of(load_image(environment, session), environment)),
-          relighter_(lit_.scene().transfer, lit_.shadow_rays()), receivers_(lit_.scene().receivers),
+          receivers_(lit_.scene().receivers),
           sample_(
               relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
         require_diffuse(lit_.scene(), options.scene);
-        relighter_.set_environment(map_);
+        lit_.light(map_);
         exact_ = relight::exact_radiance(receivers_, sample_, lit_.rays(), map_,
                                          {.bias = lit_.scene().settings.bias,
                                           .stop = session.stop(),
@@ -69,7 +69,7 @@ public:
             session_.poll();
             Stopwatch watch;
             const std::vector<lights::DistantLight> list =
-                method == TransferMethod ? lights_for_scene(relighter_, count, session_)
+                method == TransferMethod ? lights_for_scene(lit_.relighter(), count, session_)
                                          : lights::place_lights(*lights::method_named(method), map_,
                                                                 count, options_.seed + i);
             row.seconds_choose += watch.lap() / static_cast<double>(row.num_seeds);
@@ -99,7 +99,6 @@ private:
     Session& session_;
     LitScene lit_;
     cubemap::CubeMap map_;
-    relight::Relighter relighter_;
     const prt::Receivers& receivers_;
     std::vector<std::uint32_t> sample_;
     std::vector<glm::dvec3> exact_;

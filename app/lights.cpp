@@ -100,12 +100,11 @@ cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, const
 /// A scene under the environment, for what depends on both.
 struct Lit {
     LitScene scene;
-    relight::Relighter relighter;
 
     Lit(const std::string& path, const cubemap::CubeMap& environment)
-        : scene({.path = path}), relighter(scene.scene().transfer, scene.shadow_rays()) {
+        : scene(lit_scene({.path = path})) {
         require_diffuse(scene.scene(), path);
-        relighter.set_environment(environment);
+        scene.light(environment);
     }
 
     /// Relative L2 difference of what the lights give to all receivers, traced, from what the
@@ -116,7 +115,7 @@ struct Lit {
         std::iota(all.begin(), all.end(), 0u);
         const std::vector<glm::vec3> under_lights =
             relight::radiance_under(list, receivers.normals, scene.shadow_rays());
-        const std::span<const glm::vec3> environment = relighter.radiance();
+        const std::span<const glm::vec3> environment = scene.radiance();
         return relight::compare(all,
                                 std::vector<glm::dvec3>(environment.begin(), environment.end()),
                                 under_lights)
@@ -129,7 +128,8 @@ lights::Placement place(const Options& options, const cubemap::EnvironmentImage&
     const std::size_t count = options.numbers.front();
     try {
         if (options.method == TransferMethod)
-            return {.lights = lights_for_scene(lit->relighter, count, session), .regions = {}};
+            return {.lights = lights_for_scene(lit->scene.relighter(), count, session),
+                    .regions = {}};
         return lights::place(*lights::method_named(options.method), map, count, options.seed);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", options.environment.path, error.what()));

@@ -7,22 +7,8 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
-#include "cubemap/layers/layer_composite.h"
-#include "relight/contribution.h"
 
 namespace relumine::app {
-
-namespace {
-
-double sum_of(std::span<const glm::vec3> radiance) {
-    double sum = 0.0;
-    for (const glm::vec3& value : radiance)
-        sum += static_cast<double>(value.r) + static_cast<double>(value.g) +
-               static_cast<double>(value.b);
-    return sum;
-}
-
-} // namespace
 
 cubemap::Region lit_by_region(const std::string& text,
                               std::span<const cubemap::LightLayer> layers) {
@@ -54,17 +40,6 @@ cubemap::Region lit_by_region(const std::string& text,
         refuse(fmt::format(": {}", error.what()));
     }
     return disc;
-}
-
-LitBy lit_by(const relight::Relighter& relighter, const cubemap::Region& region) {
-    LitBy result{.environment = relighter.environment()};
-    const std::vector<float> weights = cubemap::coverage_map(region, result.environment.resolution);
-    for (std::size_t texel = 0; texel < weights.size(); ++texel)
-        result.environment.texels[texel] *= weights[texel];
-    result.radiance = relight::radiance_from(relighter, weights);
-    const double all = sum_of(relighter.radiance());
-    result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
-    return result;
 }
 
 } // namespace relumine::app

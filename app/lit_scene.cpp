@@ -1,13 +1,12 @@
 #include "app/lit_scene.h"
 
-#include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "app/session.h"
 #include "mesh/load.h"
-#include "prt/receivers/receivers.h"
 
 namespace relumine::app {
 
@@ -30,56 +29,37 @@ void SceneOptions::add_to(Command& command) {
 
 namespace {
 
-prt::Scene load(const SceneOptions& options) {
+Scene load(const SceneOptions& options) {
     if (!options.mesh_too || !mesh::has_mesh_extension(options.path))
-        return prt::load_scene(options.path);
+        return load_scene(options.path);
     if (options.clusters_only)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene file with --clusters-only, got a mesh", options.path));
-    prt::Scene scene;
-    scene.mesh = mesh::load(options.path);
-    scene.receivers = prt::vertex_receivers(scene.mesh);
-    scene.settings.bias = prt::automatic_bias(scene.mesh);
-    return scene;
+    return unclustered_scene(load_mesh(options.path));
 }
 
-/// Colours are no part of the transfer: they may change.
-void recolour(prt::Scene& scene, const SceneOptions& options) {
-    if (options.albedo.empty() && options.specular.empty())
+void recolour(Scene& scene, const SceneOptions& options) {
+    SurfaceColors colors;
+    if (!options.albedo.empty())
+        colors.albedo = parse_color("--surface-albedo", options.albedo);
+    if (!options.specular.empty())
+        colors.specular = parse_color("--surface-specular", options.specular);
+    if (!colors.albedo && !colors.specular)
         return;
     if (scene.receivers.surfaces.empty())
         throw std::runtime_error(
             fmt::format("{}: expected a scene with materials for --surface-albedo and "
                         "--surface-specular, got one without",
                         options.path));
-    for (prt::Surface& surface : scene.receivers.surfaces) {
-        if (!options.albedo.empty())
-            surface.albedo = parse_color("--surface-albedo", options.albedo);
-        if (!options.specular.empty())
-            surface.specular = parse_color("--surface-specular", options.specular);
-    }
-    prt::set_surfaces(scene.transfer, scene.receivers);
+    set_colors(scene, colors);
 }
 
 } // namespace
 
-LitScene::LitScene(const SceneOptions& options)
-    : scene_(load(options)), rays_(scene_.mesh), clusters_only_(options.clusters_only) {
-    recolour(scene_, options);
-}
-
-relight::ShadowRays LitScene::shadow_rays() const {
-    if (clusters_only_)
-        return {};
-    const prt::SceneSettings& settings = scene_.settings;
-    const float tolerance =
-        settings.epsilon
-            ? *settings.epsilon * std::sqrt(static_cast<float>(scene_.transfer.num_receivers()))
-            : settings.tolerance;
-    return {.blockers = &rays_,
-            .positions = scene_.receivers.positions,
-            .bias = settings.bias,
-            .tolerance = tolerance};
+LitScene lit_scene(const SceneOptions& options) {
+    Scene scene = load(options);
+    recolour(scene, options);
+    return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
 }
 
 } // namespace relumine::app

@@ -4,9 +4,7 @@
 #include <string>
 
 #include "app/command_line.h"
-#include "prt/scene/scene_file.h"
-#include "prt/visibility/ray_scene.h"
-#include "relight/light_packets.h"
+#include "relumine/lit_scene.h"
 
 namespace relumine::app {
 
@@ -24,24 +22,8 @@ struct SceneOptions {
     void add_to(Command& command);
 };
 
-/// The scene with its ray accelerator. Not movable: the shadow rays point into it.
-class LitScene {
-public:
-    explicit LitScene(const SceneOptions& options);
-    LitScene(const LitScene&) = delete;
-    LitScene& operator=(const LitScene&) = delete;
-
-    [[nodiscard]] const prt::Scene& scene() const { return scene_; }
-    /// False for a mesh: its transfer is empty.
-    [[nodiscard]] bool has_clusters() const { return scene_.transfer.num_receivers() != 0; }
-    [[nodiscard]] const prt::RayScene& rays() const { return rays_; }
-    /// For the Relighter: tracing of sharp lights, unless --clusters-only.
-    [[nodiscard]] relight::ShadowRays shadow_rays() const;
-
-private:
-    prt::Scene scene_;
-    prt::RayScene rays_;
-    bool clusters_only_;
-};
+/// The scene, or the mesh, ready to be lit. Throws std::runtime_error for a file that cannot be
+/// read or has no use for the options, UsageError for their wrong text.
+[[nodiscard]] LitScene lit_scene(const SceneOptions& options);
 
 } // namespace relumine::app

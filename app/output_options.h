@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -11,8 +10,7 @@
 
 #include "app/command_line.h"
 #include "app/lit_scene.h"
-#include "cubemap/cube_map.h"
-#include "relight/pictures/picture.h"
+#include "relumine/output.h"
 
 namespace relumine::app {
 
@@ -42,7 +40,11 @@ struct OutputOptions {
 
     /// Refuses outputs and options that the scene's receivers have no use for: meshes of pixels and
     /// texels, a camera where there is none to choose. Throws std::runtime_error.
-    void check_fits(const prt::Scene& scene) const;
+    void check_fits(const Scene& scene) const;
+
+    /// The same for the library: camera and colours as this scene has them. Throws
+    /// std::runtime_error for colours that its mesh does not have.
+    [[nodiscard]] relumine::OutputOptions for_scene(const Scene& scene) const;
 
     /// Writes by extension: .png .exr pictures (of texel receivers: their lightmap), .ply .glb
     /// meshes with vertex colours, .npy numbers.
@@ -51,8 +53,7 @@ struct OutputOptions {
 
     /// What to tell the user where a .png comes out far too bright or too dark and no exposure was
     /// chosen: "; --exposure -3 suits it better", else nothing, as where the session is silent.
-    [[nodiscard]] std::string exposure_hint(const prt::Scene& scene,
-                                            std::span<const glm::vec3> radiance,
+    [[nodiscard]] std::string exposure_hint(const Scene& scene, std::span<const glm::vec3> radiance,
                                             const Session& session) const;
 
 private:
@@ -61,33 +62,11 @@ private:
     std::vector<Option> camera_options_;
 };
 
-/// Writes many frames of a scene that stands still: what the camera sees is found once.
-class FrameWriter {
-public:
-    /// `lit` must outlive it.
-    FrameWriter(const OutputOptions& options, const LitScene& lit) : options_(options), lit_(lit) {}
-    /// As OutputOptions::save() to another path of the same extension; bit by bit the same file.
-    void save(const std::string& path, std::span<const glm::vec3> radiance,
-              const cubemap::CubeMap& environment);
-    /// Radiance times albedo and exposure: what a .npy holds.
-    [[nodiscard]] std::vector<glm::vec3> values(std::span<const glm::vec3> radiance) const;
-
-private:
-    OutputOptions options_;
-    const LitScene& lit_;
-    /// Once there is a picture
-    std::unique_ptr<relight::PictureView> view_;
-};
-
 /// A path's extension in small letters, with the dot.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
 /// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever
 /// name.
 void check_output(const std::string& path, const std::vector<std::string>& inputs);
-
-/// Writes a cube map as a lat-long picture: .exr (linear), or .png with the brightest thousandth
-/// white, then exposed.
-void save_map(const std::string& path, const cubemap::CubeMap& map, double exposure_ev);
 
 } // namespace relumine::app

@@ -1,10 +1,11 @@
-#include "prt/precompute.h"
+#include "relumine/precompute.h"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,13 +15,6 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "app/surface_options.h"
-#include "mesh/floor.h"
-#include "mesh/load.h"
-#include "prt/glossy/glossy_precompute.h"
-#include "prt/scene/fingerprint.h"
-#include "prt/scene/scene_file.h"
-#include "prt/visibility/beam_scene.h"
-#include "prt/visibility/ray_scene.h"
 
 namespace relumine::app {
 
@@ -31,71 +25,120 @@ struct Options {
     std::string output;
     std::string normals = "file";
     std::string engine = "beam";
-    std::optional<std::uint32_t> floor_vertices;
-    float floor_scale = 4.0f;
-    std::optional<float> bias;
+    MeshOptions mesh_options;
     ReceiverOptions receivers;
     SurfaceOptions surfaces;
     CheckpointOptions checkpoint;
     MemoryOption memory;
-    prt::PrecomputeOptions precompute;
+    PrecomputeOptions precompute;
 };
 
-/// Both parts of the transfer. `rays` and all it is made of go before the scene is written, which
-/// needs memory of its own.
-void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& precompute,
-             std::unique_ptr<prt::CheckpointFile>& checkpoint,
-             prt::PrecomputeStatistics& statistics, Session& session, Report& report) {
-    prt::SceneSizes sizes{.num_vertices = scene.mesh.num_vertices(),
-                          .num_triangles = scene.mesh.num_triangles(),
-                          .has_beams = options.engine == "beam"};
-    options.memory.check_scene(sizes, options.mesh);
-    const prt::RayScene rays(scene.mesh);
-    options.receivers.apply(scene, rays, options.mesh, session, report);
-    options.surfaces.apply(scene, session);
-    session.poll();
-    const bool is_glossy = prt::has_highlights(scene.receivers);
-    checkpoint = options.checkpoint.open(
-        options.output,
-        prt::fingerprint(scene.mesh, scene.receivers, precompute,
-                         is_glossy ? std::optional(options.surfaces.glossy_tolerance())
-                                   : std::nullopt),
-        session);
-    precompute.checkpoint = checkpoint.get();
-    precompute.more_follows = is_glossy;
-    {
-        std::optional<prt::BeamScene> beams;
-        if (options.engine == "beam")
-            beams.emplace(scene.mesh, rays);
-        const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-        sizes.num_receivers = scene.receivers.size();
-        options.memory.check_estimate(sizes, scene.receivers, blockers, options.mesh, precompute,
-                                      session, report);
-        try {
-            scene.transfer = prt::precompute(scene.receivers, blockers, precompute, &statistics);
-        } catch (const prt::TooManyClusters& error) {
-            throw std::runtime_error(options.memory.stopped(error, options.mesh));
-        }
-        session.end_progress();
-    }
-    options.surfaces.precompute_highlights(
-        scene, rays, precompute, options.memory.max_glossy_bytes(sizes, statistics.column_bytes),
-        options.mesh, session, report);
+/// Everything that the command line says of the work.
+PrecomputeOptions precompute_options(const Options& options, const mesh::TriangleMesh& mesh,
+                                     Session& session) {
+    PrecomputeOptions result = options.precompute;
+    result.engine = options.engine == "beam" ? Engine::Beams : Engine::Embree;
+    result.receivers = options.receivers.receivers();
+    result.view = options.receivers.view();
+    result.surface = options.surfaces.surface(mesh);
+    result.glossy_tolerance = options.surfaces.glossy_tolerance();
+    result.max_memory = options.memory.max_bytes();
+    result.output = options.output;
+    result.checkpoint_seconds = options.checkpoint.seconds();
+    result.resume = options.checkpoint.resume();
+    result.stop = session.stop();
+    result.on_progress = [&session, clusters = session.progress("precompute"),
+                          highlights = session.progress("highlights"),
+                          last = Stage::Clusters](Stage stage, double fraction) mutable {
+        if (std::exchange(last, stage) != stage)
+            session.end_progress();
+        if (const auto& show = stage == Stage::Clusters ? clusters : highlights)
+            show(fraction);
+    };
+    result.on_warning = [&session](const std::string& message) {
+        session.warn(message);
+    };
+    result.on_note = [&session](const std::string& message) {
+        session.detail(message);
+    };
+    return result;
 }
 
-std::uint64_t save(const Options& options, prt::Scene& scene,
-                   const prt::PrecomputeOptions& precompute) {
-    scene.settings = {.tolerance = precompute.tolerance,
-                      .epsilon = precompute.epsilon,
-                      .min_level = precompute.min_level,
-                      .face_resolution = precompute.face_resolution,
-                      .bias = precompute.bias,
-                      .floor_vertices = options.floor_vertices.value_or(0),
-                      .source = std::filesystem::path(options.mesh).filename().string(),
-                      .source_hash = prt::file_hash(options.mesh),
-                      .glossy_tolerance = scene.settings.glossy_tolerance,
-                      .view = scene.settings.view};
-    return prt::save_scene(options.output, scene);
+/// The option that helps where the memory does not suffice.
+std::string advice(MemoryLimitExceeded::Part part) {
+    if (part == MemoryLimitExceeded::Part::Clusters)
+        return "; a larger --tolerance takes less";
+    if (part == MemoryLimitExceeded::Part::Highlights)
+        return "; a larger --glossy-tolerance takes less";
+    return "";
+}
+
+Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report) {
+    const auto with_checkpoint = [&](const std::string& message) {
+        return report.checkpoint.empty()
+                   ? message
+                   : fmt::format("{}; the same command with --resume goes on from {}", message,
+                                 report.checkpoint.string());
+    };
+    try {
+        return precompute(std::move(mesh), options, &report);
+    } catch (const MemoryLimitExceeded& error) {
+        throw std::runtime_error(with_checkpoint(error.what() + advice(error.part)));
+    } catch (const std::exception& error) {
+        if (report.checkpoint.empty())
+            throw;
+        throw std::runtime_error(with_checkpoint(error.what()));
+    }
+}
+
+Report glossy_report(const PrecomputeOptions& options, const PrecomputeReport& facts,
+                     const prt::Transfer& transfer, const Session& session) {
+    const prt::GlossyStatistics& statistics = *facts.highlights;
+    const double cells_per_block = static_cast<double>(statistics.num_entries) /
+                                   static_cast<double>(transfer.counts.num_blocks());
+    const std::size_t bytes = transfer.glossy->num_bytes();
+    session.say(fmt::format(
+        "highlights: {:.0f} cells per block of {} receivers in {:.1f} s, {:.1f} MB",
+        cells_per_block, prt::BlockSize, statistics.seconds, static_cast<double>(bytes) * 1e-6));
+    return {{"tolerance", options.glossy_tolerance},
+            {"cells", statistics.num_entries},
+            {"cells_per_block", cells_per_block},
+            {"rays", statistics.num_rays},
+            {"seconds", statistics.seconds},
+            {"bytes", bytes},
+            {"narrowest_roughness", prt::narrowest_roughness(options.face_resolution)}};
+}
+
+Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts,
+                 const Scene& scene, const Session& session) {
+    const prt::PrecomputeStatistics& clusters = facts.clusters;
+    Report report = {{"vertices", facts.num_vertices},
+                     {"receivers", facts.num_receivers},
+                     {"triangles", facts.num_triangles},
+                     {"clusters", clusters.num_clusters},
+                     {"directions", clusters.num_directions},
+                     {"samples", clusters.num_samples},
+                     {"rays", clusters.num_rays},
+                     {"deepest_level", clusters.deepest_level},
+                     {"column_bytes", clusters.column_bytes},
+                     {"bias", facts.bias},
+                     {"seconds_clustering", clusters.seconds},
+                     {"seconds_checkpoints", clusters.seconds_checkpoints},
+                     {"peak_bytes", peak_bytes()},
+                     {"file_bytes", facts.file_bytes}};
+    if (const Report layout = layout_json(scene); !layout.empty())
+        report.set("layout", layout);
+    if (facts.atlas)
+        report.update(atlas_json(*facts.atlas, std::get<prt::TexelLayout>(scene.layout)));
+    if (facts.memory) {
+        report.set("memory_estimate", facts.memory->peak_bytes);
+        report.set("clusters_estimate", facts.memory->num_clusters);
+    }
+    if (facts.highlights_estimate)
+        report.set("highlights_estimate", *facts.highlights_estimate);
+    if (facts.highlights)
+        report.set("glossy", glossy_report(options, facts, scene.transfer, session));
+    return report;
 }
 
 void run(const Options& options, Session& session) {
@@ -108,62 +151,30 @@ void run(const Options& options, Session& session) {
     options.receivers.check();
     options.surfaces.check();
 
-    prt::Scene scene;
-    scene.mesh = mesh::load(options.mesh, options.normals == "smooth" ? mesh::NormalSource::Smooth
-                                                                      : mesh::NormalSource::File);
-    if (options.floor_vertices)
-        mesh::append_floor(scene.mesh, *options.floor_vertices, options.floor_scale);
-    const std::size_t num_vertices = scene.mesh.num_vertices();
-    const std::size_t num_triangles = scene.mesh.num_triangles();
-    session.detail(
-        fmt::format("{}: {} vertices, {} triangles", options.mesh, num_vertices, num_triangles));
+    MeshOptions mesh_options = options.mesh_options;
+    mesh_options.normals =
+        options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
+    Mesh mesh = load_mesh(options.mesh, mesh_options);
+    session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
+                               mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
 
-    prt::PrecomputeOptions precompute = options.precompute;
-    precompute.bias = options.bias.value_or(prt::automatic_bias(scene.mesh));
-    precompute.stop = session.stop();
-    precompute.on_progress = session.progress("precompute");
-    prt::PrecomputeStatistics statistics;
-    Report report;
-    std::unique_ptr<prt::CheckpointFile> checkpoint;
-    std::uint64_t file_bytes = 0;
-    try {
-        compute(options, scene, precompute, checkpoint, statistics, session, report);
-        file_bytes = save(options, scene, precompute);
-    } catch (const std::exception& error) {
-        if (!checkpoint || !checkpoint->exists())
-            throw;
-        throw std::runtime_error(
-            fmt::format("{}; the same command with --resume goes on from {}", error.what(),
-                        prt::CheckpointFile::folder_for(options.output).string()));
-    }
-    if (checkpoint)
-        checkpoint->remove();
+    const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
+    PrecomputeReport facts;
+    const Scene scene = precomputed(std::move(mesh), work, facts);
+    session.end_progress();
 
+    Report report = report_of(work, facts, scene, session);
     const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
-    const std::string others = on_vertices
-                                   ? ""
-                                   : fmt::format(", {} receivers ({})", scene.receivers.size(),
-                                                 prt::description(scene.layout));
+    const std::string others = on_vertices ? ""
+                                           : fmt::format(", {} receivers ({})", facts.num_receivers,
+                                                         prt::description(scene.layout));
+    const prt::PrecomputeStatistics& clusters = facts.clusters;
     session.say(fmt::format(
         "{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({:.1f} M rays/s), {:.1f} MB",
-        options.output, num_vertices, num_triangles, others, statistics.num_clusters,
-        statistics.seconds, static_cast<double>(statistics.num_rays) / statistics.seconds * 1e-6,
-        static_cast<double>(file_bytes) * 1e-6));
-    report.update({{"vertices", num_vertices},
-                   {"receivers", scene.receivers.size()},
-                   {"triangles", num_triangles},
-                   {"clusters", statistics.num_clusters},
-                   {"directions", statistics.num_directions},
-                   {"samples", statistics.num_samples},
-                   {"rays", statistics.num_rays},
-                   {"deepest_level", statistics.deepest_level},
-                   {"column_bytes", statistics.column_bytes},
-                   {"bias", precompute.bias},
-                   {"seconds", watch.total()},
-                   {"seconds_clustering", statistics.seconds},
-                   {"seconds_checkpoints", statistics.seconds_checkpoints},
-                   {"peak_bytes", peak_bytes()},
-                   {"file_bytes", file_bytes}});
+        options.output, facts.num_vertices, facts.num_triangles, others, clusters.num_clusters,
+        clusters.seconds, static_cast<double>(clusters.num_rays) / clusters.seconds * 1e-6,
+        static_cast<double>(facts.file_bytes) * 1e-6));
+    report.set("seconds", watch.total());
     session.report(report);
 }
 
@@ -183,15 +194,15 @@ void add_precompute(Command& program, Session& session) {
         .add_option(
             "--floor",
             [options](const std::string& text) {
-                options->floor_vertices = text.empty() ? 193 : parse_count(text);
-                if (!options->floor_vertices)
+                options->mesh_options.floor_vertices = text.empty() ? 193 : parse_count(text);
+                if (!options->mesh_options.floor_vertices)
                     throw UsageError("--floor", fmt::format("expected a number, got '{}'", text));
             },
             "add a floor of N x N vertices under the mesh; 193 when no N is given")
         .value_is_optional()
         .type_name("[N]");
     command
-        .add_option("--floor-scale", options->floor_scale,
+        .add_option("--floor-scale", options->mesh_options.floor_scale,
                     "side of the floor over the mesh's width")
         .needs("--floor")
         .show_default();
@@ -214,7 +225,7 @@ void add_precompute(Command& program, Session& session) {
         .add_option("--face-resolution", options->precompute.face_resolution,
                     "R: cells stop at single texels of a 6 x R x R environment")
         .show_default();
-    command.add_option("--bias", options->bias,
+    command.add_option("--bias", options->precompute.bias,
                        "lift of the rays' origins off the surface, in the mesh's unit");
     command
         .add_option("--engine", options->engine,

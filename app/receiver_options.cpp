@@ -6,13 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "prt/receivers/pixel_receivers.h"
-#include "prt/receivers/texel_receivers.h"
-#include "relight/pictures/picture.h"
-
 namespace relumine::app {
-
-namespace {} // namespace
 
 void ReceiverOptions::add_to(Command& command) {
     command
@@ -27,10 +21,9 @@ void ReceiverOptions::add_to(Command& command) {
         "(eye, target, vertical degrees: 35) or auto");
 }
 
-ReceiverOptions::Wanted ReceiverOptions::wanted() const {
-    Wanted wanted;
+std::variant<Vertices, Pixels, Texels> ReceiverOptions::receivers() const {
     if (receivers_ == "vertices")
-        return wanted;
+        return Vertices{};
     const auto refuse = [&] {
         throw UsageError(
             "--receivers",
@@ -42,13 +35,13 @@ ReceiverOptions::Wanted ReceiverOptions::wanted() const {
     std::getline(text, kind, ':');
     if (kind != "pixels" && kind != "texels")
         refuse();
-    wanted.kind = kind == "pixels" ? Kind::Pixels : Kind::Texels;
+    const bool are_pixels = kind == "pixels";
     // Unsigned numbers would take a minus sign.
     std::int64_t width = 0, height = 0, samples = 1;
     char x = 0, colon = ':', rest = 0;
     if (!(text >> width >> x >> height) || x != 'x')
         refuse();
-    if (wanted.kind == Kind::Pixels && text.peek() == ':' && !(text >> colon >> samples))
+    if (are_pixels && text.peek() == ':' && !(text >> colon >> samples))
         refuse();
     if (text >> rest)
         refuse();
@@ -64,15 +57,20 @@ ReceiverOptions::Wanted ReceiverOptions::wanted() const {
     if (static_cast<std::size_t>(width * height * samples * samples) > prt::MaxLayoutPlaces)
         throw UsageError("--receivers", fmt::format("expected at most {} samples in all, got '{}'",
                                                     prt::MaxLayoutPlaces, receivers_));
-    wanted.width = static_cast<std::uint32_t>(width);
-    wanted.height = static_cast<std::uint32_t>(height);
-    wanted.samples_per_axis = static_cast<std::uint32_t>(samples);
-    return wanted;
+    const Texels size{.width = static_cast<std::uint32_t>(width),
+                      .height = static_cast<std::uint32_t>(height)};
+    if (!are_pixels)
+        return size;
+    return Pixels{.width = size.width,
+                  .height = size.height,
+                  .samples_per_axis = static_cast<std::uint32_t>(samples)};
 }
 
-std::optional<prt::Camera> ReceiverOptions::camera() const {
-    if (view_ == "auto")
+std::optional<View> ReceiverOptions::view() const {
+    if (view_.empty())
         return std::nullopt;
+    if (view_ == "auto")
+        return View{};
     std::vector<float> numbers;
     std::istringstream text(view_);
     for (std::string word; std::getline(text, word, ',');) {
@@ -93,86 +91,13 @@ std::optional<prt::Camera> ReceiverOptions::camera() const {
     } catch (const std::invalid_argument& error) {
         throw UsageError("--view", error.what());
     }
-    return camera;
+    return View{camera};
 }
 
 void ReceiverOptions::check() const {
-    const bool pixels = wanted().kind == Kind::Pixels;
-    if (pixels && view_.empty())
+    if (std::holds_alternative<Pixels>(receivers()) && view_.empty())
         throw UsageError("--receivers", "expected --view (a camera, or auto) with pixels");
-    if (!view_.empty())
-        static_cast<void>(camera());
-}
-
-void ReceiverOptions::apply(prt::Scene& scene, const prt::RayScene& rays,
-                            const std::string& mesh_name, Session& session, Report& report) const {
-    const Wanted wanted = this->wanted();
-    try {
-        if (wanted.kind == Kind::Pixels)
-            apply_pixels(wanted, scene, rays, session, report);
-        else if (wanted.kind == Kind::Texels)
-            apply_texels(wanted, scene, session, report);
-        else
-            scene.receivers = prt::vertex_receivers(scene.mesh);
-        if (wanted.kind != Kind::Pixels && !view_.empty())
-            apply_eye(scene);
-    } catch (const std::invalid_argument& error) {
-        throw std::runtime_error(fmt::format("{}: {}", mesh_name, error.what()));
-    }
-}
-
-/// Receivers that are no pixels of the view but seen from it.
-void ReceiverOptions::apply_eye(prt::Scene& scene) const {
-    const std::optional<prt::Camera> own = camera();
-    scene.settings.view = own ? *own : relight::automatic_camera(scene.mesh);
-    prt::look_from(scene.receivers, scene.settings.view->eye);
-}
-
-void ReceiverOptions::apply_pixels(const Wanted& wanted, prt::Scene& scene,
-                                   const prt::RayScene& rays, const Session& session,
-                                   Report& report) const {
-    const std::optional<prt::Camera> own = camera();
-    prt::PixelReceivers pixels = prt::pixel_receivers(
-        scene.mesh, rays,
-        {.camera = own ? *own
-                       : relight::automatic_camera(
-                             scene.mesh, {.width = wanted.width, .height = wanted.height}),
-         .width = wanted.width,
-         .height = wanted.height,
-         .samples_per_axis = wanted.samples_per_axis});
-    scene.receivers = std::move(pixels.receivers);
-    scene.layout = std::move(pixels.layout);
-    report.set("layout", layout_json(scene));
-    session.detail(fmt::format("{}: {} samples hit the mesh", prt::description(scene.layout),
-                               scene.receivers.size()));
-}
-
-void ReceiverOptions::apply_texels(const Wanted& wanted, prt::Scene& scene, Session& session,
-                                   Report& report) {
-    prt::TexelReceivers texels =
-        prt::texel_receivers(scene.mesh, {.width = wanted.width, .height = wanted.height});
-    const prt::AtlasReport& atlas = texels.report;
-    if (atlas.num_overlapping > 0)
-        session.warn(fmt::format("{} texels lie in several triangles, the first at column {}, row "
-                                 "{}: charts overlap, the first triangle of the mesh wins",
-                                 atlas.num_overlapping, atlas.first_overlap % wanted.width,
-                                 atlas.first_overlap / wanted.width));
-    if (atlas.num_outside > 0)
-        session.warn(fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
-                                 atlas.num_outside));
-    if (atlas.num_flat > 0)
-        session.detail(
-            fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
-    scene.receivers = std::move(texels.receivers);
-    scene.layout = std::move(texels.layout);
-    report.set("layout", layout_json(scene));
-    report.set("texels_overlapping", atlas.num_overlapping);
-    report.set("texels_on_borders", atlas.num_borders);
-    report.set("triangles_outside", atlas.num_outside);
-    report.set("triangles_flat_in_uv", atlas.num_flat);
-    if (atlas.num_overlapping > 0)
-        report.set("first_overlap", std::vector<Report>{atlas.first_overlap % wanted.width,
-                                                        atlas.first_overlap / wanted.width});
+    static_cast<void>(view());
 }
 
 Report layout_json(const prt::Scene& scene) {
@@ -192,6 +117,17 @@ Report layout_json(const prt::Scene& scene) {
                 {"height", texels->height},
                 {"coverage", num_receivers / static_cast<double>(texels->num_texels())}};
     return {};
+}
+
+Report atlas_json(const prt::AtlasReport& atlas, const prt::TexelLayout& texels) {
+    Report report = {{"texels_overlapping", atlas.num_overlapping},
+                     {"texels_on_borders", atlas.num_borders},
+                     {"triangles_outside", atlas.num_outside},
+                     {"triangles_flat_in_uv", atlas.num_flat}};
+    if (atlas.num_overlapping > 0)
+        report.set("first_overlap", std::vector<Report>{atlas.first_overlap % texels.width,
+                                                        atlas.first_overlap / texels.width});
+    return report;
 }
 
 void require_vertices(const prt::Scene& scene, const std::string& path) {

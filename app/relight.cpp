@@ -11,8 +11,6 @@
 #include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "lights/light_file.h"
-#include "relight/light_packets.h"
-#include "relight/relighter.h"
 
 namespace relumine::app {
 
@@ -28,24 +26,23 @@ struct Options {
 
 void light_with_environment(const Options& options, Session& session) {
     Stopwatch watch;
-    const LitScene lit(options.scene);
+    LitScene lit = lit_scene(options.scene);
     if (!lit.has_clusters())
         throw std::runtime_error(
             fmt::format("{}: expected a scene file (`relumine precompute`) or --lights, got a mesh",
                         options.scene.path));
-    const prt::Scene& scene = lit.scene();
+    const Scene& scene = lit.scene();
     options.output.check_fits(scene);
     const double seconds_load_scene = watch.lap();
     session.poll();
 
-    LoadedEnvironment environment = load_environment(options.environment, session);
-    const std::uint32_t resolution = environment.map.resolution;
-    relight::Relighter relighter(scene.transfer, lit.shadow_rays());
-    const relight::RelightTimes times = relighter.set_environment(std::move(environment.map));
+    Environment environment = load_environment(options.environment, session);
+    const RelightTimes times = lit.light(std::move(environment.map));
+    const std::uint32_t resolution = lit.environment().resolution;
     session.poll();
 
     watch.lap();
-    options.output.save(lit, relighter.radiance(), relighter.environment());
+    options.output.save(lit, lit.radiance(), lit.environment());
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
@@ -54,7 +51,7 @@ void light_with_environment(const Options& options, Session& session) {
         options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
         1e3 * environment.seconds_load, 1e3 * environment.seconds_resample, 1e3 * times.seconds_bin,
         1e3 * times.seconds_trace, times.num_sharp_lights, 1e3 * times.seconds_relight,
-        options.output.exposure_hint(scene, relighter.radiance(), session)));
+        options.output.exposure_hint(scene, lit.radiance(), session)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -69,36 +66,25 @@ void light_with_environment(const Options& options, Session& session) {
                     {"seconds_output", seconds_output}});
 }
 
-/// Radiance of all vertices, each light with shadow rays of its own, or through its cluster.
-std::vector<glm::vec3> radiance_under(const lights::LightList& list, const LitScene& lit) {
-    if (lit.has_clusters()) {
-        relight::Relighter relighter(lit.scene().transfer, lit.shadow_rays());
-        relighter.set_lights(list.lights);
-        return {relighter.radiance().begin(), relighter.radiance().end()};
-    }
-    return relight::radiance_under(list.lights, lit.scene().receivers.normals, lit.shadow_rays());
-}
-
 void light_with_list(const Options& options, Session& session) {
     Stopwatch watch;
     const lights::LightList list = lights::load_lights(options.lights);
-    const LitScene lit(options.scene);
+    LitScene lit = lit_scene(options.scene);
     options.output.check_fits(lit.scene());
     const double seconds_load_scene = watch.lap();
     session.poll();
-    const std::vector<glm::vec3> radiance = radiance_under(list, lit);
+    lit.light(list.lights);
     const double seconds_light = watch.lap();
     session.poll();
-    options.output.save(lit, radiance,
-                        cubemap::CubeMap(1)); // nothing but lights: a black background
+    options.output.save(lit, lit.radiance(), lit.environment());
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
         "{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
-        radiance.size(), list.lights.size(), options.lights, 1e3 * seconds_light,
+        lit.radiance().size(), list.lights.size(), options.lights, 1e3 * seconds_light,
         options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
-        options.output.exposure_hint(lit.scene(), radiance, session)));
-    session.report({{"receivers", radiance.size()},
+        options.output.exposure_hint(lit.scene(), lit.radiance(), session)));
+    session.report({{"receivers", lit.radiance().size()},
                     {"lights", list.lights.size()},
                     {"traced", !options.scene.clusters_only},
                     {"seconds_load_scene", seconds_load_scene},

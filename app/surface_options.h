@@ -1,4 +1,4 @@
-// What the surfaces of a precomputed scene are made of, and their highlights.
+// What the surfaces of a precomputed scene are made of.
 #pragma once
 
 #include <string>
@@ -6,9 +6,7 @@
 
 #include "app/session.h"
 #include "prt/glossy/glossy_precompute.h"
-#include "prt/precompute.h"
-#include "prt/scene/scene_file.h"
-#include "prt/visibility/ray_scene.h"
+#include "prt/glossy/surface_sampling.h"
 
 namespace relumine::app {
 
@@ -20,20 +18,11 @@ public:
     /// Refuses wrong usage before any work is done.
     void check() const;
 
-    /// Gives the scene's receivers their surfaces: the mesh's materials, changed by the options.
-    /// None where there are neither.
-    void apply(prt::Scene& scene, Session& session) const;
+    /// What the options make of a mesh's surfaces; empty without --material. Throws UsageError for
+    /// a group that the mesh does not have.
+    [[nodiscard]] prt::SurfaceOverride surface(const mesh::TriangleMesh& mesh) const;
 
     [[nodiscard]] float glossy_tolerance() const { return glossy_tolerance_; }
-
-    /// Computes the glossy part of the scene's transfer, where its receivers have highlights and an
-    /// eye. `precompute` is what the diffuse part was computed with, its checkpoint included.
-    /// Throws std::runtime_error when it takes more than `max_bytes`, or would by an estimate;
-    /// `mesh` is for that message.
-    void precompute_highlights(prt::Scene& scene, const prt::RayScene& rays,
-                               const prt::PrecomputeOptions& precompute,
-                               std::optional<std::uint64_t> max_bytes, const std::string& mesh,
-                               Session& session, Report& report) const;
 
 private:
     std::vector<std::string> materials_;

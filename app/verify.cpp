@@ -6,8 +6,6 @@
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
-#include "relight/exact.h"
-#include "relight/relighter.h"
 
 namespace relumine::app {
 
@@ -21,28 +19,22 @@ struct Options {
 };
 
 void run(const Options& options, Session& session) {
-    const LitScene lit(options.scene);
-    const prt::Scene& scene = lit.scene();
-    const LoadedEnvironment environment = load_environment(options.environment, session);
-    const std::vector<glm::vec3> relit =
-        relight::relight(scene.transfer, environment.map, lit.shadow_rays());
+    LitScene lit = lit_scene(options.scene);
+    lit.light(load_environment(options.environment, session));
 
     Stopwatch watch;
-    const std::vector<std::uint32_t> sample =
-        relight::random_receivers(scene.transfer, options.num_samples, options.seed);
-    const std::vector<glm::dvec3> exact =
-        relight::exact_radiance(scene.receivers, sample, lit.rays(), environment.map,
-                                {.bias = scene.settings.bias,
-                                 .stop = session.stop(),
-                                 .on_progress = session.progress("exact integration")});
+    const Verification check = lit.verify({.num_samples = options.num_samples,
+                                           .seed = options.seed,
+                                           .stop = session.stop(),
+                                           .on_progress = session.progress("exact integration")});
     session.end_progress();
-    const relight::ErrorReport error = relight::compare(sample, exact, relit);
+    const relight::ErrorReport& error = check.error;
     const double seconds = watch.lap();
 
-    const glm::vec3& worst = scene.receivers.positions[error.worst_receiver];
-    const std::string name = prt::receiver_name(scene.layout);
-    session.say(fmt::format("{} receivers, R = {}, exact integration in {:.1f} s", sample.size(),
-                            environment.map.resolution, seconds));
+    const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
+    const std::string name = prt::receiver_name(lit.scene().layout);
+    session.say(fmt::format("{} receivers, R = {}, exact integration in {:.1f} s",
+                            check.receivers.size(), lit.environment().resolution, seconds));
     session.say(fmt::format(
         "relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} % of the mean radiance {:.4g}",
         error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs, error.mean_radiance));
@@ -51,11 +43,11 @@ void run(const Options& options, Session& session) {
     session.report({{"relative_l2", error.relative_l2},
                     {"mean_abs", error.mean_abs},
                     {"max_abs", error.max_abs},
-                    {"samples", sample.size()},
+                    {"samples", check.receivers.size()},
                     {"mean_radiance", error.mean_radiance},
                     {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
                     {"worst_position", worst},
-                    {"face_resolution", environment.map.resolution},
+                    {"face_resolution", lit.environment().resolution},
                     {"seconds", seconds}});
 }
 

@@ -99,7 +99,7 @@ void run(const Options& options, Session& session) {
         view.script =
             std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
 
-    const LitScene lit(options.scene);
+    LitScene lit = lit_scene(options.scene);
     require_vertices(lit.scene(), options.scene.path);
     session.poll();
     const auto load = [&](const std::filesystem::path& path) {
@@ -108,7 +108,7 @@ void run(const Options& options, Session& session) {
         environment.rotate_degrees = 0.0; // the window turns it itself
         return load_environment(environment, session).map;
     };
-    relight::LightEditor editor(lit.scene().transfer, lit.shadow_rays());
+    relight::LightEditor& editor = lit.editor();
     const std::string& path = options.environment.path;
     editor.set_rotation(options.environment.rotate_degrees);
     editor.set_base(path.empty() ? plain_grey() : load(path));

@@ -67,6 +67,7 @@ struct LitScene::Impl {
             made->set_base(relighter->environment());
         editor = std::move(made);
         relighter.reset();
+        is_lit_by_list = false;
         return *editor;
     }
 
@@ -86,6 +87,11 @@ struct LitScene::Impl {
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
     : impl_(std::make_unique<Impl>(std::move(scene), options)) {
+    const Scene& own = impl_->scene;
+    if (has_clusters() && own.receivers.size() != own.transfer.num_receivers())
+        throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",
+                                                own.receivers.size(),
+                                                own.transfer.num_receivers()));
     if (options.clusters_only)
         impl_->require_clusters();
 }

@@ -76,7 +76,8 @@ class LitScene {
 public:
     /// Builds the ray accelerator, O(n log n); nothing is lit yet.
     ///
-    /// Throws:  std::invalid_argument for clusters_only with a scene that has no clusters.
+    /// Throws:  std::invalid_argument for a transfer of other receivers, and for clusters_only with
+    ///          a scene that has no clusters.
     explicit LitScene(Scene scene, const LightOptions& options = {});
     ~LitScene();
     LitScene(LitScene&&) noexcept;

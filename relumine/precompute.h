@@ -162,8 +162,7 @@ struct MemoryLimitExceeded : std::runtime_error {
 /// Throws:  std::invalid_argument for options out of range; std::runtime_error "SOURCE: ..." for a
 ///          view that sees nothing, a mesh without uvs for texels, a checkpoint of other work, a
 ///          file that cannot be written; MemoryLimitExceeded; Cancelled.
-/// Cost:    seconds to minutes: receivers times directions rays. 8 s for the bunny on its floor
-///          (73,196 vertices, docs/measurements.md).
+/// Cost:    O(receivers times directions) rays: docs/measurements.md has examples.
 /// Memory:  the result twice, and half a gigabyte; less with max_memory.
 /// Threads: parallel inside; the result is the same bit by bit for any number of threads.
 [[nodiscard]] Scene precompute(Mesh mesh, const PrecomputeOptions& options = {},

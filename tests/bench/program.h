@@ -44,12 +44,12 @@ public:
 
 private:
     struct Option {
-        std::string name;
-        std::string help;
-        std::string default_value;
+        std::string name = {};
+        std::string help = {};
+        std::string default_value = {};
         bool is_flag = false;
         /// False for a text that is no such value
-        std::function<bool(const std::string&)> read;
+        std::function<bool(const std::string&)> read = {};
     };
     template<typename Number>
     void add_number(const std::string& option, Number& value, const std::string& help);

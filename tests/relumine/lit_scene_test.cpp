@@ -172,6 +172,12 @@ TEST(LitScene, LightsThroughClustersOnlyWhenAsked) {
                  std::invalid_argument);
 }
 
+TEST(LitScene, RefusesATransferOfOtherReceivers) {
+    Scene scene = boulder_scene();
+    scene.receivers = {};
+    EXPECT_THROW(LitScene{std::move(scene)}, std::invalid_argument);
+}
+
 TEST(LitScene, SaysWhatItNeedsBeforeItIsLit) {
     const LitScene scene(boulder_scene());
     EXPECT_THROW(static_cast<void>(scene.relighter()), std::logic_error);
