@@ -55,8 +55,8 @@ PrecomputeOptions precompute_options(const Options& options, const mesh::Triangl
         if (const auto& show = stage == Stage::Clusters ? clusters : highlights)
             show(fraction);
     };
-    result.on_warning = [&session](const std::string& message) {
-        session.warn(message);
+    result.on_warning = [&session](Warning kind, const std::string& message) {
+        session.warn(kind == Warning::HighlightsWithoutView ? message + " (see --view)" : message);
     };
     result.on_note = [&session](const std::string& message) {
         session.detail(message);

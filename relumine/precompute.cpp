@@ -134,12 +134,14 @@ private:
             prt::texel_receivers(scene_.mesh, {.width = size.width, .height = size.height});
         const prt::AtlasReport& atlas = texels.report;
         if (atlas.num_overlapping > 0)
-            warn(fmt::format("{} texels lie in several triangles, the first at column {}, row {}: "
+            warn(Warning::ChartsOverlap,
+                 fmt::format("{} texels lie in several triangles, the first at column {}, row {}: "
                              "charts overlap, the first triangle of the mesh wins",
                              atlas.num_overlapping, atlas.first_overlap % size.width,
                              atlas.first_overlap / size.width));
         if (atlas.num_outside > 0)
-            warn(fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
+            warn(Warning::UvsOutside,
+                 fmt::format("{} triangles have uvs outside of 0 to 1: cut off there",
                              atlas.num_outside));
         if (atlas.num_flat > 0)
             note(fmt::format("{} triangles have no area in uv and get no texels", atlas.num_flat));
@@ -174,7 +176,8 @@ private:
             surface.highlight = prt::Highlight::None;
         }
         if (report_.num_highlights_left_out != 0)
-            warn(fmt::format("{} receivers have highlights, which need a view: left out, the scene "
+            warn(Warning::HighlightsWithoutView,
+                 fmt::format("{} receivers have highlights, which need a view: left out, the scene "
                              "is diffuse",
                              report_.num_highlights_left_out));
     }
@@ -187,7 +190,7 @@ private:
         // A disk that stays full need not be told of every twenty seconds.
         const auto warn_once = [this, last = std::string()](const std::string& message) mutable {
             if (std::exchange(last, message) != message)
-                warn(message);
+                warn(Warning::Checkpoint, message);
         };
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
             options_.output,
@@ -240,7 +243,8 @@ private:
                 return surface.highlight == prt::Highlight::Ggx && surface.shape < narrowest;
             }));
         if (report_.num_too_smooth != 0)
-            warn(fmt::format("{} receivers are smoother than roughness {:.3f}: cells of the "
+            warn(Warning::TooSmooth,
+                 fmt::format("{} receivers are smoother than roughness {:.3f}: cells of the "
                              "quadtree cannot hold so sharp a highlight, it comes out wider",
                              report_.num_too_smooth, narrowest));
         prt::GlossyOptions glossy{.tolerance = options_.glossy_tolerance,
@@ -281,9 +285,9 @@ private:
         if (options_.stop.stop_requested())
             throw Cancelled();
     }
-    void warn(const std::string& message) const {
+    void warn(Warning kind, const std::string& message) const {
         if (options_.on_warning)
-            options_.on_warning(message);
+            options_.on_warning(kind, message);
     }
     void note(const std::string& message) const {
         if (options_.on_note)

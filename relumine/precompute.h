@@ -64,6 +64,20 @@ enum class Stage {
     Highlights,
 };
 
+/// What on_warning() is told of.
+enum class Warning {
+    /// Charts of the lightmap overlap
+    ChartsOverlap,
+    /// Uvs lie outside of 0 to 1
+    UvsOutside,
+    /// Highlights are left out, as there is no view
+    HighlightsWithoutView,
+    /// Surfaces are smoother than the finest cells can hold
+    TooSmooth,
+    /// A checkpoint cannot be written; the work goes on
+    Checkpoint,
+};
+
 struct PrecomputeOptions {
     /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer
     float tolerance = prt::PrecomputeOptions{}.tolerance;
@@ -103,7 +117,7 @@ struct PrecomputeOptions {
     /// Estimated fraction of a stage in [0, 1], never falling; one call at a time
     std::function<void(Stage, double)> on_progress = {};
     /// Sentences for people, one call at a time: what should be known at once
-    std::function<void(const std::string&)> on_warning = {};
+    std::function<void(Warning, const std::string&)> on_warning = {};
     /// The same: what helps to understand a run
     std::function<void(const std::string&)> on_note = {};
 };

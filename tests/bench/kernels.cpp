@@ -69,12 +69,13 @@ void BM_Edit(benchmark::State& state) {
 }
 void BM_CubeFromLatLong(benchmark::State& state) {
     cubemap::EnvironmentImage image;
-    image.width = 4096;
-    image.height = 2048;
+    image.width = is_tiny ? 64 : 4096;
+    image.height = image.width / 2;
     image.pixels.assign(std::size_t{image.width} * image.height, glm::vec3(1.0f));
     for (auto _ : state)
-        benchmark::DoNotOptimize(cubemap::convert(
-            image, {cubemap::Layout::Cube, cubemap::Sampling::TexelCentres, 1024, 6144}));
+        benchmark::DoNotOptimize(
+            cubemap::convert(image, {cubemap::Layout::Cube, cubemap::Sampling::TexelCentres,
+                                     image.width / 4, image.width / 4 * 6}));
 }
 BENCHMARK(BM_CubeFromLatLong)->Unit(benchmark::kMillisecond)->UseRealTime();
 
@@ -82,7 +83,7 @@ BENCHMARK(BM_Edit)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 /// 64 lights for a lat-long twice as wide as range(1), by method range(0).
 void BM_PlaceLights(benchmark::State& state) {
-    const auto height = static_cast<std::uint32_t>(state.range(1));
+    const auto height = static_cast<std::uint32_t>(state.range(1)) / (is_tiny ? 16 : 1);
     const cubemap::EnvironmentImage map = lights::lat_long_of(data_gen::two_soft_boxes(height / 2));
     const auto method = lights::AllMethods.at(static_cast<std::size_t>(state.range(0)));
     for (auto _ : state)
@@ -181,7 +182,7 @@ void BM_ClusterLights(benchmark::State& state) {
         [&](std::size_t frame) {
             return lights::lat_long_of(cubemap::rotated(studio, 3.6 * static_cast<double>(frame)));
         },
-        100);
+        is_tiny ? 3 : 100);
     std::size_t num_iterations = 0;
     for (auto _ : state)
         num_iterations = lights::cluster_lights(samples).k_means.objective.size();

@@ -134,14 +134,14 @@ void measure(const std::string& name, const prt::Receivers& receivers,
 
 /// Time from the wish to stop to the end of the work, at moments spread over it.
 void measure_cancel(const prt::Receivers& receivers, const prt::Blockers& blockers,
-                    prt::PrecomputeOptions options) {
+                    prt::PrecomputeOptions options, std::chrono::milliseconds step) {
     double longest = 0.0;
     for (int i = 1; i <= 8; ++i) {
         std::stop_source stop;
         options.stop = stop.get_token();
         bench::Stopwatch since_asked;
         const std::jthread canceller([&, i] {
-            std::this_thread::sleep_for(std::chrono::milliseconds(170 * i));
+            std::this_thread::sleep_for(i * step);
             since_asked.restart();
             stop.request_stop();
         });
@@ -203,7 +203,8 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
         fmt::print("\n");
     }
     if (settings.cancel)
-        measure_cancel(receivers, beams, options);
+        measure_cancel(receivers, beams, options,
+                       std::chrono::milliseconds(inputs.is_tiny() ? 2 : 170));
 }
 
 } // namespace

@@ -8,6 +8,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <unistd.h>
@@ -117,7 +118,9 @@ void run(const Settings& settings) {
     RandomLayers layers;
     // Without marks: each sums all anew, and a history may hold a gigabyte.
     const auto edit = [&] {
-        lit.set_layers({layers.next()});
+        std::vector<cubemap::LightLayer> list;
+        list.push_back(layers.next());
+        lit.set_layers(std::move(list));
     };
     const auto change_environment = [&](std::size_t i) {
         cubemap::CubeMap next = base;

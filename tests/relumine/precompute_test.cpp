@@ -85,7 +85,8 @@ TEST(Precompute, LightsTexelsOfALightmap) {
     std::vector<std::string> warnings;
     static_cast<void>(precompute(mesh, {.tolerance = 0.2f,
                                         .receivers = Texels{.width = 8, .height = 4},
-                                        .on_warning = [&](const std::string& text) {
+                                        .on_warning = [&](Warning kind, const std::string& text) {
+                                            EXPECT_EQ(kind, Warning::ChartsOverlap);
                                             warnings.push_back(text);
                                         }}));
     ASSERT_EQ(warnings.size(), 1u);
