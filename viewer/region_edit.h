@@ -2,12 +2,15 @@
 #pragma once
 
 #include <glm/vec3.hpp>
+#include <numbers>
 
 #include "cubemap/layers/light_layer.h"
 #include "cubemap/layers/region_turn.h"
 #include "viewer/region_outline.h"
 
 namespace relumine::viewer {
+
+inline constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
 
 /// What of a layer lies under the pointer.
 enum class Grip { None, Body, Rim };
