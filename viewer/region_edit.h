@@ -1,16 +1,12 @@
 // What of a light layer the pointer holds, and how a drag changes it. Without a window.
 #pragma once
 
-#include <glm/vec3.hpp>
-#include <numbers>
-
 #include "cubemap/layers/light_layer.h"
 #include "cubemap/layers/region_turn.h"
 #include "viewer/region_outline.h"
+#include <glm/vec3.hpp>
 
 namespace relumine::viewer {
-
-inline constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
 
 /// What of a layer lies under the pointer.
 enum class Grip { None, Body, Rim };
