@@ -1,10 +1,11 @@
 // What of a light layer the pointer holds, and how a drag changes it. Without a window.
 #pragma once
 
+#include <glm/vec3.hpp>
+
 #include "cubemap/layers/light_layer.h"
 #include "cubemap/layers/region_turn.h"
 #include "viewer/region_outline.h"
-#include <glm/vec3.hpp>
 
 namespace relumine::viewer {
 
