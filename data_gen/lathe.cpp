@@ -8,12 +8,11 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "data_gen/scene_parts.h"
 #include "data_gen/shapes.h"
 
 namespace relumine::data_gen {
 namespace {
-
-constexpr double FullTurn = 2.0 * std::numbers::pi;
 
 // The one formula for a vertex of a ring: what uses the same arguments meets to the bit.
 glm::vec3 ring_point(double radius, double height, std::uint32_t i, std::uint32_t num_around) {

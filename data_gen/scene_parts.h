@@ -2,10 +2,13 @@
 #pragma once
 
 #include <cstddef>
+#include <numbers>
 
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::data_gen {
+
+inline constexpr double FullTurn = 2.0 * std::numbers::pi;
 
 /// Throws std::invalid_argument outside [MinSceneVertices, MaxSceneVertices].
 void check_num_vertices(std::size_t num_vertices);

@@ -20,8 +20,6 @@
 namespace relumine::data_gen {
 namespace {
 
-constexpr double FullTurn = 2.0 * std::numbers::pi;
-
 glm::dvec3 leaning(const glm::dvec3& p) {
     constexpr double Angle = 0.35; // radians
     return {p.x, p.y * std::cos(Angle) + p.z * std::sin(Angle),

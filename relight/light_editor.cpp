@@ -27,19 +27,19 @@ constexpr std::size_t CopyGrain = 8192;
 /// everything.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
                           std::vector<cubemap::TexelRectangle>& tiles) {
-    constexpr std::uint32_t TileSize = 16;
+    constexpr std::uint32_t EditTileSize = 16;
     const std::uint32_t r = before.resolution;
-    const std::uint32_t rows = (r + TileSize - 1) / TileSize;
+    const std::uint32_t rows = (r + EditTileSize - 1) / EditTileSize;
     std::vector<std::vector<cubemap::TexelRectangle>> of_row(cubemap::NumFaces * std::size_t{rows});
     tbb::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t i) {
         const cubemap::Face face = cubemap::AllFaces[i / rows];
-        const auto y = static_cast<std::uint32_t>(i % rows) * TileSize;
-        for (std::uint32_t x = 0; x < r; x += TileSize) {
+        const auto y = static_cast<std::uint32_t>(i % rows) * EditTileSize;
+        for (std::uint32_t x = 0; x < r; x += EditTileSize) {
             const cubemap::TexelRectangle tile{.face = face,
                                                .x0 = x,
                                                .y0 = y,
-                                               .x1 = std::min(x + TileSize, r),
-                                               .y1 = std::min(y + TileSize, r)};
+                                               .x1 = std::min(x + EditTileSize, r),
+                                               .y1 = std::min(y + EditTileSize, r)};
             bool equal = true;
             for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
                 const glm::vec3* of_before = &before.at(face, x, row);

@@ -14,7 +14,7 @@ namespace relumine::relight {
 namespace {
 
 /// Receivers of one task: with a handful of lights about 50 microseconds of work.
-constexpr std::size_t ReceiversPerTask = 64;
+constexpr std::size_t ReceiversPerPart = 64;
 
 } // namespace
 
@@ -104,7 +104,7 @@ std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lig
                                        const ShadowRays& rays) {
     const LightPackets packets(lights);
     std::vector<glm::dvec3> radiance(receiver_indices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerTask),
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerPart),
                       [&](const auto& some) {
                           for (std::size_t i = some.begin(); i < some.end(); ++i) {
                               const std::uint32_t receiver = receiver_indices[i];

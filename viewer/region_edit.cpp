@@ -17,8 +17,6 @@ namespace relumine::viewer {
 
 namespace {
 
-constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
-
 /// The rotation that takes one direction to another on the shortest way.
 glm::dmat3 rotation_between(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 a = glm::normalize(from);

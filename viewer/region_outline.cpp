@@ -13,7 +13,6 @@ namespace relumine::viewer {
 namespace {
 
 constexpr double Pi = std::numbers::pi;
-constexpr double RadiansPerDegree = Pi / 180.0;
 /// Points of a circle, a side or an arc: enough for a smooth line on a screen.
 constexpr int CirclePoints = 96;
 constexpr int SidePoints = 16;

@@ -1,6 +1,7 @@
 // Borders of light layers as lines of directions.
 #pragma once
 
+#include <numbers>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -8,6 +9,8 @@
 #include "cubemap/layers/light_layer.h"
 
 namespace relumine::viewer {
+
+inline constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
 
 /// Unit axes of a soft box as seen from the centre of the sphere.
 struct BoxFrame {

@@ -39,7 +39,7 @@ constexpr std::uint32_t CoarsestResolution = 8;
 constexpr int RegionRings = 2;
 /// The next texels outwards show the sky
 constexpr int SkyRings = 2;
-constexpr double PeakPart = 2e-4;
+constexpr double SunPeakPart = 2e-4;
 constexpr double SkyPart = 0.25;
 /// Times the ring's upper quartile: another light in the ring is not sky
 constexpr double BrightestSky = 3.0;
@@ -128,7 +128,7 @@ Sun measure(const Pixels& image, const CubeMap& map, const BrightSpot& spot, dou
         const glm::dvec3 around = sky.radiance(place.direction);
         const double value = luminance(glm::dvec3(radiance)), sky_value = luminance(around);
         if (value <=
-            sky_value + std::max(SkyPart * sky_value, PeakPart * (spot.peak_luminance - sky_value)))
+            sky_value + std::max(SkyPart * sky_value, SunPeakPart * (spot.peak_luminance - sky_value)))
             return;
         // In a channel where the sky is brighter the pixel stays as it is, so that the sun has no
         // negative light.

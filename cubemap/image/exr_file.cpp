@@ -118,9 +118,9 @@ struct Window {
     std::uint32_t width = 0, height = 0;
 };
 
-class Decoder {
+class ExrDecoder {
 public:
-    Decoder(std::span<const std::byte> bytes, const std::string& name)
+    ExrDecoder(std::span<const std::byte> bytes, const std::string& name)
         : bytes_(bytes), name_(name) {}
 
     ImageFile decode() {
@@ -371,12 +371,12 @@ auto with_own_messages(const std::string& name, const Read& read) {
 } // namespace
 
 ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) {
-    return with_own_messages(name, [&] { return Decoder(bytes, name).decode(); });
+    return with_own_messages(name, [&] { return ExrDecoder(bytes, name).decode(); });
 }
 
 ImageSize exr_size(const std::filesystem::path& path) {
     const std::string name = path.string();
-    return with_own_messages(name, [&] { return Decoder({}, name).size(path); });
+    return with_own_messages(name, [&] { return ExrDecoder({}, name).size(path); });
 }
 
 std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const float> alpha) {

@@ -25,10 +25,10 @@ bool can_be_run_length_encoded(std::uint32_t width) {
     return width >= 8 && width <= 0x7fff;
 }
 
-class Decoder {
+class HdrDecoder {
 public:
     /// `num_bytes`: of the whole file, of which `bytes` may be the beginning.
-    Decoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
+    HdrDecoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
         : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
           num_bytes_(num_bytes), name_(name) {}
 
@@ -284,12 +284,12 @@ bool is_hdr(std::span<const std::byte> bytes) {
 }
 
 ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name) {
-    return Decoder(bytes, bytes.size(), name).decode();
+    return HdrDecoder(bytes, bytes.size(), name).decode();
 }
 
 ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                    const std::string& name) {
-    return Decoder(head, num_bytes, name).size();
+    return HdrDecoder(head, num_bytes, name).size();
 }
 
 std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {

@@ -22,8 +22,8 @@ double chord(double degrees) {
     return 2.0 * std::sin(0.5 * radians(degrees));
 }
 
-double squared_length(const glm::dvec3& v) {
-    return glm::dot(v, v);
+double squared_distance(const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::dot(a - b, a - b);
 }
 
 /// 1 / (outer^2 - inner^2): the ramp of a disc runs in squared chords, that is in cosines.
@@ -78,7 +78,7 @@ DiscShape::DiscShape(const Disc& disc)
       inverse_band_(inverse_band(outer_, inner_)), smallest_feature_(outer_ / 64.0) {}
 
 Overlap DiscShape::bound(const glm::dvec3& w, double chord_radius) const {
-    const double squared = squared_length(w - axis_);
+    const double squared = squared_distance(w, axis_);
     const double reach = outer_ + chord_radius;
     if (squared >= reach * reach)
         return Overlap::None;
@@ -87,7 +87,7 @@ Overlap DiscShape::bound(const glm::dvec3& w, double chord_radius) const {
 }
 
 std::array<double, 1> DiscShape::ramps(const glm::dvec3& w) const {
-    return {(squared_outer_ - squared_length(w - axis_)) * inverse_band_};
+    return {(squared_outer_ - squared_distance(w, axis_)) * inverse_band_};
 }
 
 RectangleShape::RectangleShape(const Rectangle& rectangle)

@@ -13,7 +13,7 @@ namespace {
 
 /// Of the algorithm and of what a checkpoint holds; to be raised when a change of either makes old
 /// checkpoints worthless.
-constexpr int Version = 1;
+constexpr int FingerprintVersion = 1;
 
 class Hash {
 public:
@@ -44,7 +44,7 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
 Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& receivers,
                         const PrecomputeOptions& options, std::optional<float> glossy_tolerance) {
     Fingerprint result = {
-        {"version", fmt::format("{}", Version)},
+        {"version", fmt::format("{}", FingerprintVersion)},
         {"mesh", Hash().add(blockers.positions).add(blockers.triangles).text()},
         {"receivers", Hash().add(receivers.positions).add(receivers.normals).text()},
         {"number of receivers", fmt::format("{}", receivers.size())},

@@ -17,9 +17,9 @@ const glm::vec3 LineColour(0.05f, 0.75f, 0.2f);
 
 /// How many pixels of the picture a pixel of the map becomes, or how many of the map become one of
 /// the picture.
-struct Scale {
+struct MapScale {
     std::uint32_t grow = 1, shrink = 1;
-    explicit Scale(std::uint32_t width) {
+    explicit MapScale(std::uint32_t width) {
         constexpr std::uint32_t Narrowest = 1024;
         constexpr std::uint32_t Widest = 2048;
         if (width < Narrowest)
@@ -84,7 +84,7 @@ private:
     double white_ = 1.0;
 };
 
-Picture environment_picture(const lights::LatLongGrid& grid, const Scale& scale) {
+Picture environment_picture(const lights::LatLongGrid& grid, const MapScale& scale) {
     const ToneMap tone_map(grid);
     Picture picture{scale.size(grid.width()), scale.size(grid.height()), {}};
     picture.pixels.resize(std::size_t{picture.width} * picture.height);
@@ -118,7 +118,7 @@ void blend(Picture& picture, std::int64_t x, std::int64_t y, const glm::vec3& co
     pixel = glm::mix(pixel, colour, static_cast<float>(std::min(coverage, 1.0)));
 }
 
-void draw_borders(Picture& picture, const lights::PixelRectangle& region, const Scale& scale) {
+void draw_borders(Picture& picture, const lights::PixelRectangle& region, const MapScale& scale) {
     const auto left = scale.of(region.x0), right = std::min(scale.of(region.x1), picture.width - 1);
     const auto top = scale.of(region.y0),
                bottom = std::min(scale.of(region.y1), picture.height - 1);
@@ -165,7 +165,7 @@ void draw_light(Picture& picture, const lights::DistantLight& light) {
 Picture region_picture(const cubemap::EnvironmentImage& lat_long,
                        const lights::Placement& placement) {
     const lights::LatLongGrid grid(lat_long);
-    const Scale scale(grid.width());
+    const MapScale scale(grid.width());
     Picture picture = environment_picture(grid, scale);
     for (const lights::PixelRectangle& region : placement.regions)
         draw_borders(picture, region, scale);
