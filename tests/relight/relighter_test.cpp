@@ -14,6 +14,7 @@
 
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
@@ -41,10 +42,6 @@ std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer,
         radiance[transfer.order[place]] = b;
     }
     return radiance;
-}
-
-std::vector<glm::vec3> copy(std::span<const glm::vec3> radiance) {
-    return {radiance.begin(), radiance.end()};
 }
 
 prt::Receivers random_receivers(std::size_t n, std::uint32_t seed) {

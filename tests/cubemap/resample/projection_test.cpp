@@ -15,7 +15,6 @@
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 constexpr std::array<Layout, 3> Projected = {Layout::AngularMap, Layout::MirrorBall,
                                              Layout::Octahedral};
 
@@ -34,7 +33,8 @@ TEST(Projection, ShowsTheAxesWhereItsDescriptionSays) {
 
     const Projection& ball = *projection(Layout::MirrorBall);
     const double side =
-        0.5 * std::sin(Pi / 4.0); // where the ball's normal is half way between +Z and the axis
+        0.5 * std::sin(std::numbers::pi /
+                       4.0); // where the ball's normal is half way between +Z and the axis
     expect_near(ball.direction({0.5, 0.5}), {0, 0, 1});
     expect_near(ball.direction({0.5 + side, 0.5}), {1, 0, 0});
     expect_near(ball.direction({0.5, 0.5 - side}), {0, 1, 0});
@@ -89,7 +89,7 @@ TEST(PatchPieces, PixelsTileTheSphereAtEveryResolution) {
             double sum = 0.0;
             for_each_pixel({layout, Sampling::TexelCentres, n, n},
                            [&](std::size_t, const PixelPlace& place) { sum += place.solid_angle; });
-            EXPECT_NEAR(sum / (4.0 * Pi), 1.0, 1e-5) << name(layout) << ' ' << n;
+            EXPECT_NEAR(sum / (4.0 * std::numbers::pi), 1.0, 1e-5) << name(layout) << ' ' << n;
         }
     }
 }

@@ -114,12 +114,6 @@ Tally compare_at_vertices(const mesh::TriangleMesh& mesh, std::uint32_t seed, in
     return compare(mesh, origins, normals, seed, rounds);
 }
 
-mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, float scale, const glm::vec3& offset) {
-    for (glm::vec3& position : mesh.positions)
-        position = scale * position + offset;
-    return mesh;
-}
-
 /// A fine floor, which becomes two triangles, with things on it that touch and pierce it.
 mesh::TriangleMesh things_on_a_floor() {
     mesh::TriangleMesh mesh = scenes::joined(
@@ -183,9 +177,9 @@ TEST(BeamScene, AnswersAsTheRayTracerDoesWhereSurfacesMeet) {
 TEST(BeamScene, AnswersAsTheRayTracerDoesAtAnyScaleAndPlace) {
     const mesh::TriangleMesh mesh = things_on_a_floor();
     for (const float scale : {1e-30f, 1e-12f, 1e-3f, 1e6f, 1e15f})
-        compare_at_vertices(transformed(mesh, scale, glm::vec3(0.0f)), 9, 300);
-    compare_at_vertices(transformed(mesh, 1.0f, glm::vec3(1e4f, -2e4f, 3e4f)), 10, 500);
-    compare_at_vertices(transformed(mesh, 1.0f, glm::vec3(1e6f, 0.0f, 0.0f)), 11,
+        compare_at_vertices(scenes::transformed(mesh, scale, glm::vec3(0.0f)), 9, 300);
+    compare_at_vertices(scenes::transformed(mesh, 1.0f, glm::vec3(1e4f, -2e4f, 3e4f)), 10, 500);
+    compare_at_vertices(scenes::transformed(mesh, 1.0f, glm::vec3(1e6f, 0.0f, 0.0f)), 11,
                         500); // floats are 1/16 apart
 }
 
