@@ -1,6 +1,6 @@
 # Checks the Markdown documents of a folder: every relative link leads to a file (and to a heading in
-# it), every path in backticks that begins with one of the folders exists, and so does every
-# #include "..." in an example.
+# it), every path in backticks that begins with one of the folders exists (NAME and * stand for any
+# name), and so does every #include "..." in an example.
 #
 #   cmake -DROOT=FOLDER [-DFOLDERS="a;b"] -P check_paths.cmake
 #
@@ -82,7 +82,9 @@ foreach(document IN LISTS documents)
     string(REGEX MATCHALL "#include \"[^\"\n]*\"" includes "${text}")
     foreach(path IN LISTS paths includes)
         string(REGEX REPLACE "^(`|#include \")(.*)[`\"]$" "\\2" path "${path}")
-        file(GLOB found "${ROOT}/${path}")
+        # Words in capitals stand for any name.
+        string(REGEX REPLACE "(FILE|FOLDER|NAME|ROOM|TARGET)" "*" pattern "${path}")
+        file(GLOB found "${ROOT}/${pattern}")
         if(NOT found AND NOT EXISTS "${ROOT}/${path}")
             fault("${document}" "the path ${path} is not there")
         endif()
