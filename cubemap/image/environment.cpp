@@ -200,9 +200,7 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
                                              path.string(), name(*options.layout)));
     ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
     EnvironmentImage image;
-    image.width = file.width;
-    image.height = file.height;
-    image.pixels = std::move(file.pixels);
+    static_cast<Picture&>(image) = static_cast<Picture&&>(file);
     interpret(file, options, path.string(), image);
     if (paths.size() > 1)
         image.assumptions = fmt::format("cube of six files, {}", image.assumptions);

@@ -32,7 +32,7 @@ struct Filter {
     }
 };
 struct Patch {
-    const Picture* picture;
+    const ImagePyramid* picture;
     bool replace;
     float gain;
 };
@@ -88,18 +88,19 @@ void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& ran
 /// A picture on its rectangle, averaged over texels.
 class PlacedPicture {
 public:
-    PlacedPicture(const RectangleShape& rectangle, const Picture& picture, const FaceGrid& grid)
+    PlacedPicture(const RectangleShape& rectangle, const ImagePyramid& picture,
+                  const FaceGrid& grid)
         : rectangle_(rectangle), picture_(picture), plane_(grid.plane) {
         // One level for the whole picture, or a bright spot where two levels meet would be counted
         // by neither or both: pixels of half a texel or more at the picture's and the face's
         // middle, but at least eight of them.
         const glm::dvec2& half = rectangle.half_sides();
         const double texel = std::min(0.25, grid.half_texel / std::sqrt(half.x * half.y));
-        const Picture::Level& full = picture.levels().front();
+        const Picture& full = picture.levels().front();
         const double pixels = std::max(1.0, 0.5 * texel * std::max(full.width, full.height));
         level_ = std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))),
                           picture.levels().size() - 1);
-        const Picture::Level& chosen = picture.levels()[level_];
+        const Picture& chosen = picture.levels()[level_];
         largest_part_ = LargestPart / std::max({chosen.width, chosen.height, 8u});
     }
 
@@ -131,7 +132,7 @@ private:
     }
 
     const RectangleShape& rectangle_;
-    const Picture& picture_;
+    const ImagePyramid& picture_;
     const FacePlane& plane_;
     std::size_t level_;
     double largest_part_;
