@@ -221,7 +221,7 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
 
 std::uint32_t natural_resolution(const EnvironmentImage& image) {
     if (has_faces(image.layout))
-        return FaceCells(image.layout, image.width, image.height).resolution();
+        return FaceSquares(image.layout, image.width, image.height).resolution();
     if (image.layout == Layout::Octahedral)
         return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
     return std::max(1U, (image.width + 2) / 4);

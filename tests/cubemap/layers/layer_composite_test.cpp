@@ -322,7 +322,7 @@ void expect_as_texel_by_texel(const Region& region, std::uint32_t resolution) {
                             return 1.0f;
                         default:
                             return static_cast<float>(
-                                mean_coverage(of_kind, grid.plane, grid.cell(x, y)));
+                                mean_coverage(of_kind, grid.plane, grid.square(x, y)));
                         }
                     },
                     whole);
