@@ -1,4 +1,4 @@
-// Pictures that are placed on a part of an environment.
+// Pictures for a part of an environment.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@
 
 namespace relumine::cubemap {
 
-/// A decoded picture and its halved copies, for filtering. Immutable, so layers and their history
-/// share it.
+/// A decoded picture and its halved copies for filtering. Pictures do not change, so layers and
+/// their history share them.
 class Picture {
 public:
     struct Level {
         std::uint32_t width = 0;
         std::uint32_t height = 0;
-        /// [height * width] row by row from the top; linear RGB radiance
+        /// [height * width] row by row from the top; linear RGB radiance.
         std::vector<glm::vec3> pixels;
         bool operator==(const Level&) const = default;
     };
 
-    /// Throws std::invalid_argument for a wrong number of pixels or radiance that is negative or
-    /// not finite.
+    /// Throws:  std::invalid_argument for a wrong number of pixels, or radiance that is negative or
+    ///          not finite.
     Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels);
 
-    /// Full size first, 1 x 1 last
+    /// All levels, full size first, 1 x 1 last.
     [[nodiscard]] const std::vector<Level>& levels() const { return levels_; }
 
-    /// Bilinear between the pixel centres of a level; position in [0, 1]^2 from the top left.
+    /// Returns the colour of a level at a position in [0, 1]^2 from the top left, bilinear between
+    /// pixel centres.
     [[nodiscard]] glm::dvec3 sample(std::size_t level, const glm::dvec2& position) const;
 
     bool operator==(const Picture&) const = default;
@@ -39,8 +40,8 @@ private:
     std::vector<Level> levels_;
 };
 
-/// Reads an .exr or .hdr file as a picture, whatever its shape. Throws std::runtime_error "path:
-/// expected X, got Y".
+/// Reads an .exr or .hdr file of any shape as a picture.
+/// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] std::shared_ptr<const Picture> load_picture(const std::filesystem::path& path);
 
 } // namespace relumine::cubemap

@@ -1,4 +1,4 @@
-// Pictures of a Projection to cube maps and back, from exact overlaps. Called through resample()
+// Converts pictures of a Projection to cube maps and back from exact overlaps. Called by resample()
 // and to_image().
 #pragma once
 
@@ -11,7 +11,7 @@ namespace relumine::cubemap::detail {
 
 [[nodiscard]] CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution);
 
-/// Fills the pixels of an image whose layout and size are set; pixels that show nothing are black.
+/// Fills the pixels of an image whose layout and size are set. Pixels that show nothing are black.
 void fill_projection(const CubeMap& map, EnvironmentImage& image);
 
 } // namespace relumine::cubemap::detail
