@@ -20,7 +20,7 @@ void add_frame(const cubemap::EnvironmentImage& image, std::uint32_t frame,
         throw std::invalid_argument(
             fmt::format("expected at most {} samples for {} x {} pixels, got {}", grid.num_pixels(),
                         grid.width(), grid.height(), options.samples_per_frame));
-    // splitmix64's constant: seeds of neighbouring frames have nothing in common
+    // splitmix64's constant makes the seeds of neighbouring frames independent.
     const std::uint64_t seed = options.seed_per_frame
                                    ? options.seed + (std::uint64_t{frame} + 1) * 0x9e3779b97f4a7c15u
                                    : options.seed;
