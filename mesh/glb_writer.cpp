@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <tiny_gltf.h> // Debian's libtinygltf is compiled: its implementation, and stb's, stay in that library
+#include <tiny_gltf.h> // its implementation, and stb, are compiled into the library
 
 namespace relumine::mesh {
 
@@ -17,7 +17,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 static_assert(sizeof(glm::vec3) == 12 && sizeof(Triangle) == 12, "arrays are written as they are");
 
-/// Appends an array to the model's one buffer, with a view and an accessor of its own. Returns the
+/// Appends an array to the model's one buffer, with its own view and accessor. Returns the
 /// accessor's index.
 template<class Value>
 int append(tinygltf::Model& model, std::span<const Value> values, int target, int component_type,
@@ -46,7 +46,7 @@ int append(tinygltf::Model& model, std::span<const glm::vec3> values) {
                   TINYGLTF_TYPE_VEC3, values.size());
 }
 
-/// The format asks for the exact bounds of positions.
+/// Sets the exact bounds of positions, which the format demands.
 void set_bounds(tinygltf::Accessor& accessor, std::span<const glm::vec3> positions) {
     glm::vec3 min = positions[0], max = positions[0];
     for (const glm::vec3& position : positions) {
@@ -71,7 +71,8 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     const std::uint64_t num_bytes =
         std::uint64_t{mesh.num_vertices()} * 36 + std::uint64_t{mesh.num_triangles()} * 12;
     constexpr std::uint64_t MaxBytes =
-        std::numeric_limits<std::uint32_t>::max() - 65536; // room for the JSON part
+        // Leaves room for the JSON part.
+        std::numeric_limits<std::uint32_t>::max() - 65536;
     if (num_bytes > MaxBytes)
         throw std::runtime_error(
             fmt::format("expected at most {} bytes in a .glb file, got {}", MaxBytes, num_bytes));
