@@ -28,6 +28,7 @@ struct CubeMap {
     /// Throws:  std::invalid_argument unless 1 <= R <= 16384.
     explicit CubeMap(std::uint32_t face_resolution, const glm::vec3& radiance = glm::vec3(0.0f));
 
+    /// Returns the index of texel (x, y) of a face in `texels`.
     [[nodiscard]] std::size_t index(Face face, std::uint32_t x, std::uint32_t y) const {
         return (static_cast<std::size_t>(face) * resolution + y) * resolution + x;
     }

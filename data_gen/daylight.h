@@ -8,6 +8,7 @@
 
 namespace relumine::data_gen {
 
+/// The sun's place, the air and the ground.
 struct DaylightOptions {
     /// Haze in [1.7, 10], where the model holds: 2 very clear, 3 clear, 6 light haze.
     double turbidity = 3.0;

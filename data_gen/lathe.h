@@ -45,6 +45,7 @@ void append_lathe(mesh::TriangleMesh& mesh, const std::vector<Curve>& profile,
 
 enum class Facing { Down, Up };
 
+/// How the inside of a disc is divided into triangles.
 enum class Fill {
     /// One vertex in the middle, for surfaces that nobody sees.
     Fan,
@@ -65,6 +66,7 @@ struct Disc {
     /// Vertices of the inner rim: a multiple of 6, less than num_around.
     std::uint32_t inner_num_around = 0;
 };
+/// Appends a disc to a mesh.
 void append_disc(mesh::TriangleMesh& mesh, const Disc& disc);
 
 } // namespace relumine::data_gen

@@ -12,6 +12,7 @@ namespace relumine::data_gen {
 /// Based on: Perlin, "Improving noise", 2002, with an integer hash in place of the table.
 [[nodiscard]] double gradient_noise(const glm::dvec3& point, std::uint32_t seed = 0);
 
+/// The octaves of fractal_noise().
 struct FractalOptions {
     int num_octaves = 6;
     /// Strength of an octave over the strength of the octave before.

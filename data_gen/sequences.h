@@ -15,6 +15,7 @@
 
 namespace relumine::data_gen {
 
+/// Options that all sequences share.
 struct SequenceOptions {
     std::size_t num_frames = 100;
     /// 1 <= R <= 16384.
@@ -42,6 +43,7 @@ struct SwitchedLight {
 /// horizon. The clouds lie on a plane at height 1. CloudWind moves them along it per frame; their
 /// shape does not change.
 [[nodiscard]] double cloud_cover(const glm::dvec3& direction, double frame);
+/// Movement of the clouds per frame.
 inline constexpr glm::dvec3 CloudWind{0.035, 0.0, 0.012};
 /// Returns the brightness of the sun's disc behind the clouds of `clouds`, relative to a clear sky:
 /// (1 - cover)^2 at the disc's centre.

@@ -12,6 +12,7 @@
 
 namespace relumine::files {
 
+/// A value of a JSON text.
 struct JsonValue {
     using Array = std::vector<JsonValue>;
     /// Members in the order of the file.

@@ -34,12 +34,14 @@ struct FrameSample {
     std::uint32_t frame = 0;
 };
 
+/// The samples of all frames of a video environment.
 struct FrameSamples {
     std::size_t num_frames = 0;
     /// Samples of all frames, frame after frame.
     std::vector<FrameSample> samples;
 };
 
+/// How frames are sampled.
 struct FrameSamplesOptions {
     std::size_t samples_per_frame = 1024;
     std::uint64_t seed = 1;

@@ -14,6 +14,7 @@
 
 namespace relumine::lights {
 
+/// Number of clusters, start and weights of k_means().
 struct KMeansOptions {
     /// Number of clusters. Fewer if there are fewer points.
     std::size_t num_clusters = 512;
@@ -26,6 +27,7 @@ struct KMeansOptions {
     std::function<void(std::size_t iteration, double objective)> on_iteration = {};
 };
 
+/// The clusters, and how the iteration went.
 struct KMeans {
     /// [points] index of the nearest centre. Of equally near centres the first.
     std::vector<std::uint32_t> cluster_of;

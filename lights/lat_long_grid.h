@@ -65,6 +65,7 @@ public:
     /// Returns the width of a region in radians, weighted by the cosine of the inclination at its
     /// centre [D05].
     [[nodiscard]] double angular_width(const PixelRectangle& region) const;
+    /// Returns the height of a region in radians.
     [[nodiscard]] double angular_height(const PixelRectangle& region) const;
     /// Returns the unit direction of a region's centre in the image.
     [[nodiscard]] glm::dvec3 centre(const PixelRectangle& region) const;

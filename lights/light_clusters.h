@@ -34,6 +34,7 @@ struct LightCluster {
     }
 };
 
+/// The lights of a video environment.
 struct LightClusters {
     std::size_t num_frames = 0;
     /// All clusters that have samples.
@@ -67,6 +68,7 @@ enum class Strength {
     Followed,
 };
 
+/// How lights change over their spans.
 struct StrengthOptions {
     Strength strength = Strength::Followed;
     /// Number of frames before and after a change of strength over which a raised cosine spreads

@@ -37,10 +37,12 @@ inline constexpr std::array AllLightFormats = {
 [[nodiscard]] std::string_view name(LightFormat format);
 /// Returns ".json", ".csv", ".pbrt", ".xml", ".usda", ".py" or ".gltf".
 [[nodiscard]] std::string_view extension(LightFormat format);
-/// Returns the format of a name or of a path's extension. Nothing for any other text.
+/// Returns the format of a name. Nothing for an unknown name.
 [[nodiscard]] std::optional<LightFormat> light_format_named(std::string_view name);
+/// Returns the format of a path's extension. Nothing for any other extension.
 [[nodiscard]] std::optional<LightFormat> light_format_of(const std::filesystem::path& path);
 
+/// Choices of the formats that have them.
 struct ExportOptions {
     /// True: lights are as wide as the part of the sphere they stand for, in formats with an angle
     /// (USD, Blender), and shadows are softer. False: all light comes from one direction.

@@ -14,6 +14,7 @@ struct Floats {
     std::size_t count = 0;
     std::vector<float> values = {};
 };
+/// Reads an accessor as floats.
 [[nodiscard]] Floats read_floats(Document& document, std::uint64_t accessor,
                                  std::uint32_t num_components);
 

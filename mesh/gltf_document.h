@@ -41,6 +41,7 @@ using Json = nlohmann::json;
 /// Returns the object or array of a name. Returns an empty one if it is absent.
 [[nodiscard]] const Json& child(const Json& object, const char* key);
 
+/// A parsed file, and the buffers that it names.
 class Document {
 public:
     /// `file` is a whole .gltf or .glb and must outlive the document. Versions other than 2, and

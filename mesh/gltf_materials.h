@@ -11,6 +11,7 @@
 
 namespace relumine::mesh::gltf {
 
+/// The materials of a file.
 struct Materials {
     /// Materials in the file's order.
     std::vector<Material> materials;

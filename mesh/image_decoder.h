@@ -15,6 +15,7 @@ inline constexpr std::uint32_t MaxImageEdge = 16384;
 /// hostile file of kilobytes cannot cost gigabytes.
 inline constexpr std::uint64_t MaxCheapPixels = std::uint64_t{1} << 26;
 
+/// A decoded image.
 struct DecodedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;

@@ -7,6 +7,7 @@
 
 namespace relumine::mesh {
 
+/// Where the vertex normals come from.
 enum class NormalSource {
     /// The file's normals if it has one for every vertex, smooth normals otherwise.
     File,

@@ -12,6 +12,7 @@ namespace relumine::mesh::ply_format {
 /// The number types of the format.
 enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
 
+/// A property of an element: a number or a list of numbers.
 struct Property {
     std::string_view name;
     Type type = Type::Int8;
@@ -19,12 +20,14 @@ struct Property {
     std::optional<Type> size_type;
 };
 
+/// A kind of element, and how many of it follow.
 struct Element {
     std::string_view name;
     std::uint64_t count = 0;
     std::vector<Property> properties;
 };
 
+/// The whole header.
 struct Header {
     std::string_view format;
     std::vector<Element> elements;

@@ -15,6 +15,7 @@
 
 namespace relumine::mesh {
 
+/// Vertices and faces as they stand in a file, not checked.
 struct PolygonSoup {
     /// [num_vertices]. Values may be infinite or NaN; load() checks them.
     std::vector<glm::vec3> positions;

@@ -13,6 +13,7 @@
 
 namespace relumine::mesh {
 
+/// Returns the bytes as text, without a copy.
 [[nodiscard]] std::string_view as_text(std::span<const std::byte> bytes);
 
 /// Returns text of unknown content for an error message: quoted, shortened, without control
@@ -42,6 +43,7 @@ public:
     /// Returns the whole word as a number: decimal, independent of the locale; nan and inf are
     /// allowed. Numbers too large for a double become infinite, too small ones zero.
     [[nodiscard]] double number(std::string_view word) const;
+    /// Returns the whole word as a whole number.
     [[nodiscard]] std::int64_t integer(std::string_view word) const;
     /// Returns three numbers of the current line, from words()[first] on. The words must exist.
     [[nodiscard]] glm::vec3 vector(std::size_t first) const;

@@ -30,6 +30,7 @@ struct BrightSpot {
     bool is_cut = false;
 };
 
+/// Limits of bright_spots().
 struct SpotOptions {
     std::size_t max_spots = 8;
     /// How far from its peak a spot is followed.

@@ -13,6 +13,7 @@
 
 namespace relumine::cubemap {
 
+/// A sun that was probably clipped, and the reason to think so.
 struct ClippedSun {
     /// Unit direction to the sun.
     glm::dvec3 direction{0.0, 1.0, 0.0};

@@ -27,6 +27,7 @@ struct EnvironmentStatistics {
     std::array<glm::dvec3, 6> axis_irradiance{};
 };
 
+/// Computes the figures of an image.
 [[nodiscard]] EnvironmentStatistics statistics(const EnvironmentImage& image);
 
 } // namespace relumine::cubemap

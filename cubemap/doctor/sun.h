@@ -40,6 +40,8 @@ struct Sun {
     std::vector<SunPixel> pixels = {};
 };
 
+/// The result of a search for the sun: the sun or the reason why there is none, and the lights that
+/// were compared.
 struct SunSearch {
     std::optional<Sun> sun = {};
     /// Why no sun was found, in one phrase: "the brightest light is 12 degrees wide". Empty: there

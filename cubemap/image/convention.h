@@ -36,10 +36,14 @@ struct Convention {
     /// True if samples of .exr files lie on the borders and the `envmap` attribute says so.
     bool has_attribute = false;
 
+    /// Returns true if the program reads this layout.
     [[nodiscard]] bool reads(Layout layout) const;
+    /// Returns the matrix for a layout: the identity for pictures that are neither lat-longs nor
+    /// made of faces.
     [[nodiscard]] const glm::dmat3& world_from(Layout layout) const;
 };
 
+/// Returns all conventions.
 [[nodiscard]] std::span<const Convention> conventions();
 /// Returns the convention of a name. Null for an unknown name.
 [[nodiscard]] const Convention* find_convention(std::string_view name);

@@ -41,6 +41,7 @@ inline constexpr std::array<Layout, 8> AllLayouts = {
     Layout::LatLong,         Layout::Cube,       Layout::VerticalCross, Layout::HorizontalStrip,
     Layout::HorizontalCross, Layout::AngularMap, Layout::MirrorBall,    Layout::Octahedral};
 
+/// Returns the layout's name on the command line and in messages.
 [[nodiscard]] std::string_view name(Layout layout);
 
 /// Returns true for layouts made of six cube faces.
@@ -86,6 +87,7 @@ struct EnvironmentImage {
     bool fixed = false;
 };
 
+/// How load_environment() interprets a file.
 struct LoadOptions {
     /// Layout of the image. Empty: taken from the `envmap` attribute or the aspect ratio.
     std::optional<Layout> layout = {};

@@ -31,6 +31,7 @@ struct ImageFile {
 /// before memory is allocated.
 inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 
+/// Returns true if a file's first bytes mark it as .exr or .hdr.
 [[nodiscard]] bool is_exr(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_hdr(std::span<const std::byte> bytes);
 

@@ -22,6 +22,7 @@ struct KeyedValue {
     bool operator==(const KeyedValue&) const = default;
 };
 
+/// The values of fields at one frame.
 struct KeyFrame {
     double frame = 0.0;
     std::vector<KeyedValue> changes;

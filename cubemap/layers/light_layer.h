@@ -74,6 +74,7 @@ struct Stroke {
     bool operator==(const Stroke&) const = default;
 };
 
+/// The region of a layer.
 using Region = std::variant<Disc, Rectangle, Lasso, Stroke>;
 
 /// Adds radiance times the coverage.
@@ -104,8 +105,10 @@ struct ImagePatch {
     bool operator==(const ImagePatch& other) const;
 };
 
+/// What a layer does in its region.
 using Effect = std::variant<Emit, Gain, ImagePatch>;
 
+/// One layer: a region, an effect, and the strength of the effect.
 struct LightLayer {
     std::string name;
     bool on = true;
@@ -130,6 +133,7 @@ void validate(const Region& region);
 /// Throws:  as validate().
 [[nodiscard]] double coverage(const Region& region, const glm::dvec3& direction);
 
+/// All directions within an angle of an axis.
 struct Cone {
     /// Unit axis.
     glm::dvec3 axis{0.0, 0.0, 1.0};

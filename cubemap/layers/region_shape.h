@@ -26,8 +26,10 @@
 
 namespace relumine::cubemap {
 
+/// How a region meets a set of directions: outside, partly or unknown, in its flat part.
 enum class Overlap { None, Part, All };
 
+/// A Disc. The other shapes have the same functions.
 class DiscShape {
 public:
     static constexpr std::size_t NumRamps = 1;
@@ -52,6 +54,7 @@ private:
     double squared_outer_, inverse_band_, smallest_feature_;
 };
 
+/// A Rectangle.
 class RectangleShape {
 public:
     static constexpr std::size_t NumRamps = 2;
@@ -87,9 +90,11 @@ private:
 struct LassoPlane {
     glm::dvec3 mean{0.0}, first{0.0}, second{0.0};
 };
+/// Lengths of a lasso as chords.
 struct LassoSize {
     double band = 0.0, extent = 0.0, smallest_feature = 0.0;
 };
+/// Lengths of a stroke.
 struct StrokeSize {
     /// Chords.
     double outer = 0.0, inner = 0.0;

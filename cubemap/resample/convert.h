@@ -18,7 +18,9 @@ struct Reorientation {
     /// Carries axes to axes. Its inverse is applied last.
     glm::dmat3 world_from_target = glm::dmat3(1.0);
 
+    /// Returns the matrix of the whole turn.
     [[nodiscard]] glm::dmat3 target_from_source() const;
+    /// Returns the turn back.
     [[nodiscard]] Reorientation inverse() const;
 };
 

@@ -6,8 +6,8 @@
 
 namespace relumine::cubemap::detail {
 
-/// Sampling::Borders makes the outermost texels half as wide as the others, as in a cube with
-/// samples on the borders.
+/// Returns a lat-long image as a cube map. Sampling::Borders makes the outermost texels half as
+/// wide as the others, as in a cube with samples on the borders.
 [[nodiscard]] CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution,
                                          Sampling sampling = Sampling::TexelCentres);
 

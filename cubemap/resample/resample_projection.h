@@ -9,6 +9,7 @@
 
 namespace relumine::cubemap::detail {
 
+/// Returns a picture of a Projection as a cube map.
 [[nodiscard]] CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution);
 
 /// Fills the pixels of an image whose layout and size are set. Pixels that show nothing are black.
