@@ -26,8 +26,8 @@ struct Convention {
     Layout usual_layout;
     /// All layouts that the program reads.
     std::span<const Layout> layouts;
-    /// Turns a direction in OpenEXR's axes, in which Layout describes the pictures, into our world
-    /// direction. One matrix is for lat-longs and single pictures, one for cube faces.
+    /// These matrices turn a direction in OpenEXR's axes, in which Layout describes the pictures,
+    /// into our world direction. Pictures that are neither lat-longs nor made of faces need none.
     glm::dmat3 world_from_lat_long = glm::dmat3(1.0);
     glm::dmat3 world_from_faces = glm::dmat3(1.0);
     /// True if the pictures of +Z and -Z in a strip or in six files are exchanged against OpenEXR's
@@ -38,8 +38,7 @@ struct Convention {
 
     /// Returns true if the program reads this layout.
     [[nodiscard]] bool reads(Layout layout) const;
-    /// Returns the matrix for a layout: the identity for pictures that are neither lat-longs nor
-    /// made of faces.
+    /// Returns the matrix for a layout.
     [[nodiscard]] const glm::dmat3& world_from(Layout layout) const;
 };
 
