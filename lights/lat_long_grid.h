@@ -11,6 +11,7 @@
 #include <glm/vec4.hpp>
 
 #include "cubemap/image/environment.h"
+#include "cubemap/luminance.h"
 
 namespace relumine::lights {
 
@@ -22,9 +23,9 @@ struct PixelRectangle {
     bool operator==(const PixelRectangle&) const = default;
 };
 
-/// Returns the luminance of linear RGB with the weights that [D05] takes from ITU-R BT.709.
+/// Returns the luminance of linear RGB with the weights of [D05].
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
-    return 0.2125 * rgb.r + 0.7154 * rgb.g + 0.0721 * rgb.b;
+    return cubemap::luminance(rgb, cubemap::MedianCutWeights);
 }
 
 /// A lat-long image with the places of its pixels. The grid refers to the image's pixels, so the
@@ -52,8 +53,8 @@ public:
     [[nodiscard]] double energy(std::uint32_t x, std::uint32_t y) const {
         return luminance(radiance(x, y)) * solid_angle(x, y);
     }
-    /// Returns the integral of w over the pixel's patch in x, y and z, and the patch's solid angle
-    /// in w.
+    /// Returns the integral of w over the pixel's footprint in x, y and z, and the footprint's
+    /// solid angle in w.
     [[nodiscard]] glm::dvec4 moments(std::uint32_t x, std::uint32_t y) const {
         const Row& row = rows_[y];
         const Column& column = columns_[x];

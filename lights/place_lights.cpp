@@ -74,8 +74,8 @@ cubemap::EnvironmentImage lat_long_of(const cubemap::CubeMap& map) {
     };
     if (image.pixels.empty() || !std::all_of(map.texels.begin(), map.texels.end(), is_positive))
         return image;
-    // The mean over overlaps of patches may leave -1e-28 beside a bright texel, and may lose up to
-    // 1e-6 of a single bright texel. Lights have to keep the power better than this.
+    // The mean over overlaps of footprints may leave -1e-28 beside a bright texel, and may lose up
+    // to 1e-6 of a single bright texel. Lights have to keep the power better than this.
     for (glm::vec3& pixel : image.pixels)
         pixel = glm::max(pixel, glm::vec3(0.0f));
     const glm::dvec3 wanted = cubemap::total_power(map);

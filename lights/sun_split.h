@@ -10,8 +10,8 @@
 
 namespace relumine::lights {
 
-/// Returns the sun as a light. Light and map together light a surface like the original;
-/// irradiance() of disc_light.h gives the light's part.
+/// Returns the sun as a light: a disc of its solid angle and of uniform radiance. Light and map
+/// together light a surface like the original.
 [[nodiscard]] DistantLight sun_light(const cubemap::Sun& sun);
 
 /// Replaces the sun by the sky around it. `sun` must have been found in this image or map.

@@ -1,8 +1,8 @@
 // A glTF 2.0 file: its JSON, read strictly, and its bytes.
 //
-// The project has its own reader because of three faults of tinygltf, which writes our .glb files:
-// it takes properties of a wrong type for absent ones, it decodes all images of a file, and it does
-// not check where data lie.
+// The project has its own reader because of three faults of tinygltf: it takes properties of a
+// wrong type for absent ones, it decodes all images of a file, and it does not check where data
+// lie.
 #pragma once
 
 #include <cstddef>

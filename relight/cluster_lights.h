@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/luminance.h"
 #include "prt/clusters/quadtree.h"
 
 namespace relumine::relight {
@@ -26,9 +27,7 @@ struct VectorIrradiance {
     VectorIrradiance& operator-=(const VectorIrradiance& other);
     bool operator==(const VectorIrradiance&) const = default;
     /// The vector of the luminance (Rec. 709 weights).
-    [[nodiscard]] glm::dvec3 luminance() const {
-        return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-    }
+    [[nodiscard]] glm::dvec3 luminance() const { return cubemap::luminance(red, green, blue); }
     /// Irradiance of a surface with this normal that sees all of it, never below zero.
     [[nodiscard]] glm::dvec3 on(const glm::vec3& normal) const {
         const glm::dvec3 n(normal);

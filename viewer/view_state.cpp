@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/image/environment.h"
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 
 namespace relumine::viewer {
 
@@ -114,8 +114,8 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
                                            path.string(), path.extension().string()));
         }
         cubemap::ImagePatch patch{.path = std::filesystem::absolute(path).lexically_normal(),
-                                  .picture = cubemap::load_picture(path)};
-        const cubemap::Picture::Level& full = patch.picture->levels().front();
+                                  .picture = cubemap::load_image_pyramid(path)};
+        const cubemap::Picture& full = patch.picture->levels().front();
         // As the picture's pixels are, 40 degrees along its longer side.
         constexpr double DegreesPerRadian = 180.0 / std::numbers::pi;
         const double half = std::tan(20.0 / DegreesPerRadian);

@@ -15,12 +15,8 @@
 
 namespace relumine::cubemap {
 
-/// The content of a decoded file.
-struct ImageFile {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    /// [height * width] row by row from the top; linear RGB radiance.
-    std::vector<glm::vec3> pixels;
+/// The content of a decoded file. An alpha channel is not read.
+struct ImageFile : Picture {
     /// The layout that the file itself states by OpenEXR's `envmap` attribute. Empty: none stated.
     std::optional<Layout> envmap;
     /// What a user may want to know, for example "luminance only".
@@ -48,9 +44,8 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
                                  const std::string& name);
 
 /// Returns an .exr file: 32-bit float RGB, ZIP. The `envmap` attribute is set if samples lie on the
-/// borders. `alpha` adds a channel A, with one value per pixel; empty adds none.
-[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
-                                                std::span<const float> alpha = {});
+/// borders. The file has a channel A if the picture has alpha.
+[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image);
 /// Returns an .hdr file: RGBE, run-length encoded, rounded to nearest.
 /// Throws:  std::invalid_argument for radiance that RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);

@@ -13,7 +13,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 
 namespace relumine::cubemap {
 
@@ -99,7 +99,7 @@ struct ImagePatch {
     enum class Blend : std::uint8_t { Replace, Add };
     /// The picture's path as a layer file names it. Only `picture` is drawn.
     std::filesystem::path path;
-    std::shared_ptr<const Picture> picture = nullptr;
+    std::shared_ptr<const ImagePyramid> picture = nullptr;
     Blend blend = Blend::Replace;
     /// Compares pictures by their pixels.
     bool operator==(const ImagePatch& other) const;

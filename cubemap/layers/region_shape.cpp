@@ -195,7 +195,7 @@ Overlap LassoRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const 
     if (away >= chord_radius)
         return Overlap::None;
     const double reach = size_.band + chord_radius;
-    // The limit is a little larger than needed. So rounding cannot make a cell deep inside look
+    // The limit is a little larger than needed. So rounding cannot make a square deep inside look
     // like one at the edge.
     const double distance = std::sqrt(outline_.squared_distance(w, 1.001 * reach * reach));
     return bound_of_depth(inside(w) ? distance : -distance, size_.band, chord_radius);
@@ -210,7 +210,7 @@ std::array<double, 1> LassoRamps<Arcs>::ramps(const glm::dvec3& w) const {
 template<typename Arcs>
 bool LassoRamps<Arcs>::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
     // At a corner two edges come near. Below 1/64 of the size, a corner hides less than 1/4096. In
-    // cells of more than 1/16 a sample may see a corner that lies outside the cell.
+    // squares of more than 1/16 a sample may see a corner that lies outside the square.
     return chord_radius > size_.extent / 64.0 &&
            (chord_radius > size_.extent / 16.0 || outline_.several_within(w, chord_radius));
 }

@@ -4,7 +4,7 @@
 // A shape answers two questions without arctangents.
 // - bound(): is a ball around a direction outside the region, in its flat part, or neither? All
 //   distances are chords, so the triangle inequality holds.
-// - ramps(): numbers that are nearly linear over a small cell. Coverage is the product of their
+// - ramps(): numbers that are nearly linear over a small square. Coverage is the product of their
 //   smoothsteps: 0 or less is none, 1 or more is all.
 //
 // within() narrows a shape to the directions within a chord of a unit direction. For these
@@ -33,7 +33,7 @@ enum class Overlap { None, Part, All };
 class DiscShape {
 public:
     static constexpr std::size_t NumRamps = 1;
-    /// True if a ramp of 1 at a cell's corners is 1 all over the cell.
+    /// True if a ramp of 1 at a square's corners is 1 all over the square.
     static constexpr bool HasConcaveRamps = false;
     explicit DiscShape(const Disc& disc);
 
@@ -43,7 +43,7 @@ public:
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
     /// Returns true if ramp i may have a kink within a chord that samples there do not show.
     [[nodiscard]] static bool has_kink(std::size_t, const glm::dvec3&, double) { return false; }
-    /// Returns a chord radius at which a cell is small against the region's features.
+    /// Returns a chord radius at which a square is small against the region's features.
     [[nodiscard]] double smallest_feature() const { return smallest_feature_; }
     [[nodiscard]] const DiscShape& within(const glm::dvec3&, double) const { return *this; }
 

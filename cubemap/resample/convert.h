@@ -28,12 +28,12 @@ struct Reorientation {
 ///
 /// - Pixels are copied bit by bit where each target pixel shows one source pixel: the faces of a
 ///   cube in another arrangement, a lat-long turned by whole pixels.
-/// - An image that shrinks is averaged over area: each target pixel is the mean of the source
-///   patches under it.
+/// - An image that shrinks is averaged over area: each target pixel is the mean of the source's
+///   footprints under it.
 /// - An image that grows (in natural resolution) is interpolated smoothly across all seams and then
-///   corrected: the mean over each source pixel's patch is nearly that pixel again, so shrinking
-///   the image back gives the source. Samples are never negative, constants stay constant, and
-///   total power is kept.
+///   corrected: the mean over each source pixel's footprint is nearly that pixel again, so
+///   shrinking the image back gives the source. Samples are never negative, constants stay
+///   constant, and total power is kept.
 ///
 /// Throws:  std::invalid_argument for sizes that do not fit the layout.
 /// Threads: parallel (TBB); the result is bitwise independent of the number of threads.

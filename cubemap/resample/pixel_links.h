@@ -23,10 +23,10 @@ public:
     PixelLinks(const ImageShape& source, const ImageShape& target,
                const glm::dmat3& target_from_source, std::uint32_t resolution, Axes axes);
 
-    /// Averages the source's `pixels` over the patch of each target pixel. Target pixels that show
-    /// nothing are black.
+    /// Averages the source's `pixels` over the footprint of each target pixel. Target pixels that
+    /// show nothing are black.
     [[nodiscard]] std::vector<glm::vec3> to_target(const std::vector<glm::vec3>& pixels) const;
-    /// Averages the target's `pixels` over the patch of each source pixel.
+    /// Averages the target's `pixels` over the footprint of each source pixel.
     [[nodiscard]] std::vector<glm::vec3> to_source(const std::vector<glm::vec3>& pixels) const;
 
 private:

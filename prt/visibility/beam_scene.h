@@ -11,7 +11,7 @@
 
 namespace relumine::prt {
 
-/// Answers for a block of receivers and a patch of directions together what another ray tracer
+/// Answers for a group of receivers and a patch of directions together what another ray tracer
 /// answers ray by ray.
 ///
 ///            patch of directions
@@ -22,7 +22,7 @@ namespace relumine::prt {
 ///     ----+--o-o-o-o-o----
 ///          receivers
 ///
-/// The rays of a block of receivers through a patch of directions fill a shaft. Six planes bound
+/// The rays of a group of receivers through a patch of directions fill a shaft. Six planes bound
 /// it: a triangle outside of one of them blocks none of the rays. One walk of a tree of triangles
 /// finds the few triangles that may block a ray. Most shafts meet nothing: 8,192 rays are decided
 /// at once. A triangle in the shaft is tested receiver by receiver: first against the receiver's
@@ -33,9 +33,9 @@ namespace relumine::prt {
 /// doubt (it passes an edge within some 1e-6 of its length), and then `exact` is asked. So are wide
 /// patches.
 ///
-/// A shaft of a fixed angle holds the more triangles the finer the mesh is, while a block of
+/// A shaft of a fixed angle holds the more triangles the finer the mesh is, while a group of
 /// receivers shrinks with them. So a crowded patch is traced direction by direction, all receivers
-/// of the block together (parallel_rays.h), which costs much the same for any number of triangles
+/// of the group together (parallel_rays.h), which costs much the same for any number of triangles
 /// but for the depth of the tree.
 class BeamScene final : public Blockers {
 public:
@@ -53,7 +53,7 @@ public:
 
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;
-    void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+    void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                        std::span<std::uint64_t> rays) const override;
 
 private:

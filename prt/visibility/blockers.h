@@ -47,7 +47,7 @@ struct DirectionPatch {
 };
 
 /// Receivers that lie close together.
-struct ReceiverBlock {
+struct ReceiverGroup {
     static constexpr std::size_t MaxSize = 128;
 
     /// [at most MaxSize] where their rays start
@@ -70,10 +70,10 @@ public:
                                                  const DirectionPacket& directions,
                                                  std::uint32_t active) const = 0;
 
-    /// Bit j of rays[i], which asks for the ray from the block's receiver i in the patch's
+    /// Bit j of rays[i], which asks for the ray from the group's receiver i in the patch's
     /// direction j, is cleared where that ray is blocked. Same answers as occluded(), which is what
     /// it asks here. Called from many threads at once.
-    virtual void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+    virtual void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                                std::span<std::uint64_t> rays) const;
 
 protected:

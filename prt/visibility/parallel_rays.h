@@ -1,4 +1,4 @@
-// Testing the rays of a block of receivers in one direction against the triangles before them.
+// Testing the rays of a group of receivers in one direction against the triangles before them.
 // Vectorised with run-time dispatch.
 #pragma once
 
@@ -15,16 +15,16 @@
 
 namespace relumine::prt {
 
-/// Where a block's rays start, in the layout that the kernel reads. Receivers beyond the block's
+/// Where a group's rays start, in the layout that the kernel reads. Receivers beyond the group's
 /// size repeat its first.
-struct BlockOrigins {
-    using Row = std::array<float, ReceiverBlock::MaxSize>;
+struct GroupOrigins {
+    using Row = std::array<float, ReceiverGroup::MaxSize>;
 
-    BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree);
+    GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree);
 
     /// x, y, z from the tree's centre
     alignas(64) std::array<Row, 3> from_centre;
-    /// From the middle of the block
+    /// From the middle of the group
     alignas(64) std::array<Row, 3> from_middle;
     /// As they are
     std::span<const glm::vec3> all;
@@ -35,8 +35,8 @@ struct BlockOrigins {
     float reach = 0.0f;
 };
 
-/// One bit for each receiver of a block.
-using ReceiverBits = std::array<std::uint64_t, ReceiverBlock::MaxSize / 64>;
+/// One bit for each receiver of a group.
+using ReceiverBits = std::array<std::uint64_t, ReceiverGroup::MaxSize / 64>;
 
 struct ParallelResult {
     /// For certain
@@ -60,6 +60,6 @@ struct ParallelResult {
 [[nodiscard]] ParallelResult
 test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
                    const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                   const BlockOrigins& origins, const ReceiverBits& active);
+                   const GroupOrigins& origins, const ReceiverBits& active);
 
 } // namespace relumine::prt

@@ -1,4 +1,4 @@
-// The rays of a block of receivers through a patch of directions: a rectangle before the receivers,
+// The rays of a group of receivers through a patch of directions: a rectangle before the receivers,
 // and six planes around the rays.
 #pragma once
 
@@ -37,7 +37,7 @@ struct PatchPlane : PatchRectangle {
     std::array<std::uint64_t, NumBins> until_s{}, from_s{}, until_t{}, from_t{};
 };
 
-/// Half-spaces normal . x >= offset that hold all rays of a block through a patch, in the tree's
+/// Half-spaces normal . x >= offset that hold all rays of a group through a patch, in the tree's
 /// coordinates: normal . w >= 0 for all directions w, and normal . o >= offset for all origins o.
 struct Shaft {
     static constexpr std::size_t NumPlanes = 6;

@@ -34,14 +34,14 @@ struct FacePlane {
 };
 
 /// The square [u - half, u + half] x [v - half, v + half] of a face's plane.
-struct Cell {
+struct FaceSquare {
     double u = 0.0;
     double v = 0.0;
     double half = 1.0;
-    /// Returns a chord that no direction of the cell exceeds, measured from the direction of the
-    /// cell's centre. Points of the plane come closer together when they move to the sphere.
+    /// Returns a chord that no direction of the square exceeds, measured from the direction of its
+    /// centre. Points of the plane come closer together when they move to the sphere.
     [[nodiscard]] double chord() const { return 1.4142135623730952 * half; }
-    [[nodiscard]] Cell quarter(int i) const {
+    [[nodiscard]] FaceSquare quarter(int i) const {
         const double h = 0.5 * half;
         return {(i & 1) != 0 ? u + h : u - h, (i & 2) != 0 ? v + h : v - h, h};
     }
@@ -60,14 +60,15 @@ struct Cell {
 /// Returns the mean of smoothstep(a + p x + q y) over the unit square.
 [[nodiscard]] double mean_smoothstep(double a, double p, double q);
 
-/// Returns the mean coverage, in [0, 1], of a cell for which bound() gives Part.
+/// Returns the mean coverage, in [0, 1], of a square for which bound() gives Part.
 template<typename Shape>
-[[nodiscard]] double mean_coverage(const Shape& shape, const FacePlane& plane, const Cell& cell);
+[[nodiscard]] double mean_coverage(const Shape& shape, const FacePlane& plane,
+                                   const FaceSquare& square);
 
 namespace detail {
 
-/// Mean of one ramp's smoothstep over a cell, from samples at the four corners (row by row) and at
-/// the centre.
+/// Mean of one ramp's smoothstep over a square, from samples at the four corners (row by row) and
+/// at the centre.
 struct RampFit {
     RampFit(const std::array<double, 4>& corners, double centre);
     double mean = 0.0;
@@ -75,30 +76,30 @@ struct RampFit {
     bool none = false;
     /// No sample is below 1.
     bool full = false;
-    /// The ramp changes little over the cell.
+    /// The ramp changes little over the square.
     bool smooth = false;
-    /// The ramp is straight over the cell; it may be steep.
+    /// The ramp is straight over the square; it may be steep.
     bool linear = false;
 };
 
 /// Returns the product of the ramps' means, or nothing if the fits cannot be trusted.
 template<typename Shape>
 std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane,
-                                      const Cell& cell) {
+                                      const FaceSquare& square) {
     constexpr std::size_t N = Shape::NumRamps;
-    // In larger cells the density of solid angle varies by more than a percent.
+    // In larger squares the density of solid angle varies by more than a percent.
     constexpr double LargestHalf = 1.0 / 256.0;
-    const bool smallest = cell.chord() <= shape.smallest_feature();
-    if (!smallest && cell.half > LargestHalf)
+    const bool smallest = square.chord() <= shape.smallest_feature();
+    if (!smallest && square.half > LargestHalf)
         return std::nullopt;
     const auto ramps_at = [&](double u, double v) {
         return shape.ramps(plane.direction(u, v));
     };
-    const double u0 = cell.u - cell.half, u1 = cell.u + cell.half;
-    const double v0 = cell.v - cell.half, v1 = cell.v + cell.half;
+    const double u0 = square.u - square.half, u1 = square.u + square.half;
+    const double v0 = square.v - square.half, v1 = square.v + square.half;
     const std::array<std::array<double, N>, 4> corners = {ramps_at(u0, v0), ramps_at(u1, v0),
                                                           ramps_at(u0, v1), ramps_at(u1, v1)};
-    const glm::dvec3 middle = plane.direction(cell.u, cell.v);
+    const glm::dvec3 middle = plane.direction(square.u, square.v);
     const std::array<double, N> centre = shape.ramps(middle);
     double product = 1.0;
     std::size_t num_partial = 0;
@@ -109,7 +110,7 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
         product *= fit.mean;
         if (smallest || (fit.full && Shape::HasConcaveRamps))
             continue;
-        const bool straight = fit.linear && !shape.has_kink(i, middle, cell.chord());
+        const bool straight = fit.linear && !shape.has_kink(i, middle, square.chord());
         if (fit.none && straight)
             return 0.0;
         num_partial += 1;
@@ -123,35 +124,35 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
     return product;
 }
 
-/// Returns the integral of coverage over a cell's solid angle.
+/// Returns the integral of coverage over a square's solid angle.
 template<typename Shape>
-double covered_solid_angle(const Shape& shape, const FacePlane& plane, const Cell& cell) {
-    switch (shape.bound(plane.direction(cell.u, cell.v), cell.chord())) {
+double covered_solid_angle(const Shape& shape, const FacePlane& plane, const FaceSquare& square) {
+    switch (shape.bound(plane.direction(square.u, square.v), square.chord())) {
     case Overlap::None:
         return 0.0;
     case Overlap::All:
-        return cell.solid_angle();
+        return square.solid_angle();
     case Overlap::Part:
         break;
     }
-    if (const std::optional<double> fitted = fitted_coverage(shape, plane, cell))
-        return *fitted * cell.solid_angle();
+    if (const std::optional<double> fitted = fitted_coverage(shape, plane, square))
+        return *fitted * square.solid_angle();
     double sum = 0.0;
     for (int i = 0; i < 4; ++i)
-        sum += covered_solid_angle(shape, plane, cell.quarter(i));
+        sum += covered_solid_angle(shape, plane, square.quarter(i));
     return sum;
 }
 
 } // namespace detail
 
 template<typename Shape>
-double mean_coverage(const Shape& shape, const FacePlane& plane, const Cell& cell) {
-    if (const std::optional<double> fitted = detail::fitted_coverage(shape, plane, cell))
+double mean_coverage(const Shape& shape, const FacePlane& plane, const FaceSquare& square) {
+    if (const std::optional<double> fitted = detail::fitted_coverage(shape, plane, square))
         return *fitted;
     double sum = 0.0;
     for (int i = 0; i < 4; ++i)
-        sum += detail::covered_solid_angle(shape, plane, cell.quarter(i));
-    return std::min(1.0, sum / cell.solid_angle());
+        sum += detail::covered_solid_angle(shape, plane, square.quarter(i));
+    return std::min(1.0, sum / square.solid_angle());
 }
 
 } // namespace relumine::cubemap

@@ -1,4 +1,5 @@
-// The patches of the sphere that the pixels of a Projection stand for, as spherical polygons.
+// Footprints: the parts of the sphere that the pixels of a Projection stand for, as spherical
+// polygons.
 #pragma once
 
 #include <array>
@@ -15,17 +16,17 @@
 
 namespace relumine::cubemap {
 
-/// Finds a pixel's patch.
+/// Finds a pixel's footprint.
 ///
-/// A patch comes in pieces well within a half-sphere. Its edges are curves on the sphere; chords
-/// replace them with an error below 1e-4 of a pixel. Neighbours share these chords, so patches tile
-/// the sphere. A pixel on the rim of a disc keeps its part inside the disc. The rim itself shrinks
-/// to the one direction that it shows.
+/// A footprint comes in pieces well within a half-sphere. Its edges are curves on the sphere;
+/// chords replace them with an error below 1e-4 of a pixel. Neighbours share these chords, so
+/// footprints tile the sphere. A pixel on the rim of a disc keeps its part inside the disc. The rim
+/// itself shrinks to the one direction that it shows.
 ///
 /// Threads: use one object per thread; it keeps its buffers.
-class PatchPieces {
+class ProjectionFootprints {
 public:
-    PatchPieces(const Projection& projection, std::uint32_t width, std::uint32_t height);
+    ProjectionFootprints(const Projection& projection, std::uint32_t width, std::uint32_t height);
 
     /// Returns true if the whole pixel shows a part of the sphere.
     [[nodiscard]] bool is_whole(std::uint32_t x, std::uint32_t y) const;
