@@ -42,9 +42,8 @@ glm::dvec3 knot_line(double t) {
 
 // Parameters at equal distances along the closed line, [num].
 std::vector<double> even_parameters(std::uint32_t num) {
-    constexpr int NumChords =
-        // The chords are shorter than the line by less than 1e-7 of its length.
-        20'000;
+    // The chords are shorter than the line by less than 1e-7 of its length.
+    constexpr int NumChords = 20'000;
     std::vector<double> length_to = {0.0};
     for (int i = 0; i < NumChords; ++i) {
         const double chord =

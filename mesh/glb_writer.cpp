@@ -102,9 +102,8 @@ std::string container(std::string json, const std::string& bytes) {
 std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     const std::uint64_t num_bytes =
         std::uint64_t{mesh.num_vertices()} * 36 + std::uint64_t{mesh.num_triangles()} * 12;
-    constexpr std::uint64_t MaxBytes =
-        // Leaves room for the JSON part.
-        std::numeric_limits<std::uint32_t>::max() - 65536;
+    // Leaves room for the JSON part.
+    constexpr std::uint64_t MaxBytes = std::numeric_limits<std::uint32_t>::max() - 65536;
     if (num_bytes > MaxBytes)
         throw std::runtime_error(
             fmt::format("expected at most {} bytes in a .glb file, got {}", MaxBytes, num_bytes));

@@ -226,10 +226,9 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         }
         const float further =
             run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
-        constexpr float Least =
-            // Least value relative to the pixel. The next round multiplies, so a value must not
-            // come near zero.
-            0.25f;
+        // Least value relative to the pixel. The next round multiplies, so a value must not come
+        // near zero.
+        constexpr float Least = 0.25f;
         for (std::size_t i = 0; i < grown.size(); ++i) {
             const glm::vec3 end = start[i] * factor[i];
             start[i] = glm::max(end + further * (end - grown[i]), Least * end);

@@ -62,9 +62,8 @@ bool ProjectionFootprints::clip(const Rectangle& rectangle) {
 }
 
 bool ProjectionFootprints::is_small(const Rectangle& rectangle) const {
-    constexpr double LargestSide =
-        // Part of the picture's side. A larger rectangle might hold the whole disc.
-        0.25;
+    // Part of the picture's side. A larger rectangle might hold the whole disc.
+    constexpr double LargestSide = 0.25;
     constexpr double LargestAngle = 0.3;
     if (corners_.empty() || rectangle.high.x - rectangle.low.x > LargestSide ||
         rectangle.high.y - rectangle.low.y > LargestSide)

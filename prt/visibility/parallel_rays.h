@@ -28,6 +28,8 @@ struct GroupOrigins {
     alignas(64) std::array<Row, 3> from_middle;
     /// As they are
     std::span<const glm::vec3> all;
+    /// As the group has it
+    glm::vec3 mean_normal{0.0f};
     glm::vec3 middle{0.0f};
     /// Largest coordinate from the middle
     float radius = 0.0f;
@@ -38,6 +40,14 @@ struct GroupOrigins {
 /// One bit for each receiver of a group.
 using ReceiverBits = std::array<std::uint64_t, ReceiverGroup::MaxSize / 64>;
 
+/// One direction of a patch.
+struct PatchDirection {
+    const DirectionPatch& patch;
+    /// The patch's own
+    const PatchPlane& plane;
+    std::size_t index = 0;
+};
+
 struct ParallelResult {
     /// For certain
     ReceiverBits blocked{};
@@ -47,7 +57,7 @@ struct ParallelResult {
     std::size_t num_leaves = 0;
 };
 
-/// Tests the rays of `active` receivers in the patch's direction j. Seen along it, receivers are
+/// Tests the rays of `active` receivers in one direction. Seen along it, receivers are
 /// points and triangles stay triangles:
 ///
 ///          . . .             16 receivers at a time are compared with one edge at a time, two
@@ -57,9 +67,9 @@ struct ParallelResult {
 ///     /__\ . . .             of directions meets more and more.
 ///
 /// Rays among too many triangles are all in doubt.
-[[nodiscard]] ParallelResult
-test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                   const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                   const GroupOrigins& origins, const ReceiverBits& active);
+[[nodiscard]] ParallelResult test_parallel_rays(const TriangleTree& tree,
+                                                const PatchDirection& of_patch,
+                                                const GroupOrigins& origins,
+                                                const ReceiverBits& active);
 
 } // namespace relumine::prt
