@@ -91,8 +91,8 @@ struct Finder {
         return *middle;
     }
 
-    /// Sets the spot's texels: all texels above `level` that are connected with `start`. The spot is
-    /// cut at the chord `farthest`.
+    /// Sets the spot's texels: all texels above `level` that are connected with `start`. The spot
+    /// is cut at the chord `farthest`.
     void flood(std::uint32_t start, float farthest, double level, BrightSpot& spot) const {
         std::vector<std::uint32_t> front = {start};
         spot.texels = {start};
