@@ -1,4 +1,4 @@
-// How bright a colour is.
+// Luminance of a colour.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -12,17 +12,19 @@ struct LuminanceWeights {
 
 /// The weights of ITU-R BT.709.
 inline constexpr LuminanceWeights Rec709Weights{0.2126, 0.7152, 0.0722};
-/// The same weights as [D05] prints them. Light lists follow that paper and the ones after it.
+/// The same weights as [D05] prints them. Light lists use these, like that paper and its
+/// successors.
 inline constexpr LuminanceWeights MedianCutWeights{0.2125, 0.7154, 0.0721};
 
-/// Luminance of a colour whose channels are numbers, or of light whose channels are vectors.
+/// Returns the luminance of a colour whose channels are numbers, or of light whose channels are
+/// vectors.
 template<class Channel>
 [[nodiscard]] Channel luminance(const Channel& red, const Channel& green, const Channel& blue,
                                 const LuminanceWeights& weights = Rec709Weights) {
     return weights.red * red + weights.green * green + weights.blue * blue;
 }
 
-/// Luminance of linear RGB.
+/// Returns the luminance of linear RGB.
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb,
                                       const LuminanceWeights& weights = Rec709Weights) {
     return luminance(rgb.x, rgb.y, rgb.z, weights);

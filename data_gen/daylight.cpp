@@ -15,16 +15,16 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-// One wavelength: the sun's radiance above the atmosphere and ozone's absorption ([P99] Table 2),
-// and the CIE 1931 2-degree observer.
+// One wavelength: the sun's radiance above the atmosphere and the absorption of ozone and water
+// ([P99] Table 2), and the CIE 1931 2-degree observer.
 struct SpectralRow {
-    /// micrometres
+    /// In micrometres.
     double wavelength;
-    /// W / (m^2 sr nm)
+    /// In W / (m^2 sr nm).
     double sun;
-    /// 1/cm
+    /// In 1/cm.
     double ozone;
-    /// 1/cm
+    /// In 1/cm.
     double water;
     double x, y, z;
 };
@@ -48,15 +48,15 @@ constexpr std::array<SpectralRow, 16> Spectrum = {{
     {0.70, 20240.4, 0.023, 0.024, 0.01136, 0.00410, 0.00000},
 }};
 
-// IEC 61966-2-1: linear Rec. 709 from CIE XYZ; what lies outside becomes 0.
+// Linear Rec. 709 from CIE XYZ (IEC 61966-2-1). Negative values become 0.
 glm::dvec3 rgb_from_xyz(const glm::dvec3& c) {
     return glm::max(glm::dvec3(0.0), glm::dvec3(3.2406 * c.x - 1.5372 * c.y - 0.4986 * c.z,
                                                 -0.9689 * c.x + 1.8758 * c.y + 0.0415 * c.z,
                                                 0.0557 * c.x - 0.2040 * c.y + 1.0570 * c.z));
 }
 
-// Part of the light of one wavelength that comes through the air straight [P99, A.1]. Mixed gases
-// absorb beyond 759 nm only.
+// The part of the light of one wavelength that passes straight through the air [P99, A.1]. Mixed
+// gases absorb only beyond 759 nm.
 double transmittance(const SpectralRow& row, double turbidity, double air_mass) {
     const double m = air_mass;
     const double rayleigh = std::exp(-0.008735 * m * std::pow(row.wavelength, -4.08));
@@ -70,7 +70,7 @@ double transmittance(const SpectralRow& row, double turbidity, double air_mass) 
     return rayleigh * aerosol * ozone * water;
 }
 
-// kcd/m^2 as linear RGB.
+// The sun's radiance in kcd/m^2 as linear RGB.
 glm::dvec3 sun_radiance(double turbidity, double zenith_angle) {
     const double zenith_degrees = zenith_angle * 180.0 / Pi;
     const double air_mass =
@@ -83,7 +83,8 @@ glm::dvec3 sun_radiance(double turbidity, double zenith_angle) {
     return rgb_from_xyz(xyz * (LumensPerWatt * RowWidth / 1000.0));
 }
 
-// Luminance Y and chromaticities x and y at the zenith, the sun at `theta` from it [P99, A.2].
+// Luminance Y and chromaticities x and y at the zenith, for a sun at the angle `theta` from it
+// [P99, A.2].
 std::array<double, 3> zenith_values(double T, double theta) {
     const double chi = (4.0 / 9.0 - T / 120.0) * (Pi - 2.0 * theta);
     const auto cubic = [&](double a, double b, double c, double d) {
@@ -153,8 +154,7 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
 }
 
 glm::dvec3 Daylight::sky_irradiance() const {
-    // The midpoint rule in azimuth and in the squared sine of the angle
-    // from the zenith.
+    // The midpoint rule in azimuth and in the squared sine of the angle from the zenith.
     constexpr int NumRings = 128;
     constexpr int NumSectors = 256;
     glm::dvec3 sum(0.0);

@@ -21,7 +21,7 @@ void add_frame(const cubemap::EnvironmentImage& image, std::uint32_t frame,
         throw std::invalid_argument(
             fmt::format("expected at most {} samples for {} x {} pixels, got {}", grid.num_pixels(),
                         grid.width(), grid.height(), options.samples_per_frame));
-    // Such large steps: the samples of neighbouring frames have nothing in common.
+    // Seeds with such large steps make the samples of neighbouring frames independent.
     const std::uint64_t seed = options.seed_per_frame
                                    ? options.seed + (std::uint64_t{frame} + 1) * SplitMix64::Step
                                    : options.seed;

@@ -49,16 +49,17 @@ LatLongGrid::LatLongGrid(const cubemap::EnvironmentImage& image) : pixels_(image
                                                 image.width, image.height, image.pixels.size()));
     check_radiance(pixels_, image.width);
 
-    // sin a - sin b and so on as products, without cancellation between narrow borders
+    // Differences such as sin a - sin b are written as products, so narrow borders cause no
+    // cancellation.
     const std::vector<double> down = cubemap::cell_borders(image.height, image.sampling);
     for (std::uint32_t y = 0; y < image.height; ++y) {
         const double top = std::numbers::pi * down[y];
         const double bottom = std::numbers::pi * down[y + 1];
         const double height = 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
-        // integral of sin^2 = (bottom - top) / 2 - (sin 2 bottom - sin 2 top) / 4
+        // The integral of sin^2 is (bottom - top) / 2 - (sin 2 bottom - sin 2 top) / 4.
         const double across =
             0.5 * (bottom - top) - 0.5 * std::cos(top + bottom) * std::sin(bottom - top);
-        // integral of sin cos = (sin^2 bottom - sin^2 top) / 2
+        // The integral of sin cos is (sin^2 bottom - sin^2 top) / 2.
         const double upwards = 0.5 * std::sin(top + bottom) * std::sin(bottom - top);
         rows_.push_back({top, bottom, height, across, upwards});
     }

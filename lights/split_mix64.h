@@ -11,8 +11,8 @@ namespace relumine::lights {
 /// A stream of 64-bit numbers: a counter whose values are mixed.
 class SplitMix64 {
 public:
-    /// The counter's step, 2^64 over the golden ratio. Seeds that differ by it start the same
-    /// stream one number apart.
+    /// The counter's step, 2^64 over the golden ratio. Two seeds that differ by the step start the
+    /// same stream, one number apart.
     static constexpr std::uint64_t Step = 0x9e3779b97f4a7c15u;
 
     explicit SplitMix64(std::uint64_t seed) : counter_(seed) {}
@@ -24,7 +24,7 @@ public:
         return z ^ (z >> 31);
     }
 
-    /// A number in [0, n) for n > 0. Small numbers are more likely by at most n in 2^64.
+    /// Returns a number in [0, n) for n > 0. Small numbers are more likely by at most n in 2^64.
     [[nodiscard]] std::size_t below(std::size_t n) { return next() % n; }
 
 private:

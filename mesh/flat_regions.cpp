@@ -14,7 +14,7 @@ namespace relumine::mesh {
 
 namespace {
 
-/// An edge as its triangle runs along it.
+/// An edge in the direction of its triangle.
 struct HalfEdge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
@@ -24,7 +24,7 @@ struct HalfEdge {
     }
 };
 
-/// Sets that grow together.
+/// Disjoint sets that can be joined.
 class Regions {
 public:
     explicit Regions(std::size_t n) : parents_(n) {
@@ -43,14 +43,14 @@ private:
     std::vector<std::uint32_t> parents_;
 };
 
-/// A point's two coordinates other than `axis`: points of one plane keep their order of turns under
-/// that, or all reverse it.
+/// Returns a point's two coordinates other than `axis`. Turns of points in one plane all keep their
+/// direction in this projection, or all reverse it.
 glm::vec2 without(int axis, const glm::vec3& point) {
     return {point[(axis + 1) % 3], point[(axis + 2) % 3]};
 }
 
-/// How a triangle turns, seen along each axis. Triangles of one plane that turn the same way on
-/// every axis lie on the same side up.
+/// Returns how a triangle turns, seen along each axis. Triangles of one plane that turn the same
+/// way on every axis have the same side up.
 std::array<int, 3> turns(const TriangleMesh& mesh, const Triangle& triangle) {
     std::array<int, 3> result{};
     for (int axis = 0; axis < 3; ++axis)
@@ -60,7 +60,7 @@ std::array<int, 3> turns(const TriangleMesh& mesh, const Triangle& triangle) {
     return result;
 }
 
-/// The vertices of half-edges that are one loop, in order. Nothing where they are none.
+/// Returns the vertices of half-edges in order if they are one loop. Returns nothing otherwise.
 std::optional<std::vector<std::uint32_t>> loop_of(std::vector<HalfEdge> outline) {
     std::sort(outline.begin(), outline.end(),
               [](const HalfEdge& a, const HalfEdge& b) { return a.from < b.from; });
@@ -85,11 +85,11 @@ std::optional<std::vector<std::uint32_t>> loop_of(std::vector<HalfEdge> outline)
     return loop;
 }
 
-/// The corners of the convex polygon that half-edges enclose: one loop, that turns one way, once
-/// around. Nothing where they do not.
+/// Returns the corners of the convex polygon that half-edges enclose. Returns nothing unless they
+/// are one loop that turns one way and goes around once.
 ///
-/// All triangles of the region turn the same way, so each point off their edges is covered as often
-/// as the outline winds around it: once inside of such a loop, never outside.
+/// All triangles of the region turn the same way. So each point off their edges is covered as often
+/// as the outline winds around it: once inside such a loop, never outside.
 std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mesh,
                                                          std::vector<HalfEdge> outline,
                                                          const std::array<int, 3>& orientation) {
@@ -105,10 +105,12 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
         return without(axis, mesh.positions[(*loop)[i % loop->size()]]);
     };
 
-    // Corners turn with the triangles; a vertex between two sides of one line must lie between
+    // Corners turn like the triangles. A vertex between two sides of one line must lie between
     // their ends.
     std::vector<std::uint32_t> corners;
-    int num_reversals = 0; // of the direction along the first coordinate: two for one time around
+    // Reversals of the direction along the first coordinate. An outline that goes around once has
+    // two.
+    int num_reversals = 0;
     int last_direction = 0;
     int first_direction = 0;
     for (std::size_t i = 0; i < loop->size(); ++i) {
@@ -124,9 +126,8 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
                  (before.y < here.y) != (here.y < after.y) ||
                  (before.x > here.x) != (here.x > after.x) ||
                  (before.y > here.y) != (here.y > after.y))
-            return std::nullopt; // turns back on itself
-        // A side that goes straight up or down counts as going right, or left, by its second
-        // coordinate.
+            return std::nullopt; // the outline turns back on itself
+        // For a side that goes straight up or down, the second coordinate decides.
         const int direction =
             here.x != after.x ? (here.x < after.x ? 1 : -1) : (here.y < after.y ? 1 : -1);
         num_reversals += static_cast<int>(last_direction != 0 && direction != last_direction);
@@ -140,7 +141,7 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
     return corners;
 }
 
-/// All edges of all triangles; the edges of one pair of vertices side by side.
+/// Returns all edges of all triangles. Edges between the same two vertices follow each other.
 std::vector<HalfEdge> edges_of(const TriangleMesh& mesh) {
     std::vector<HalfEdge> edges;
     edges.reserve(3 * mesh.num_triangles());
@@ -153,7 +154,7 @@ std::vector<HalfEdge> edges_of(const TriangleMesh& mesh) {
     return edges;
 }
 
-/// Whether the triangles on both sides of an edge lie in one plane, the same side up.
+/// Returns true if the triangles on both sides of an edge lie in one plane with the same side up.
 bool lie_flat(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
     const auto has_three_corners = [&](const HalfEdge& edge) {
         const auto& [i, j, k] = mesh.triangles[edge.triangle];
@@ -172,8 +173,8 @@ bool lie_flat(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
            orientation == turns(mesh, mesh.triangles[b.triangle]);
 }
 
-/// Joins the two triangles of an edge that lie flat. Edges with one or many triangles stay
-/// outlines. Returns for each edge whether it is inside of a region.
+/// Joins the two triangles of an edge if they lie flat. Edges with one triangle or with many stay
+/// outlines. Returns whether each edge is inside a region.
 std::vector<bool> join_flat_triangles(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges,
                                       Regions& regions) {
     std::vector<bool> is_inner(edges.size(), false);
@@ -198,7 +199,7 @@ std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
     Regions regions(num_triangles);
     const std::vector<bool> is_inner = join_flat_triangles(mesh, edges, regions);
 
-    // The outlines of regions of more than two triangles, region by region.
+    // The outlines of regions with more than two triangles, region by region.
     std::vector<std::uint32_t> sizes(num_triangles, 0);
     for (std::uint32_t i = 0; i < num_triangles; ++i)
         ++sizes[regions.root(i)];

@@ -25,7 +25,7 @@ constexpr int Triangles = 4;
 constexpr std::uint32_t Magic = 0x46546c67, Version = 2;
 constexpr std::uint32_t JsonChunk = 0x4e4f534a, BinaryChunk = 0x004e4942;
 
-/// What an accessor says of its array.
+/// How an accessor describes its array.
 struct ArrayKind {
     int component_type;
     const char* type;
@@ -38,7 +38,7 @@ struct Arrays {
     nlohmann::json accessors = nlohmann::json::array();
     std::string bytes;
 
-    /// Returns the index of the array's accessor.
+    /// Appends an array. Returns the index of its accessor.
     template<class Value>
     std::size_t append(std::span<const Value> values, const ArrayKind& kind, std::size_t count) {
         nlohmann::json view = {
@@ -59,14 +59,14 @@ struct Arrays {
     }
 };
 
-/// The format asks for the exact bounds of positions.
+/// Sets the exact bounds of positions, which the format demands.
 void set_bounds(nlohmann::json& accessor, std::span<const glm::vec3> positions) {
     glm::vec3 min = positions[0], max = positions[0];
     for (const glm::vec3& position : positions) {
         min = glm::min(min, position);
         max = glm::max(max, position);
     }
-    // In double: JSON then has the floats' exact values.
+    // Doubles give the floats' exact values in JSON.
     accessor["min"] = {double{min.x}, double{min.y}, double{min.z}};
     accessor["max"] = {double{max.x}, double{max.y}, double{max.z}};
 }
@@ -81,8 +81,8 @@ void append_chunk(std::string& file, std::uint32_t type, const std::string& cont
     file += content;
 }
 
-/// Header, a chunk of JSON and one of bytes. Chunks are filled up to multiples of four bytes, JSON
-/// with spaces; the bytes are such a multiple already.
+/// Returns the whole file: a header, a chunk of JSON and a chunk of bytes. Chunks are filled up to
+/// multiples of four bytes, JSON with spaces. The bytes are such a multiple already.
 std::string container(std::string json, const std::string& bytes) {
     constexpr std::size_t HeaderSize = 12, ChunkHeaderSize = 8;
     json.resize((json.size() + 3) / 4 * 4, ' ');
@@ -102,8 +102,8 @@ std::string container(std::string json, const std::string& bytes) {
 std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     const std::uint64_t num_bytes =
         std::uint64_t{mesh.num_vertices()} * 36 + std::uint64_t{mesh.num_triangles()} * 12;
-    constexpr std::uint64_t MaxBytes =
-        std::numeric_limits<std::uint32_t>::max() - 65536; // room for the JSON part
+    // Leaves room for the JSON part.
+    constexpr std::uint64_t MaxBytes = std::numeric_limits<std::uint32_t>::max() - 65536;
     if (num_bytes > MaxBytes)
         throw std::runtime_error(
             fmt::format("expected at most {} bytes in a .glb file, got {}", MaxBytes, num_bytes));

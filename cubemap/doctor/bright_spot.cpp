@@ -13,18 +13,18 @@ namespace {
 constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
 
 /// The surroundings are a ring about the peak. Its inner radius leaves out the bloom that lenses
-/// put around the sun; its width is that of a piece of sky. Both are at least some texels in coarse
-/// maps.
+/// put around the sun. Its width spans a piece of sky. In coarse maps both are at least some
+/// texels.
 constexpr double RingInnerDegrees = 8.0, RingOuterDegrees = 20.0;
 constexpr double RingInnerTexels = 3.0, RingOuterTexels = 6.0;
-/// No other spot is looked for closer to a peak.
+/// No other spot is searched closer to a peak than this.
 constexpr double ApartDegrees = 5.0;
 constexpr double ApartTexels = 2.0;
-/// A spot ends where the light is less than this part of its peak, or this many times its
-/// surroundings.
+/// A spot ends where the light above the surroundings falls below PeakPart of the peak's, or the
+/// light falls below TimesSurroundings times the surroundings.
 constexpr double PeakPart = 0.01;
 constexpr double TimesSurroundings = 2.0;
-/// Peaks below this part of the brightest are not worth a look.
+/// Peaks below this part of the brightest peak are ignored.
 constexpr double FaintestPeak = 0.002;
 
 double distance_of_angle(double radians) {
@@ -49,7 +49,7 @@ struct Finder {
         return solid_angles[texel % (std::size_t{resolution} * resolution)];
     }
 
-    /// Brightest texel that is not taken.
+    /// Returns the brightest texel that is not taken.
     [[nodiscard]] std::uint32_t peak() const {
         std::uint32_t best = 0;
         float value = -1.0f;
@@ -62,7 +62,7 @@ struct Finder {
         return value > 0.0f ? best : static_cast<std::uint32_t>(luminances.size());
     }
 
-    /// Calls visit(texel, chord) for texels within a chord.
+    /// Calls visit(texel, squared chord) for the texels within a chord.
     template<typename Visit>
     void near(const glm::vec3& direction, double chord, const Visit& visit) const {
         const auto limit = static_cast<float>(chord * chord);
@@ -91,8 +91,8 @@ struct Finder {
         return *middle;
     }
 
-    /// Sets the spot's texels: those connected with `start` that are above `level`. Where they go
-    /// on beyond the chord `farthest` the spot is cut.
+    /// Sets the spot's texels: all texels above `level` that are connected with `start`. The spot
+    /// is cut at the chord `farthest`.
     void flood(std::uint32_t start, float farthest, double level, BrightSpot& spot) const {
         std::vector<std::uint32_t> front = {start};
         spot.texels = {start};
@@ -138,7 +138,7 @@ struct Finder {
     }
 
     void take(const BrightSpot& spot) {
-        // Its rim too, where it covers texels only in part.
+        // The rim is taken too: the spot covers its texels in part.
         for (const std::uint32_t texel : grown(grown(spot.texels, resolution), resolution))
             taken[texel] = true;
         const double apart =

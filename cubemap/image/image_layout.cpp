@@ -88,7 +88,7 @@ bool fits(Layout layout, std::uint32_t width, std::uint32_t height) {
 }
 
 std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction) {
-    // The sample of n that lies at a position of [0, 1].
+    // Returns the sample of n that lies at a position of [0, 1], if there is one.
     const auto sample = [&](double position, std::uint32_t n) -> std::optional<std::size_t> {
         const double index =
             shape.sampling == Sampling::Borders && n > 1 ? position * (n - 1) : position * n - 0.5;
@@ -184,7 +184,7 @@ std::vector<PixelPlace> projected_places(const ImageShape& shape) {
     const Projection& picture = *projection(shape.layout);
     std::vector<PixelPlace> places(static_cast<std::size_t>(shape.width) * shape.height);
     const double area = 1.0 / (static_cast<double>(shape.width) * shape.height);
-    // Gauss-Legendre, three points each way, is exact to 1e-9 of a pixel this small.
+    // Gauss-Legendre with three points in each direction is exact to 1e-9 of such a small pixel.
     constexpr std::uint32_t SmallPixels = 32;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, shape.height), [&](const auto& rows) {
         ProjectionFootprints pieces(picture, shape.width, shape.height);

@@ -11,9 +11,10 @@ namespace relumine::cubemap {
 struct Picture {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    /// [height * width] row by row from the top; linear RGB radiance
+    /// [height * width] row by row from the top; linear RGB radiance.
     std::vector<glm::vec3> pixels = {};
-    /// [height * width], 0..1, multiplied into the pixels where it is not 0; or empty: opaque
+    /// [height * width] in [0, 1]. It is already multiplied into the pixels where it is not 0.
+    /// Empty: the picture is opaque.
     std::vector<float> alpha = {};
     bool operator==(const Picture&) const = default;
 };

@@ -20,8 +20,8 @@ bool is_radiance(const glm::vec3& value) {
            std::isfinite(value.y) && std::isfinite(value.z);
 }
 
-/// Half as many pixels each way (at least one), each the mean of those it covers, also where the
-/// number is odd.
+/// Returns half as many pixels in each direction (at least one). Each is the mean of the pixels it
+/// covers, also for an odd number of pixels.
 Picture halved(const Picture& from) {
     Picture to{.width = std::max(1u, from.width / 2),
                .height = std::max(1u, from.height / 2),

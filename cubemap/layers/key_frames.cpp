@@ -1,4 +1,4 @@
-// Layers between key frames.
+// Interpolates layers between key frames.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,7 +13,7 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// The keys around a frame that name a field: one of them may be missing.
+/// The two keys around a frame that name a field. One of them may be missing.
 struct Around {
     const KeyFrame* before = nullptr;
     const KeyFrame* after = nullptr;
@@ -42,8 +42,8 @@ Around keys_around(std::span<const KeyFrame> frames, double frame, const std::st
     return around;
 }
 
-/// On the great circle at constant speed; the length goes linearly. Opposite directions turn about
-/// an axis across them.
+/// Moves along the great circle at constant speed; the length changes linearly. Between opposite
+/// directions the turn is about an axis perpendicular to them.
 glm::dvec3 turned_toward(const glm::dvec3& from, const glm::dvec3& to, double t) {
     const double from_length = glm::length(from), to_length = glm::length(to);
     if (from == to || !(from_length > 0.0) || !(to_length > 0.0))

@@ -15,9 +15,9 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Tiles are cut from the whole face, not from the rectangles, so that every texel meets the same
-/// tests wherever rectangles begin. 32 x 32: a disc of 100 texels' radius has about as many tiles
-/// at its rim as inside it.
+/// Tiles are cut from the whole face, not from the rectangles. So a texel gets the same tests
+/// wherever rectangles begin. With 32 x 32, a disc of 100 texels' radius has about as many tiles at
+/// its rim as inside.
 constexpr std::uint32_t TileSize = 32;
 
 /// A layer's effect with its gain multiplied in.
@@ -91,9 +91,9 @@ public:
     PlacedPicture(const RectangleShape& rectangle, const ImagePyramid& picture,
                   const FaceGrid& grid)
         : rectangle_(rectangle), picture_(picture), plane_(grid.plane) {
-        // One level for the whole picture, or a bright spot where two levels meet would be counted
-        // by neither or both: pixels of half a texel or more at the picture's and the face's
-        // middle, but at least eight of them.
+        // One level serves the whole picture. With two, a bright spot at their border would be
+        // counted twice or not at all. At the middle of the picture and of the face, a pixel of
+        // this level has at least half the width of a texel; the level has at least eight pixels.
         const glm::dvec2& half = rectangle.half_sides();
         const double texel = std::min(0.25, grid.half_texel / std::sqrt(half.x * half.y));
         const Picture& full = picture.levels().front();
@@ -104,21 +104,22 @@ public:
         largest_part_ = LargestPart / std::max({chosen.width, chosen.height, 8u});
     }
 
-    /// Mean of coverage times the picture over a texel.
+    /// Returns the mean of coverage times the picture over a texel.
     [[nodiscard]] glm::dvec3 mean(const FaceSquare& texel, bool covered) const {
         return light(texel, covered) / texel.solid_angle();
     }
 
 private:
-    /// Of a pixel's side, so that every pixel is met evenly
+    /// Part of a pixel's side. Smaller parts meet every pixel evenly.
     static constexpr double LargestPart = 0.5;
 
-    /// Integral over the solid angle of a texel or a part of it.
+    /// Returns the integral of coverage times the picture over the solid angle of a texel or a part
+    /// of it.
     [[nodiscard]] glm::dvec3 light(const FaceSquare& part, bool covered) const {
         const glm::dvec3 middle = plane_.direction(part.u, part.v);
         if (!covered && rectangle_.bound(middle, part.chord()) == Overlap::None)
             return glm::dvec3(0.0);
-        // The part's side in units of the picture's.
+        // The part is small enough if its side, in units of the picture's, is below the limit.
         const double angle = part.solid_angle();
         if (angle > largest_part_ * largest_part_ * rectangle_.solid_angle_of_picture(middle)) {
             glm::dvec3 sum(0.0);
@@ -221,7 +222,8 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
         else
             validate(layer);
     }
-    // One rectangle after the other, so that texels of two are never written at the same time.
+    // Rectangles are done one after the other, so texels in two of them are never written at the
+    // same time.
     for (const TexelRectangle& rectangle : rectangles) {
         if (rectangle.x0 < rectangle.x1 && rectangle.y0 < rectangle.y1)
             composite_rectangle(base, ready, rectangle, target);

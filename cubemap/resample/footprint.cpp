@@ -42,7 +42,7 @@ bool ProjectionFootprints::clip(const Rectangle& rectangle) {
             continue;
         const glm::dvec2 first = enter > 0.0 ? square[i] + enter * d : square[i];
         const glm::dvec2 last = leave < 1.0 ? square[i] + leave * d : square[(i + 1) % 4];
-        // Where edges do not follow each other, the way goes along the rim.
+        // Between edges that do not follow each other, the outline runs along the rim.
         if (corners_.empty() || corners_.back().point != first) {
             if (!corners_.empty())
                 corners_.back().along_rim = true;
@@ -62,8 +62,8 @@ bool ProjectionFootprints::clip(const Rectangle& rectangle) {
 }
 
 bool ProjectionFootprints::is_small(const Rectangle& rectangle) const {
-    constexpr double LargestSide =
-        0.25; // of the picture; larger rectangles might hold the whole disc
+    // Part of the picture's side. A larger rectangle might hold the whole disc.
+    constexpr double LargestSide = 0.25;
     constexpr double LargestAngle = 0.3;
     if (corners_.empty() || rectangle.high.x - rectangle.low.x > LargestSide ||
         rectangle.high.y - rectangle.low.y > LargestSide)
@@ -95,12 +95,12 @@ void ProjectionFootprints::add_edge(const glm::dvec2& from, const glm::dvec3& fr
     const glm::dvec3 direction = projection_.direction(middle);
     const glm::dvec3 normal = glm::cross(from_direction, to_direction);
     const double length = glm::length(normal);
-    // Off the great circle, or off the chord where its ends hardly differ.
+    // Distance from the great circle, or from the chord if its ends hardly differ.
     const double off = length > 1e-9
                            ? std::abs(glm::dot(direction, normal)) / length
                            : glm::distance(direction, 0.5 * (from_direction + to_direction));
-    // A bend on the way, as at the creases of an octahedron, may hide from the middle of a long
-    // edge.
+    // The middle of a long edge may miss a bend elsewhere on the edge, as at the creases of an
+    // octahedron.
     constexpr double LongEdge = 0.1;
     if (depth >= Deepest || (off <= tolerance_ && length <= LongEdge))
         return;

@@ -1,4 +1,4 @@
-// Points inside the pixels of an image, to sample something smooth at.
+// Points inside the pixels of an image, for sampling a smooth function.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@
 
 namespace relumine::cubemap {
 
-/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel with the unit directions of
-/// up to four points of each pixel that shows something at them: a quarter of its sides from its
-/// corners.
+/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel for each pixel that shows
+/// something. The span holds the unit directions of up to four points of the pixel. The points lie
+/// a quarter of a side away from the pixel's sides.
 template<typename Visit>
 void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
     const bool faces = has_faces(shape.layout);

@@ -1,4 +1,4 @@
-// The overlaps of an image's pixels with the texels of a cube map, whatever the layout.
+// The overlaps of an image's pixels with the texels of a cube map, for every layout.
 #pragma once
 
 #include <algorithm>
@@ -22,14 +22,16 @@
 
 namespace relumine::cubemap::detail {
 
-/// What a pixel gives to a texel.
+/// The overlap of one pixel with one texel, in steradians.
 struct PixelShare {
     std::uint32_t pixel;
     std::uint32_t texel;
     double solid_angle;
 };
 
-/// Visits the footprints of an image's pixels row by row. Keeps its buffers; one per thread.
+/// Visits the footprints of an image's pixels row by row.
+///
+/// Threads: use one object per thread; it keeps its buffers.
 class PixelFootprints {
 public:
     explicit PixelFootprints(const ImageShape& shape)
@@ -45,7 +47,8 @@ public:
         }
     }
 
-    /// Rows of the picture, or of a face: then a row is that of all six faces.
+    /// Returns the number of rows of the picture. For layouts with faces: the number of rows of a
+    /// face; a row then runs over all six faces.
     [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
 
     /// Calls `visit(pixel_index, std::span<const glm::dvec3>)` with the corners of each piece,
@@ -84,9 +87,9 @@ private:
     std::vector<double> borders_;
 };
 
-/// Calls `take(std::span<const PixelShare>)` for one row of pixels after the other; rows are found
-/// in parallel, a band at a time. All shares of a pixel follow each other; a texel may come more
-/// than once. `turn` carries directions of the image to those of the cube map.
+/// Calls `take(std::span<const PixelShare>)` for each row of pixels, in order. Rows are computed in
+/// parallel, one band at a time. All shares of a pixel follow each other; a texel may come more
+/// than once. `turn` carries directions of the image to directions of the cube map.
 template<typename Take>
 void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn,
                             std::uint32_t resolution, const Take& take) {

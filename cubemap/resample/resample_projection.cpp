@@ -15,7 +15,7 @@ namespace relumine::cubemap::detail {
 
 namespace {
 
-/// Sums that become means, in the order in which shares are added.
+/// Sums that become means, added in the order of the shares.
 class Means {
 public:
     explicit Means(std::size_t size) : sums_(size, glm::dvec3(0.0)), weights_(size, 0.0) {}
