@@ -18,15 +18,15 @@
 
 namespace relumine::relight {
 
-/// What tracing lights one by one takes. Without blockers no light is traced.
+/// What tracing of single lights needs. Without blockers no light is traced.
 struct ShadowRays {
-    /// Must outlive its user
+    /// Must outlive its user; null: nothing is traced.
     const prt::Blockers* blockers = nullptr;
-    /// [num_receivers] in the receivers' own order; must outlive its user
+    /// [num_receivers] in the receivers' own order; must outlive its user.
     std::span<const glm::vec3> positions = {};
-    /// Lift of the rays' origins, as in prt::PrecomputeOptions
+    /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
-    /// Of the precompute, RMS form, 1/sr
+    /// Tolerance of the precompute, RMS form, 1/sr.
     float tolerance = 0.0135f;
 };
 
@@ -36,13 +36,15 @@ public:
     explicit LightPackets(std::span<const SharpLight> lights);
     explicit LightPackets(std::span<const lights::DistantLight> lights);
 
-    /// Radiance (albedo 1) that a receiver gets: one shadow ray for each light above its horizon.
+    /// Returns the radiance (albedo 1) of a receiver: one shadow ray for each light above its
+    /// horizon.
     [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
                                       const ShadowRays& rays) const;
 
-    /// The same for a block of up to 16 receivers with highlights, colours not put in: radiance
-    /// through each lobe. A light is a point. `positions`, `normals` and `sums` have one element
-    /// per receiver.
+    /// Computes the radiance through each lobe, without colours, of a block of up to 16 receivers
+    /// with highlights. A light is a point.
+    ///
+    /// Shape:   positions, normals and sums have one element per receiver.
     void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
                      std::span<const glm::vec3> normals, const ShadowRays& rays,
                      std::span<prt::Lobes<glm::dvec3>> sums) const;
@@ -53,7 +55,7 @@ private:
     struct Packet {
         prt::DirectionPacket directions;
         std::array<VectorIrradiance, prt::PacketSize> irradiance{};
-        /// Length of each channel's vector
+        /// Length of each channel's vector.
         std::array<glm::dvec3, prt::PacketSize> strength{};
     };
     static std::uint32_t visible(const Packet& packet, const glm::vec3& position,
@@ -61,17 +63,20 @@ private:
     std::vector<Packet> packets_;
 };
 
-/// A distant light's irradiance as a vector.
+/// Returns a distant light's irradiance as a vector.
 [[nodiscard]] VectorIrradiance vector_irradiance(const lights::DistantLight& light);
 
-/// Outgoing radiance for albedo 1 of the chosen receivers [receiver_indices.size()] under the
-/// lights: 1/pi sum of E_i V(w_i) max(n.w_i, 0). `rays.positions` are the receivers' own. Parallel;
-/// the order of each sum is fixed. O(receivers x lights) shadow rays.
+/// Returns the outgoing radiance for albedo 1 of the chosen receivers under the lights: 1/pi sum of
+/// E_i V(w_i) max(n.w_i, 0). `rays.positions` are the receivers' own.
+///
+/// Shape:   [receiver_indices.size()].
+/// Cost:    O(receivers x lights) shadow rays.
+/// Threads: parallel; the order of each sum is fixed.
 [[nodiscard]] std::vector<glm::dvec3>
 radiance_under(std::span<const lights::DistantLight> lights, std::span<const glm::vec3> normals,
                std::span<const std::uint32_t> receiver_indices, const ShadowRays& rays);
 
-/// The same for all receivers, [normals.size()].
+/// Returns the outgoing radiance for albedo 1 of all receivers, [normals.size()].
 [[nodiscard]] std::vector<glm::vec3> radiance_under(std::span<const lights::DistantLight> lights,
                                                     std::span<const glm::vec3> normals,
                                                     const ShadowRays& rays);
