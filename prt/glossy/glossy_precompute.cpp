@@ -32,11 +32,11 @@ namespace {
 /// Name of this part in a checkpoint.
 constexpr const char* Part = "highlights";
 
-/// Work between two looks at the checkpoint: about a second; a block takes some milliseconds.
+/// Work between two looks at the checkpoint: about a second. A block takes some milliseconds.
 constexpr std::size_t BlocksPerThreadAndStep = 256;
 
-/// Blocks of an estimate: their entries differ by a factor of two or so, the mean is good to some
-/// percent.
+/// Blocks of an estimate. The entries of blocks differ by a factor of about two, so the mean is
+/// good to some percent.
 constexpr std::size_t TrialBlocks = 256;
 
 /// One block's entries of one lobe.
@@ -46,8 +46,8 @@ struct BlockEntries {
     std::vector<std::uint8_t> values;
 };
 
-/// Bytes hold the square root: a highlight's foot, shared by many directions, keeps its digits
-/// beside the peak.
+/// Quantises a lobe. Bytes hold the square root: so a highlight's foot, shared by many directions,
+/// keeps its digits beside the peak.
 BlockEntries quantised(const LobeCut& cut) {
     BlockEntries entries;
     entries.cells.reserve(cut.cells.size());
@@ -64,7 +64,7 @@ BlockEntries quantised(const LobeCut& cut) {
     return entries;
 }
 
-/// One block, for a checkpoint.
+/// Writes one block for a checkpoint.
 void add(files::ByteWriter& writer, const BlockEntries& block) {
     writer.add<std::uint64_t>(block.cells.size());
     writer.add_all(std::span(block.cells));
@@ -81,7 +81,7 @@ BlockEntries next_entries(files::ByteReader& reader) {
     return block;
 }
 
-/// Frees the blocks' own arrays as it goes.
+/// Joins the blocks. Frees each block's arrays on the way.
 LobeCuts joined(std::vector<BlockEntries>&& blocks) {
     LobeCuts cuts;
     cuts.begin.push_back(0);
@@ -99,7 +99,8 @@ LobeCuts joined(std::vector<BlockEntries>&& blocks) {
     return cuts;
 }
 
-/// The angle over which a highlight changes, as seen from the light: twice that of the half vector.
+/// Returns the angle over which a highlight changes, as seen from the light: twice the angle of the
+/// half vector.
 float narrowness_of(const Surface& surface) {
     switch (surface.highlight) {
     case Highlight::Ggx:
@@ -112,9 +113,9 @@ float narrowness_of(const Surface& surface) {
     return 0.0f;
 }
 
-/// The tolerance is for highlights of at least this width (roughness 0.3) and falls with what is
-/// narrower: a broad one takes in many lights, whose errors cancel; a narrow one sees one at a
-/// time. Cells of narrow ones are few all the same.
+/// The tolerance holds for highlights of at least this width (roughness 0.3) and falls for narrower
+/// ones. A broad highlight takes in many lights, whose errors cancel; a narrow one sees one light
+/// at a time. Narrow ones still have few cells.
 constexpr float FullToleranceWidth = 0.18f;
 
 float tightened(float tolerance, const BlockToRefine& block) {
@@ -153,11 +154,11 @@ private:
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
-    /// Finished, from the first on
+    /// Finished blocks, from the first on.
     std::vector<EntriesOfBlock> blocks_;
-    /// Of them
+    /// Entries of the finished blocks.
     std::uint64_t num_entries_ = 0;
-    /// Of them in the checkpoint
+    /// Finished blocks in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t rays_saved_ = 0;
     std::atomic<std::uint64_t> num_rays_ = 0;
@@ -218,7 +219,8 @@ void GlossyPrecompute::keep(EntriesOfBlock&& block) {
     blocks_.push_back(std::move(block));
 }
 
-/// A record is the rays of its blocks, then the blocks.
+/// Takes up the blocks of an earlier run. A record has the number of its blocks' rays, then the
+/// blocks.
 void GlossyPrecompute::take_up() {
     for (const std::vector<std::byte>& record : options_.checkpoint->load(Part, false).records)
         files::unpack(record, [this](std::span<const std::byte> part) {
@@ -357,7 +359,7 @@ bool has_highlights(const Receivers& receivers) {
 }
 
 float narrowest_roughness(std::uint32_t face_resolution) {
-    // A cell in the middle of a face spans 2 / 2^level in the tangent, where it is widest.
+    // A cell in the middle of a face is widest: it spans 2 / 2^level in the tangent.
     const float cell = 2.0f / static_cast<float>(1u << deepest_level(face_resolution));
     return std::sqrt(std::max(cell, ggx_alpha(0.0f)));
 }
