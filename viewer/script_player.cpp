@@ -29,7 +29,7 @@ std::size_t layer_of(const ScriptCommand& command, const ViewState& state) {
     return *index;
 }
 
-/// The pointer arrives, presses and goes, and lets go.
+/// The pointer arrives, presses, moves, and lets go.
 Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
     const double t =
         frame < 2 ? 0.0 : static_cast<double>(frame - 1) / static_cast<double>(num_frames - 3);
@@ -39,7 +39,7 @@ Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size
             .down = frame > 0 && frame + 1 < num_frames};
 }
 
-/// The same around the ellipse that fills a rectangle.
+/// As dragged(), around the ellipse that fills a rectangle.
 Pointer lassoed(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
     Pointer pointer = dragged({0.0, 0.0, 1.0, 0.0}, frame, num_frames);
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(pointer.pixel.x);
@@ -81,7 +81,7 @@ ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
     const std::size_t count = num_frames(command);
     try {
         apply(command, state, count, frame);
-    } catch (const std::invalid_argument& error) { // a layer that no layer can be
+    } catch (const std::invalid_argument& error) { // values that no layer can have
         fail(command, error.what());
     }
     if (++frame_ >= count) {
@@ -160,7 +160,7 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
         frame.pointer = dragged(n, frame_, count);
         break;
     case Action::LassoEnvironment:
-        // The panel goes back to moving when the outline is closed.
+        // The panel goes back to the move tool when the outline is closed.
         if (frame_ == 0)
             state.tool = Tool::Lasso;
         frame.pointer = lassoed(n, frame_, count);
