@@ -4,7 +4,6 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
+#include "app/size_text.h"
 #include "cubemap/resample/resample.h"
 #include "files/output_file.h"
 #include "mesh/save.h"
@@ -27,15 +27,12 @@ namespace relumine::app {
 namespace {
 
 relight::PictureOptions parse_size(const std::string& text) {
-    relight::PictureOptions options;
-    unsigned width = 0;
-    unsigned height = 0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) !=
-        2) // NOLINT(cert-err34-c): checked by the count
+    const std::optional<SizeText> size = parse_size_text(text);
+    if (!size)
         throw CLI::ValidationError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
-    options.width = width;
-    options.height = height;
+    relight::PictureOptions options;
+    options.width = size->width;
+    options.height = size->height;
     return options;
 }
 

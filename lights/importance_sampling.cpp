@@ -6,21 +6,17 @@
 
 #include <tbb/parallel_for.h>
 
+#include "lights/split_mix64.h"
+
 namespace relumine::lights {
 
 namespace {
 
-/// A number in [0, 1) that depends on its arguments only (the mixing steps of splitmix64), the same
-/// on every machine.
+/// A number in [0, 1) that depends on its arguments only, the same on every machine. Mixing twice
+/// parts the neighbouring indices of one seed from the ones of the next.
 double random(std::uint64_t seed, std::uint64_t index) {
-    std::uint64_t bits = seed * 0x9e3779b97f4a7c15u + index;
-    for (int round = 0; round < 2; ++round) {
-        bits += 0x9e3779b97f4a7c15u;
-        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-        bits ^= bits >> 31;
-    }
-    return static_cast<double>(bits >> 11) * 0x1p-53;
+    const std::uint64_t mixed = SplitMix64(seed * SplitMix64::Step + index).next();
+    return static_cast<double>(SplitMix64(mixed).next() >> 11) * 0x1p-53;
 }
 
 /// What the directions are distributed by: energy, or solid angle for a map without light.

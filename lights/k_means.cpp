@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "lights/nearest_centre.h"
+#include "lights/split_mix64.h"
 
 namespace relumine::lights {
 
@@ -19,28 +20,13 @@ namespace {
 /// Points of one task: about 0.3 ms where each is searched.
 constexpr std::size_t PointsPerTask = 512;
 
-/// Random numbers by SplitMix64 (Steele, Lea, Flood 2014): the same on every system.
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t bits() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
-
-private:
-    std::uint64_t state_;
-};
-
 std::vector<ClusterPoint> forgy(std::span<const ClusterPoint> points, std::size_t num_clusters,
-                                Random& random) {
+                                SplitMix64& random) {
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
     std::vector<ClusterPoint> centres;
     for (std::size_t i = 0; i < num_clusters; ++i) { // Fisher and Yates' shuffle of the first ones
-        std::swap(order[i], order[i + random.bits() % (points.size() - i)]);
+        std::swap(order[i], order[i + random.below(points.size() - i)]);
         centres.push_back(points[order[i]]);
     }
     return centres;
@@ -228,7 +214,7 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
         result.converged = true;
         return result;
     }
-    Random random(options.seed);
+    SplitMix64 random(options.seed);
     const std::size_t num_clusters = std::min(options.num_clusters, points.size());
     Iteration iteration(points, forgy(points, num_clusters, random), options.weights, result);
     iteration.assign();

@@ -11,6 +11,7 @@
 #include <glm/vec4.hpp>
 
 #include "cubemap/image/environment.h"
+#include "cubemap/luminance.h"
 
 namespace relumine::lights {
 
@@ -22,9 +23,9 @@ struct PixelRectangle {
     bool operator==(const PixelRectangle&) const = default;
 };
 
-/// Luminance of linear RGB with the weights that [D05] takes from ITU-R BT.709.
+/// Luminance of linear RGB with the weights of [D05].
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
-    return 0.2125 * rgb.r + 0.7154 * rgb.g + 0.0721 * rgb.b;
+    return cubemap::luminance(rgb, cubemap::MedianCutWeights);
 }
 
 /// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must

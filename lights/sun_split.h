@@ -10,8 +10,8 @@
 
 namespace relumine::lights {
 
-/// The sun as a light. Light and map together light a surface like the original (irradiance() of
-/// disc_light.h).
+/// The sun as a light: a disc of its solid angle and of uniform radiance. Light and map together
+/// light a surface like the original.
 [[nodiscard]] DistantLight sun_light(const cubemap::Sun& sun);
 
 /// Puts the sky around the sun in its place. `sun` must have been found in this image or map.

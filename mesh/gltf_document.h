@@ -1,7 +1,7 @@
 // A glTF 2.0 file: its JSON, read strictly, and its bytes.
 //
-// Our own reader: tinygltf, which writes our .glb files, takes properties of a wrong type for
-// absent ones, decodes all images of a file, and leaves checking what lies where to its callers.
+// Our own reader: tinygltf takes properties of a wrong type for absent ones, decodes all images of
+// a file, and leaves checking what lies where to its callers.
 #pragma once
 
 #include <cstddef>

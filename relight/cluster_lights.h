@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/luminance.h"
 #include "prt/clusters/quadtree.h"
 
 namespace relumine::relight {
@@ -28,9 +29,7 @@ struct VectorIrradiance {
     VectorIrradiance& operator-=(const VectorIrradiance& other);
     bool operator==(const VectorIrradiance&) const = default;
     /// Returns the vector of the luminance (Rec. 709 weights).
-    [[nodiscard]] glm::dvec3 luminance() const {
-        return 0.2126 * red + 0.7152 * green + 0.0722 * blue;
-    }
+    [[nodiscard]] glm::dvec3 luminance() const { return cubemap::luminance(red, green, blue); }
     /// Returns the irradiance of a surface with this normal that sees all of the light, never below
     /// zero.
     [[nodiscard]] glm::dvec3 on(const glm::vec3& normal) const {
@@ -68,8 +67,7 @@ public:
 
 private:
     std::uint32_t resolution_;
-    /// [R * R] solid angle over the length of (u, v, 1). L times the weight times (u, v, 1) is L dw
-    /// w.
+    /// [R * R] solid angle over the length of (u, v, 1). The weight times L (u, v, 1) is L dw w.
     std::vector<float> weights_;
 };
 

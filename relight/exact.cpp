@@ -12,6 +12,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "lights/split_mix64.h"
 #include "prt/glossy/brdf.h"
 #include "prt/precompute.h"
 
@@ -156,15 +157,10 @@ std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::
         count = num_receivers;
     std::vector<std::uint32_t> places(num_receivers);
     std::iota(places.begin(), places.end(), 0u);
-    // Fisher and Yates' shuffle of the first `count` places, by SplitMix64 (Steele, Lea, Flood
-    // 2014): the same on every system.
-    for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t z = (seed += 0x9e3779b97f4a7c15);
-        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-        z = (z ^ z >> 27) * 0x94d049bb133111eb;
-        z ^= z >> 31;
-        std::swap(places[i], places[i + z % (num_receivers - i)]);
-    }
+    // Fisher and Yates' shuffle of the first `count` places.
+    lights::SplitMix64 random(seed);
+    for (std::size_t i = 0; i < count; ++i)
+        std::swap(places[i], places[i + random.below(num_receivers - i)]);
     places.resize(count);
     std::sort(places.begin(), places.end());
     std::transform(places.begin(), places.end(), places.begin(),

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/image/environment.h"
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 
 namespace relumine::viewer {
 
@@ -115,8 +115,8 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
                                            path.string(), path.extension().string()));
         }
         cubemap::ImagePatch patch{.path = std::filesystem::absolute(path).lexically_normal(),
-                                  .picture = cubemap::load_picture(path)};
-        const cubemap::Picture::Level& full = patch.picture->levels().front();
+                                  .picture = cubemap::load_image_pyramid(path)};
+        const cubemap::Picture& full = patch.picture->levels().front();
         // Shaped as the picture's pixels, 40 degrees along its longer side.
         constexpr double DegreesPerRadian = 180.0 / std::numbers::pi;
         const double half = std::tan(20.0 / DegreesPerRadian);

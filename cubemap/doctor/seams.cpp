@@ -167,12 +167,12 @@ std::string_view axis_name(Face face) {
     return Names[static_cast<std::size_t>(face)];
 }
 
-void check_edges(const EnvironmentImage& image, const FaceCells& cells,
+void check_edges(const EnvironmentImage& image, const FaceSquares& squares,
                  std::vector<SeamFault>& faults) {
-    const std::uint32_t resolution = cells.resolution();
+    const std::uint32_t resolution = squares.resolution();
     const std::vector<double> values = stops(image);
     const auto at = [&](const Texel& texel) {
-        return values[cells.pixel(texel.face, texel.x, texel.y)];
+        return values[squares.pixel(texel.face, texel.x, texel.y)];
     };
     for (const Face face : AllFaces) {
         for (int side = 0; side < 4; ++side) {
@@ -213,9 +213,9 @@ std::vector<SeamFault> seam_faults(const EnvironmentImage& image) {
         check.pole(true);
         check.pole(false);
     } else if (has_faces(image.layout)) {
-        const FaceCells cells(image.layout, image.width, image.height);
-        if (cells.resolution() >= LeastFace)
-            check_edges(image, cells, faults);
+        const FaceSquares squares(image.layout, image.width, image.height);
+        if (squares.resolution() >= LeastFace)
+            check_edges(image, squares, faults);
     }
     return faults;
 }

@@ -125,11 +125,11 @@ const Convention* find_convention(std::string_view name) {
 void swap_z_faces(EnvironmentImage& image) {
     if (image.layout != Layout::Cube && image.layout != Layout::HorizontalStrip)
         return;
-    const FaceCells cells(image.layout, image.width, image.height);
-    for (std::uint32_t y = 0; y < cells.resolution(); ++y) {
-        for (std::uint32_t x = 0; x < cells.resolution(); ++x)
-            std::swap(image.pixels[cells.pixel(Face::PositiveZ, x, y)],
-                      image.pixels[cells.pixel(Face::NegativeZ, x, y)]);
+    const FaceSquares squares(image.layout, image.width, image.height);
+    for (std::uint32_t y = 0; y < squares.resolution(); ++y) {
+        for (std::uint32_t x = 0; x < squares.resolution(); ++x)
+            std::swap(image.pixels[squares.pixel(Face::PositiveZ, x, y)],
+                      image.pixels[squares.pixel(Face::NegativeZ, x, y)]);
     }
 }
 

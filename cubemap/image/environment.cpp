@@ -200,9 +200,7 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
                                              path.string(), name(*options.layout)));
     ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
     EnvironmentImage image;
-    image.width = file.width;
-    image.height = file.height;
-    image.pixels = std::move(file.pixels);
+    static_cast<Picture&>(image) = static_cast<Picture&&>(file);
     interpret(file, options, path.string(), image);
     if (paths.size() > 1)
         image.assumptions = fmt::format("cube of six files, {}", image.assumptions);
@@ -223,7 +221,7 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
 
 std::uint32_t natural_resolution(const EnvironmentImage& image) {
     if (has_faces(image.layout))
-        return FaceCells(image.layout, image.width, image.height).resolution();
+        return FaceSquares(image.layout, image.width, image.height).resolution();
     if (image.layout == Layout::Octahedral)
         return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
     return std::max(1U, (image.width + 2) / 4);

@@ -13,6 +13,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/image/picture.h"
 
 namespace relumine::cubemap {
 
@@ -69,12 +70,8 @@ struct BadPixels {
     [[nodiscard]] std::size_t count() const { return num_nan + num_infinite + num_negative; }
 };
 
-/// An environment image as it stood in the file, with what was found out or assumed about it.
-struct EnvironmentImage {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    /// [height * width] row by row from the top; linear RGB radiance
-    std::vector<glm::vec3> pixels;
+/// An environment's picture as it stood in the file, with what was found out or assumed about it.
+struct EnvironmentImage : Picture {
     Layout layout = Layout::LatLong;
     Sampling sampling = Sampling::TexelCentres;
     /// One sentence: why this layout and sampling ("2:1 image without envmap attribute")

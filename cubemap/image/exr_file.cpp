@@ -379,7 +379,7 @@ ImageSize exr_size(const std::filesystem::path& path) {
     return with_own_messages(name, [&] { return Decoder({}, name).size(path); });
 }
 
-std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const float> alpha) {
+std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     if (image.sampling == Sampling::Borders &&
@@ -396,12 +396,12 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const
                                           sizeof(glm::vec3) * image.width));
         offset += sizeof(float);
     }
-    if (!alpha.empty()) {
+    if (!image.alpha.empty()) {
         header.channels().insert("A", Imf::Channel(Imf::FLOAT));
-        buffer.insert("A",
-                      Imf::Slice(Imf::FLOAT,
-                                 const_cast<char*>(reinterpret_cast<const char*>(alpha.data())),
-                                 sizeof(float), sizeof(float) * image.width));
+        buffer.insert(
+            "A", Imf::Slice(Imf::FLOAT,
+                            const_cast<char*>(reinterpret_cast<const char*>(image.alpha.data())),
+                            sizeof(float), sizeof(float) * image.width));
     }
     MemoryOutput stream;
     {

@@ -15,12 +15,8 @@
 
 namespace relumine::cubemap {
 
-/// A decoded file.
-struct ImageFile {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    /// [height * width] row by row from the top; linear RGB radiance
-    std::vector<glm::vec3> pixels;
+/// A decoded file. An alpha channel is not read.
+struct ImageFile : Picture {
     /// The layout that the file itself states (OpenEXR's `envmap` attribute)
     std::optional<Layout> envmap;
     /// What a user may want to know, e.g. "luminance only"
@@ -46,9 +42,8 @@ inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
                                  const std::string& name);
 
 /// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders, and a
-/// channel A where `alpha` is given, one for each pixel.
-[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
-                                                std::span<const float> alpha = {});
+/// channel A where the picture has alpha.
+[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image);
 /// RGBE, run-length encoded, rounded to nearest. Throws std::invalid_argument for radiance that
 /// RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);

@@ -39,37 +39,37 @@ struct ImageShape {
 [[nodiscard]] bool fits(Layout layout, std::uint32_t width, std::uint32_t height);
 
 /// The squares of an image that hold the six faces.
-class FaceCells {
+class FaceSquares {
 public:
     /// Throws std::invalid_argument for proportions that do not fit, or for a layout without faces.
-    FaceCells(Layout layout, std::uint32_t width, std::uint32_t height);
+    FaceSquares(Layout layout, std::uint32_t width, std::uint32_t height);
 
     [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
 
     /// Index of the image's pixel that is texel (x, y) of a face.
     [[nodiscard]] std::size_t pixel(Face face, std::uint32_t x, std::uint32_t y) const {
-        const Cell& cell = cells_[static_cast<std::size_t>(face)];
-        const std::size_t column = cell.turned ? resolution_ - 1 - x : x;
-        const std::size_t row = cell.turned ? resolution_ - 1 - y : y;
-        return (cell.row * resolution_ + row) * width_ + cell.column * resolution_ + column;
+        const Square& square = squares_[static_cast<std::size_t>(face)];
+        const std::size_t column = square.turned ? resolution_ - 1 - x : x;
+        const std::size_t row = square.turned ? resolution_ - 1 - y : y;
+        return (square.row * resolution_ + row) * width_ + square.column * resolution_ + column;
     }
 
 private:
-    /// Column and row of the cell in the image; turned by 180 degrees against Face or not.
-    struct Cell {
+    /// Column and row of the square in the image; turned by 180 degrees against Face or not.
+    struct Square {
         std::size_t column, row;
         bool turned;
     };
     std::size_t width_;
     std::uint32_t resolution_;
-    std::array<Cell, NumFaces> cells_;
+    std::array<Square, NumFaces> squares_;
 };
 
 /// A pixel's place on the sphere.
 struct PixelPlace {
     /// Unit, where the pixel's sample lies
     glm::dvec3 direction{0.0};
-    /// Of the patch it stands for
+    /// Of the footprint it stands for
     double solid_angle = 0.0;
 };
 
@@ -125,13 +125,13 @@ void for_each_pixel(const ImageShape& shape, const Visit& visit) {
         }
         return;
     }
-    const FaceCells cells(shape.layout, shape.width, shape.height);
-    const std::uint32_t resolution = cells.resolution();
+    const FaceSquares squares(shape.layout, shape.width, shape.height);
+    const std::uint32_t resolution = squares.resolution();
     const std::vector<double> borders = cell_borders(resolution, shape.sampling);
     for (const Face face : AllFaces) {
         for (std::uint32_t y = 0; y < resolution; ++y) {
             for (std::uint32_t x = 0; x < resolution; ++x)
-                visit(cells.pixel(face, x, y),
+                visit(squares.pixel(face, x, y),
                       PixelPlace{
                           direction(face, sample_position(x, resolution, shape.sampling),
                                     sample_position(y, resolution, shape.sampling)),

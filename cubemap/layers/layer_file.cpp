@@ -118,7 +118,7 @@ private:
             patch.blend = text == "add" ? ImagePatch::Blend::Add : ImagePatch::Blend::Replace;
         }
         try {
-            patch.picture = load_picture(path_.parent_path() / patch.path);
+            patch.picture = load_image_pyramid(path_.parent_path() / patch.path);
         } catch (const std::runtime_error& error) {
             json_.refuse(path.line, "a picture", error.what());
         }

@@ -12,7 +12,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 
 namespace relumine::cubemap {
 
@@ -93,7 +93,7 @@ struct ImagePatch {
     enum class Blend : std::uint8_t { Replace, Add };
     /// As a layer file names it; only `picture` is drawn
     std::filesystem::path path;
-    std::shared_ptr<const Picture> picture = nullptr;
+    std::shared_ptr<const ImagePyramid> picture = nullptr;
     Blend blend = Blend::Replace;
     /// Pictures are compared by their pixels.
     bool operator==(const ImagePatch& other) const;

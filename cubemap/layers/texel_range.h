@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cubemap/layers/cell_coverage.h"
 #include "cubemap/layers/region_shape.h"
+#include "cubemap/layers/square_coverage.h"
 #include "cubemap/texel_rectangle.h"
 
 namespace relumine::cubemap {
@@ -47,7 +47,7 @@ struct FaceGrid {
     /// On the plane of [-1, 1]^2
     double half_texel;
 
-    [[nodiscard]] Cell cell(std::uint32_t x, std::uint32_t y) const {
+    [[nodiscard]] FaceSquare square(std::uint32_t x, std::uint32_t y) const {
         return {(2 * x + 1) * half_texel - 1.0, (2 * y + 1) * half_texel - 1.0, half_texel};
     }
 };

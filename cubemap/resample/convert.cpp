@@ -110,7 +110,7 @@ class Path {
 public:
     Path(const ImageShape& source, const ImageShape& target, const Reorientation& reorientation)
         : source_(source), target_(target), reorientation_(reorientation) {}
-    /// Each target pixel is the mean over its patch.
+    /// Each target pixel is the mean over its footprint.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
         return averaged(image, source_, target_, reorientation_);
     }
@@ -133,15 +133,15 @@ private:
     [[nodiscard]] static EnvironmentImage faces_from_lat_long(const EnvironmentImage& image,
                                                               const ImageShape& target,
                                                               const Reorientation& reorientation) {
-        const FaceCells cells(target.layout, target.width, target.height);
+        const FaceSquares squares(target.layout, target.width, target.height);
         const CubeMap map =
-            turned(detail::cube_from_lat_long(image, cells.resolution(), target.sampling),
+            turned(detail::cube_from_lat_long(image, squares.resolution(), target.sampling),
                    reorientation.target_from_source());
         EnvironmentImage result = empty_image(target);
         for (const Face face : AllFaces) {
             for (std::uint32_t y = 0; y < map.resolution; ++y) {
                 for (std::uint32_t x = 0; x < map.resolution; ++x)
-                    result.pixels[cells.pixel(face, x, y)] = map.at(face, x, y);
+                    result.pixels[squares.pixel(face, x, y)] = map.at(face, x, y);
             }
         }
         return result;
@@ -173,11 +173,11 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
 
 using Pixels = std::vector<glm::vec3>;
 
-/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth`
-/// (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, nothing becomes
-/// negative, and a constant stays as it is. Differs from them: rounds start further along the way
-/// of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which takes a
-/// fraction of the rounds. What is returned is the end of a round, so the power is exact all the
+/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the footprints by
+/// `forth` (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, nothing
+/// becomes negative, and a constant stays as it is. Differs from them: rounds start further along
+/// the way of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which takes
+/// a fraction of the rounds. What is returned is the end of a round, so the power is exact all the
 /// same.
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,

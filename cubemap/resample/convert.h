@@ -27,10 +27,10 @@ struct Reorientation {
 /// - Where each target pixel shows one source pixel (the faces of a cube in another arrangement, a
 /// lat-long turned by whole pixels) pixels
 ///   are copied bit by bit.
-/// - What shrinks is averaged over area: each target pixel is the mean of the source's patches
+/// - What shrinks is averaged over area: each target pixel is the mean of the source's footprints
 /// under it.
 /// - What grows (in natural resolution) is interpolated smoothly across all seams and then
-/// corrected, so that the mean over each source pixel's patch is nearly
+/// corrected, so that the mean over each source pixel's footprint is nearly
 ///   that pixel again and shrinking it back gives the source: with samples never negative,
 ///   constants constant, total power kept.
 ///

@@ -21,10 +21,10 @@ public:
     PixelLinks(const ImageShape& source, const ImageShape& target,
                const glm::dmat3& target_from_source, std::uint32_t resolution, Axes axes);
 
-    /// Each pixel of the target the mean over its patch; `pixels` are the source's. Pixels that
+    /// Each pixel of the target the mean over its footprint; `pixels` are the source's. Pixels that
     /// show nothing are black.
     [[nodiscard]] std::vector<glm::vec3> to_target(const std::vector<glm::vec3>& pixels) const;
-    /// Each pixel of the source the mean over its patch; `pixels` are the target's.
+    /// Each pixel of the source the mean over its footprint; `pixels` are the target's.
     [[nodiscard]] std::vector<glm::vec3> to_source(const std::vector<glm::vec3>& pixels) const;
 
 private:

@@ -15,8 +15,8 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/image_layout.h"
-#include "cubemap/resample/lat_long_patch.h"
-#include "cubemap/resample/patch.h"
+#include "cubemap/resample/footprint.h"
+#include "cubemap/resample/lat_long_footprint.h"
 #include "cubemap/resample/projection.h"
 #include "cubemap/spherical_overlap.h"
 
@@ -29,17 +29,18 @@ struct PixelShare {
     double solid_angle;
 };
 
-/// Visits the patches of an image's pixels row by row. Keeps its buffers; one per thread.
-class PixelPatches {
+/// Visits the footprints of an image's pixels row by row. Keeps its buffers; one per thread.
+class PixelFootprints {
 public:
-    explicit PixelPatches(const ImageShape& shape) : width_(shape.width), num_rows_(shape.height) {
+    explicit PixelFootprints(const ImageShape& shape)
+        : width_(shape.width), num_rows_(shape.height) {
         if (shape.layout == Layout::LatLong) {
             lat_long_.emplace(shape);
         } else if (const Projection* picture = projection(shape.layout)) {
             pieces_.emplace(*picture, shape.width, shape.height);
         } else {
-            cells_.emplace(shape.layout, shape.width, shape.height);
-            num_rows_ = cells_->resolution();
+            squares_.emplace(shape.layout, shape.width, shape.height);
+            num_rows_ = squares_->resolution();
             borders_ = cell_borders(num_rows_, shape.sampling);
         }
     }
@@ -51,7 +52,7 @@ public:
     /// clockwise seen from the middle of the sphere.
     template<typename Visit>
     void visit_row(std::uint32_t y, const Visit& visit) {
-        if (cells_) {
+        if (squares_) {
             for (const Face face : AllFaces) {
                 for (std::uint32_t x = 0; x < num_rows_; ++x) {
                     const std::array<glm::dvec3, 4> corners = {
@@ -59,7 +60,7 @@ public:
                         cube_point(face, borders_[x + 1], borders_[y]),
                         cube_point(face, borders_[x + 1], borders_[y + 1]),
                         cube_point(face, borders_[x], borders_[y + 1])};
-                    visit(cells_->pixel(face, x, y), std::span<const glm::dvec3>(corners));
+                    visit(squares_->pixel(face, x, y), std::span<const glm::dvec3>(corners));
                 }
             }
             return;
@@ -77,9 +78,9 @@ public:
 
 private:
     std::uint32_t width_, num_rows_;
-    std::optional<LatLongPatches> lat_long_;
-    std::optional<PatchPieces> pieces_;
-    std::optional<FaceCells> cells_;
+    std::optional<LatLongFootprints> lat_long_;
+    std::optional<ProjectionFootprints> pieces_;
+    std::optional<FaceSquares> squares_;
     std::vector<double> borders_;
 };
 
@@ -92,34 +93,35 @@ void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn,
     constexpr std::uint32_t BandHeight = 32;
     const bool is_turned = turn != glm::dmat3(1.0), is_mirrored = glm::determinant(turn) < 0.0;
     const CubeMap map(resolution);
-    const std::uint32_t num_rows = PixelPatches(shape).num_rows();
+    const std::uint32_t num_rows = PixelFootprints(shape).num_rows();
     std::vector<std::vector<PixelShare>> shares(BandHeight);
     for (std::uint32_t band = 0; band < num_rows; band += BandHeight) {
         const std::uint32_t end = std::min(band + BandHeight, num_rows);
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(band, end), [&](const auto& rows) {
-            PixelPatches patches(shape);
+            PixelFootprints footprints(shape);
             TexelOverlaps overlaps(resolution);
             std::vector<glm::dvec3> turned;
             for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
                 std::vector<PixelShare>& found = shares[y - band];
                 found.clear();
-                patches.visit_row(y, [&](std::size_t pixel, std::span<const glm::dvec3> corners) {
-                    if (is_turned) {
-                        turned.clear();
-                        for (const glm::dvec3& corner : corners)
-                            turned.push_back(turn * corner);
-                        if (is_mirrored)
-                            std::reverse(turned.begin(), turned.end());
-                        corners = turned;
-                    }
-                    overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
-                                               double solid_angle) {
-                        found.push_back(
-                            {static_cast<std::uint32_t>(pixel), // MaxPixels is below 2^32
-                             static_cast<std::uint32_t>(map.index(face, column, row)),
-                             solid_angle});
+                footprints.visit_row(
+                    y, [&](std::size_t pixel, std::span<const glm::dvec3> corners) {
+                        if (is_turned) {
+                            turned.clear();
+                            for (const glm::dvec3& corner : corners)
+                                turned.push_back(turn * corner);
+                            if (is_mirrored)
+                                std::reverse(turned.begin(), turned.end());
+                            corners = turned;
+                        }
+                        overlaps.find(corners, [&](Face face, std::uint32_t column,
+                                                   std::uint32_t row, double solid_angle) {
+                            found.push_back(
+                                {static_cast<std::uint32_t>(pixel), // MaxPixels is below 2^32
+                                 static_cast<std::uint32_t>(map.index(face, column, row)),
+                                 solid_angle});
+                        });
                     });
-                });
             }
         });
         for (std::uint32_t y = band; y < end; ++y)

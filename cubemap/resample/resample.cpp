@@ -9,7 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
-#include "cubemap/resample/lat_long_patch.h"
+#include "cubemap/resample/lat_long_footprint.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resample_projection.h"
 #include "cubemap/spherical_overlap.h"
@@ -95,17 +95,17 @@ void check(const EnvironmentImage& image) {
                         image.width, image.height, image.pixels.size()));
 }
 
-/// A map's lat-long picture: every pixel gathers the texels under its patch.
+/// A map's lat-long picture: every pixel gathers the texels under its footprint.
 void fill_lat_long(const CubeMap& map, EnvironmentImage& image) {
     const ImageShape shape{image.layout, image.sampling, image.width, image.height};
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& range) {
-        LatLongPatches patches(shape);
+        LatLongFootprints footprints(shape);
         TexelOverlaps overlaps(map.resolution);
         for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
             for (std::uint32_t x = 0; x < image.width; ++x) {
                 glm::dvec3 sum(0.0);
                 double weights = 0.0;
-                patches.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+                footprints.visit(x, y, [&](std::span<const glm::dvec3> corners) {
                     overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
                                                double weight) {
                         sum += glm::dvec3(map.at(face, column, row)) * weight;
@@ -127,12 +127,12 @@ CubeMap resample(const EnvironmentImage& image, std::uint32_t resolution) {
     if (!has_faces(image.layout))
         return detail::cube_from_projection(image, resolution);
     CubeMap map(resolution);
-    const FaceCells cells(image.layout, image.width, image.height);
+    const FaceSquares squares(image.layout, image.width, image.height);
     resample_faces(
-        cell_borders(cells.resolution(), image.sampling),
+        cell_borders(squares.resolution(), image.sampling),
         cell_borders(resolution, Sampling::TexelCentres),
         [&](Face face, std::uint32_t x, std::uint32_t y) {
-            return image.pixels[cells.pixel(face, x, y)];
+            return image.pixels[squares.pixel(face, x, y)];
         },
         [&](Face face, std::uint32_t x, std::uint32_t y, const glm::vec3& radiance) {
             map.at(face, x, y) = radiance;
@@ -170,13 +170,13 @@ EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width
         detail::fill_projection(map, image);
         return image;
     }
-    const FaceCells cells(layout, width, height);
+    const FaceSquares squares(layout, width, height);
     resample_faces(
         cell_borders(map.resolution, Sampling::TexelCentres),
-        cell_borders(cells.resolution(), sampling),
+        cell_borders(squares.resolution(), sampling),
         [&](Face face, std::uint32_t x, std::uint32_t y) { return map.at(face, x, y); },
         [&](Face face, std::uint32_t x, std::uint32_t y, const glm::vec3& radiance) {
-            image.pixels[cells.pixel(face, x, y)] = radiance;
+            image.pixels[squares.pixel(face, x, y)] = radiance;
         });
     return image;
 }

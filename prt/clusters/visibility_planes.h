@@ -76,11 +76,12 @@ public:
 
 private:
     /// Up to 64 new directions and their planes.
-    struct Patch;
+    struct TracedPatch;
 
-    std::vector<Patch> new_patches(std::span<const LatticePoint> points, double patch_width) const;
-    void trace_step(std::span<Patch> patches, const std::function<void()>& on_task);
-    std::uint64_t trace_block(std::size_t first_word, const Patch& patch) const;
+    std::vector<TracedPatch> new_patches(std::span<const LatticePoint> points,
+                                         double patch_width) const;
+    void trace_step(std::span<TracedPatch> patches, const std::function<void()>& on_task);
+    std::uint64_t trace_group(std::size_t first_word, const TracedPatch& patch) const;
 
     std::span<const glm::vec3> origins_;
     const NormalArrays& normals_;

@@ -11,6 +11,7 @@
 #include <tbb/parallel_invoke.h>
 
 #include "prt/clusters/visible_counts.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
 
@@ -20,8 +21,9 @@ namespace {
 /// and dragon; half or twice the weight costs 2 to 3 % more mixed blocks.
 constexpr double NormalWeight = 1.0 / 32.0;
 
-/// Receivers of a large group, which `beam_scene` traces at a time.
-constexpr std::size_t LargeGroup = 8 * BlockSize;
+/// Receivers that are traced together, in whole blocks.
+constexpr std::size_t GroupSize = ReceiverGroup::MaxSize;
+static_assert(GroupSize % BlockSize == 0);
 
 /// With fewer receivers a task is not worth its start.
 constexpr std::size_t MinTask = 4096;
@@ -58,13 +60,13 @@ void halve(std::span<Place> places, std::size_t middle, std::size_t axis) {
                      });
 }
 
-void group(std::span<Place> places) {
+void sort_into_groups(std::span<Place> places) {
     if (places.size() <= BlockSize) {
         std::sort(places.begin(), places.end(),
                   [](const Place& a, const Place& b) { return a.receiver < b.receiver; });
         return;
     }
-    const std::size_t unit = places.size() > LargeGroup ? LargeGroup : BlockSize;
+    const std::size_t unit = places.size() > GroupSize ? GroupSize : BlockSize;
     const std::size_t middle = (places.size() + unit - 1) / unit / 2 * unit;
     std::size_t best_axis = 0;
     float best_spread = std::numeric_limits<float>::max();
@@ -78,10 +80,10 @@ void group(std::span<Place> places) {
     }
     halve(places, middle, best_axis);
     const auto low = [&] {
-        group(places.first(middle));
+        sort_into_groups(places.first(middle));
     };
     const auto high = [&] {
-        group(places.subspan(middle));
+        sort_into_groups(places.subspan(middle));
     };
     if (places.size() > MinTask) {
         tbb::parallel_invoke(low, high);
@@ -117,8 +119,8 @@ std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {
     };
     const auto num_receiving = static_cast<std::size_t>(
         std::stable_partition(places.begin(), places.end(), receives) - places.begin());
-    group(std::span(places).first(num_receiving));
-    group(std::span(places).subspan(num_receiving));
+    sort_into_groups(std::span(places).first(num_receiving));
+    sort_into_groups(std::span(places).subspan(num_receiving));
 
     std::vector<std::uint32_t> order(places.size());
     std::transform(places.begin(), places.end(), order.begin(),

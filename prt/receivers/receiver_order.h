@@ -11,8 +11,9 @@ namespace relumine::prt {
 /// Returns an order in which neighbours are near in space and face alike.
 ///
 /// Shape:   [num_receivers] receiver index by place.
-/// Order:   groups are the runs of 16 that begin at multiples of 16; the next larger groups are
-///          runs of 128. Within a group of 16, by index. Receivers with a zero normal come last.
+/// Order:   blocks are the runs of 16 from place 0 on, whose counts are kept together; groups are
+///          the runs of 128, which are traced together. Within a block, by index. Receivers with a
+///          zero normal come last.
 /// Cost:    O(n log n): 0.1 s for 100,000 receivers. Parallel (TBB), deterministic.
 ///
 /// The receivers are halved again and again. There are six axes: position, and normal times 1/32 of

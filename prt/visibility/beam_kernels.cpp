@@ -44,9 +44,10 @@ constexpr std::uint32_t RaysPerTriangle = 6;
 
 /// Tests the rays of one receiver against a leaf's triangles: all triangles at a time, ray by ray.
 template<class D>
-void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const PatchPlane& patch,
-               const glm::vec3& origin, std::uint64_t touching, std::uint64_t& rays,
-               std::uint64_t& doubts) {
+void test_triangles_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_t lane,
+                                 const PatchPlane& patch, const glm::vec3& origin,
+                                 std::uint64_t touching, std::uint64_t& rays,
+                                 std::uint64_t& doubts) {
     using Vector = hn::Vec<D>;
     const auto axis_m = static_cast<std::size_t>(patch.axis);
     const std::size_t axes[3] = {axis_m, (axis_m + 1) % 3, (axis_m + 2) % 3};
@@ -114,8 +115,9 @@ void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const Patc
 
 /// The same for few triangles before many rays: all rays at a time, triangle by triangle.
 template<class D>
-void test_triangle(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const PatchPlane& patch,
-                   const glm::vec3& origin, std::uint64_t& rays, std::uint64_t& doubts) {
+void test_rays_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_t lane,
+                            const PatchPlane& patch, const glm::vec3& origin, std::uint64_t& rays,
+                            std::uint64_t& doubts) {
     glm::vec3 corner[3], to_corner[3];
     glm::vec3 farthest(0.0f);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -129,7 +131,8 @@ void test_triangle(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const 
     const float tolerance = EdgeTolerance * product + Smallest;
     const float side = glm::dot(glm::cross(edge[0], edge[1]), to_corner[0]);
     if (!(std::abs(side) > SideTolerance * product * leaf.longest[lane] + Smallest)) {
-        test_leaf(d, leaf, lane / hn::Lanes(d) * hn::Lanes(d), patch, origin, rays, rays, doubts);
+        test_triangles_side_by_side(d, leaf, lane / hn::Lanes(d) * hn::Lanes(d), patch, origin,
+                                    rays, rays, doubts);
         return;
     }
     hn::Vec<D> moment[3][3];
@@ -252,10 +255,11 @@ std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, c
                 tree.leaves[static_cast<std::size_t>(leaves.leaves[i + lane])];
             if (static_cast<std::uint32_t>(std::popcount(touching)) > RaysPerTriangle * leaf.size)
                 for (std::size_t triangle = 0; triangle < leaf.size; ++triangle)
-                    test_triangle(d, leaf, triangle, patch, origin, rays, doubts);
+                    test_rays_side_by_side(d, leaf, triangle, patch, origin, rays, doubts);
             else
                 for (std::size_t first_lane = 0; first_lane < leaf.size; first_lane += hn::Lanes(d))
-                    test_leaf(d, leaf, first_lane, patch, origin, touching & rays, rays, doubts);
+                    test_triangles_side_by_side(d, leaf, first_lane, patch, origin, touching & rays,
+                                                rays, doubts);
             if (rays == 0)
                 return 0;
         }

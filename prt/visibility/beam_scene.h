@@ -55,7 +55,7 @@ public:
 
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;
-    void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+    void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                        std::span<std::uint64_t> rays) const override;
 
 private:

@@ -47,7 +47,7 @@ struct DirectionPatch {
 };
 
 /// Receivers that lie close together.
-struct ReceiverBlock {
+struct ReceiverGroup {
     static constexpr std::size_t MaxSize = 128;
 
     /// [at most MaxSize] starts of the receivers' rays.
@@ -74,7 +74,7 @@ public:
     /// Clears bit j of rays[i] where the ray from the receiver i in the patch's direction j is
     /// blocked. A bit that is clear asks for nothing. The answers are the same as from occluded(),
     /// which this default asks.
-    virtual void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+    virtual void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                                std::span<std::uint64_t> rays) const;
 
 protected:

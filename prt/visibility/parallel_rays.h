@@ -17,10 +17,10 @@ namespace relumine::prt {
 
 /// The starts of a group's rays, in the layout that the kernel reads. Lanes after the last receiver
 /// repeat the first one.
-struct BlockOrigins {
-    using Row = std::array<float, ReceiverBlock::MaxSize>;
+struct GroupOrigins {
+    using Row = std::array<float, ReceiverGroup::MaxSize>;
 
-    BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree);
+    GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree);
 
     /// x, y, z from the tree's centre.
     alignas(64) std::array<Row, 3> from_centre;
@@ -36,7 +36,7 @@ struct BlockOrigins {
 };
 
 /// One bit for each receiver of a group.
-using ReceiverBits = std::array<std::uint64_t, ReceiverBlock::MaxSize / 64>;
+using ReceiverBits = std::array<std::uint64_t, ReceiverGroup::MaxSize / 64>;
 
 struct ParallelResult {
     /// Receivers whose ray is blocked for certain.
@@ -61,6 +61,6 @@ struct ParallelResult {
 [[nodiscard]] ParallelResult
 test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
                    const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                   const BlockOrigins& origins, const ReceiverBits& active);
+                   const GroupOrigins& origins, const ReceiverBits& active);
 
 } // namespace relumine::prt

@@ -7,14 +7,17 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "cubemap/doctor/bright_spot.h"
 #include "cubemap/doctor/sky_angles.h"
+#include "cubemap/luminance.h"
 #include "cubemap/resample/resample.h"
 #include "relight/pictures/picture.h"
+#include "relight/pictures/tone_map.h"
 
 namespace relumine::relight {
 
@@ -121,21 +124,15 @@ Place place(const glm::dvec3& w) {
             (0.5 - angles.elevation_degrees / 180.0) * Height};
 }
 
-/// Reinhard's global operator: the geometric mean of luminance becomes middle grey, the brightest
-/// stays below white.
+/// The brightest pixel stays below white, a black one does not spoil the mean.
 void tone_map(std::vector<glm::vec3>& pixels) {
-    double sum = 0.0, largest = 0.0;
+    std::vector<LuminanceSample> samples;
+    samples.reserve(pixels.size());
     for (const glm::vec3& pixel : pixels)
-        largest = std::max(largest, cubemap::luminance(glm::dvec3(pixel)));
-    if (largest == 0.0)
-        return;
-    for (const glm::vec3& pixel : pixels)
-        sum += std::log(std::max(cubemap::luminance(glm::dvec3(pixel)), 1e-6 * largest));
-    const double scale = 0.18 / std::exp(sum / static_cast<double>(pixels.size()));
-    for (glm::vec3& pixel : pixels) {
-        const double value = scale * cubemap::luminance(glm::dvec3(pixel));
-        pixel = glm::vec3(glm::min(glm::dvec3(pixel) * (scale / (1.0 + value)), glm::dvec3(1.0)));
-    }
+        samples.push_back({.luminance = cubemap::luminance(glm::dvec3(pixel))});
+    const ToneMap map(std::move(samples), {.floor = 1e-6});
+    for (glm::vec3& pixel : pixels)
+        pixel = map(glm::dvec3(pixel));
 }
 
 } // namespace

@@ -200,12 +200,10 @@ void save_picture(const std::filesystem::path& path, const Picture& picture, dou
         bytes = encode_png(picture, scale);
     } else if (extension == ".exr") {
         cubemap::EnvironmentImage image;
-        image.width = picture.width;
-        image.height = picture.height;
-        image.pixels = picture.pixels;
+        static_cast<Picture&>(image) = picture;
         for (glm::vec3& pixel : image.pixels)
             pixel *= scale;
-        bytes = cubemap::encode_exr(image, picture.alpha);
+        bytes = cubemap::encode_exr(image);
     } else {
         throw std::invalid_argument(fmt::format("{}: expected .png or .exr, got '{}'",
                                                 path.string(), path.extension().string()));

@@ -9,23 +9,15 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/image/picture.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/camera.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::relight {
 
+using cubemap::Picture;
 using prt::Camera;
-
-/// Linear radiance, [height * width] row by row from the top.
-struct Picture {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    std::vector<glm::vec3> pixels = {};
-    /// [height * width] coverage 0..1, already multiplied into the pixels where it is not 0; empty:
-    /// opaque.
-    std::vector<float> alpha = {};
-};
 
 struct PictureOptions {
     std::uint32_t width = 1024;

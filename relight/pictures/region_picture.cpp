@@ -1,13 +1,16 @@
-// Tone mapping based on: E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone
-// Reproduction for Digital Images", SIGGRAPH 2002.
 #include "relight/pictures/region_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <tbb/parallel_for.h>
+
+#include "cubemap/luminance.h"
+#include "relight/pictures/tone_map.h"
 
 namespace relumine::relight {
 
@@ -37,55 +40,20 @@ struct Scale {
     }
 };
 
-/// Log-average luminance brought to middle grey; the brightest hundredth of the sphere white.
-class ToneMap {
-public:
-    explicit ToneMap(const lights::LatLongGrid& grid) {
-        double log_sum = 0.0;
-        double weight = 0.0;
-        std::vector<std::pair<double, double>>
-            values; // luminance, solid angle; a few ten thousand are enough
-        const auto step = std::max<std::uint32_t>(1, grid.width() / 512);
-        for (std::uint32_t y = step / 2; y < grid.height(); y += step) {
-            for (std::uint32_t x = step / 2; x < grid.width(); x += step) {
-                const double value = lights::luminance(grid.radiance(x, y));
-                if (value <= 0.0)
-                    continue;
-                const double solid_angle = grid.solid_angle(x, y);
-                log_sum += std::log(value) * solid_angle;
-                weight += solid_angle;
-                values.emplace_back(value, solid_angle);
-            }
-        }
-        if (values.empty())
-            return;
-        constexpr double MiddleGrey = 0.18;
-        key_ = MiddleGrey / std::exp(log_sum / weight);
-        std::sort(values.begin(), values.end());
-        double brightest = 0.0;
-        while (values.size() > 1 && brightest < 0.01 * weight) {
-            brightest += values.back().second;
-            values.pop_back();
-        }
-        white_ = std::max(key_ * values.back().first, 1.0);
-    }
-
-    [[nodiscard]] glm::vec3 operator()(const glm::dvec3& radiance) const {
-        const double value = key_ * lights::luminance(radiance);
-        if (value <= 0.0)
-            return glm::vec3(0.0f);
-        const double shown =
-            value * (1.0 + value / (white_ * white_)) / (1.0 + value); // their Eq. 4
-        return glm::vec3(glm::min(radiance * (key_ * shown / value), glm::dvec3(1.0)));
-    }
-
-private:
-    double key_ = 1.0;
-    double white_ = 1.0;
-};
+/// The brightest hundredth of the sphere becomes white. Of large maps a few ten thousand pixels are
+/// enough to find out.
+ToneMap tone_map_of(const lights::LatLongGrid& grid) {
+    std::vector<LuminanceSample> samples;
+    const auto step = std::max<std::uint32_t>(1, grid.width() / 512);
+    for (std::uint32_t y = step / 2; y < grid.height(); y += step)
+        for (std::uint32_t x = step / 2; x < grid.width(); x += step)
+            samples.push_back({.luminance = lights::luminance(grid.radiance(x, y)),
+                               .weight = grid.solid_angle(x, y)});
+    return ToneMap(std::move(samples), {.weights = cubemap::MedianCutWeights, .white_share = 0.01});
+}
 
 Picture environment_picture(const lights::LatLongGrid& grid, const Scale& scale) {
-    const ToneMap tone_map(grid);
+    const ToneMap tone_map = tone_map_of(grid);
     Picture picture{scale.size(grid.width()), scale.size(grid.height()), {}};
     picture.pixels.resize(std::size_t{picture.width} * picture.height);
     tbb::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {

@@ -1,4 +1,4 @@
-#include "lights/disc_light.h"
+#include "tests/lights/disc_light.h"
 
 #include <cmath>
 #include <numbers>

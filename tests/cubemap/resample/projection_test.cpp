@@ -1,5 +1,5 @@
-// Angular map, mirror ball and octahedral map: their mathematics, their pixels' patches, and what
-// becomes of light in them.
+// Angular map, mirror ball and octahedral map: their mathematics, their pixels' footprints, and
+// what becomes of light in them.
 #include "cubemap/resample/projection.h"
 
 #include <cmath>
@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "cubemap/resample/patch.h"
+#include "cubemap/resample/footprint.h"
 #include "cubemap/resample/resample.h"
 #include "tests/cubemap/test_images.h"
 
@@ -83,7 +83,7 @@ TEST(Projection, DensityIsTheSolidAngleOfSmallSquares) {
     }
 }
 
-TEST(PatchPieces, PixelsTileTheSphereAtEveryResolution) {
+TEST(ProjectionFootprints, PixelsTileTheSphereAtEveryResolution) {
     for (const Layout layout : Projected) {
         for (const std::uint32_t n : {1u, 2u, 3u, 7u, 16u, 33u, 100u}) {
             double sum = 0.0;
@@ -94,11 +94,11 @@ TEST(PatchPieces, PixelsTileTheSphereAtEveryResolution) {
     }
 }
 
-TEST(PatchPieces, RimPixelsOfAMirrorBallHaveTheirShareOfTheDisc) {
+TEST(ProjectionFootprints, RimPixelsOfAMirrorBallHaveTheirShareOfTheDisc) {
     // Equal areas are equal solid angles, so the area of a square's part in the disc is known: here
     // by counting.
     constexpr std::uint32_t N = 9;
-    PatchPieces pieces(*projection(Layout::MirrorBall), N, N);
+    ProjectionFootprints pieces(*projection(Layout::MirrorBall), N, N);
     for (std::uint32_t y = 0; y < N; ++y) {
         for (std::uint32_t x = 0; x < N; ++x) {
             double angle = 0.0;

@@ -53,7 +53,7 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
     const bool lat_long = image.layout == Layout::LatLong;
     const std::uint32_t faces = lat_long ? 1 : 6;
     const std::uint32_t width =
-        lat_long ? image.width : FaceCells(image.layout, image.width, image.height).resolution();
+        lat_long ? image.width : FaceSquares(image.layout, image.width, image.height).resolution();
     const std::uint32_t height = lat_long ? image.height : width;
     const auto columns = cell_borders(width, image.sampling),
                rows = cell_borders(height, image.sampling);
@@ -62,7 +62,7 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
             for (std::uint32_t x = 0; x < width; ++x) {
                 const glm::vec3 radiance =
                     image.pixels[lat_long ? std::size_t{y} * width + x
-                                          : FaceCells(image.layout, image.width, image.height)
+                                          : FaceSquares(image.layout, image.width, image.height)
                                                 .pixel(AllFaces[f], x, y)];
                 for (int k = 0; k < n * n; ++k) {
                     const double s = columns[x] + (columns[x + 1] - columns[x]) *

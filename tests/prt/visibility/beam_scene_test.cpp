@@ -64,7 +64,7 @@ struct Tally {
     std::size_t num_blocked = 0;
 };
 
-/// Blocks of receivers of all sizes through patches of all widths, patch by patch and direction by
+/// Groups of receivers of all sizes through patches of all widths, patch by patch and direction by
 /// direction: the very bits of the ray tracer.
 Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& origins,
               const std::vector<glm::vec3>& normals, std::uint32_t seed, int rounds) {
@@ -84,10 +84,10 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
             for (std::size_t j = 0; j < patch.num_directions; ++j)
                 if (glm::dot(normals[first + i], patch.direction(j)) > 0.0f)
                     asked[i] |= std::uint64_t{1} << j;
-        const ReceiverBlock block{std::span(origins).subspan(first, size), hint};
+        const ReceiverGroup group{std::span(origins).subspan(first, size), hint};
         const auto lit = [&](const Blockers& blockers) {
             std::vector<std::uint64_t> result = asked;
-            blockers.clear_blocked(block, patch, result);
+            blockers.clear_blocked(group, patch, result);
             return result;
         };
         const std::vector<std::uint64_t> expected = lit(rays);
@@ -158,7 +158,7 @@ TEST(BeamScene, AnswersAsTheRayTracerDoesAmongRandomTriangles) {
             std::uniform_real_distribution<float> coordinate(-1.5f, 1.5f);
             std::vector<glm::vec3> origins, normals;
             glm::vec3 centre(0.0f);
-            for (int i = 0; i < 1000; ++i) { // in clouds, as blocks are
+            for (int i = 0; i < 1000; ++i) { // in clouds, as groups are
                 if (i % 50 == 0)
                     centre = {coordinate(random), coordinate(random), coordinate(random)};
                 origins.push_back(centre + 0.05f * scenes::random_direction(random));

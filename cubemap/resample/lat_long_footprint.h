@@ -1,4 +1,5 @@
-// The patches of the sphere that the pixels of a lat-long stand for, as spherical polygons.
+// Footprints: the parts of the sphere that the pixels of a lat-long stand for, as spherical
+// polygons.
 #pragma once
 
 #include <cmath>
@@ -13,11 +14,11 @@
 
 namespace relumine::cubemap {
 
-/// Finds a pixel's patch, whose parallels are replaced by short arcs of great circles. Keeps its
-/// buffers; one per thread.
-class LatLongPatches {
+/// Finds a pixel's footprint, whose parallels are replaced by short arcs of great circles. Keeps
+/// its buffers; one per thread.
+class LatLongFootprints {
 public:
-    explicit LatLongPatches(const ImageShape& shape)
+    explicit LatLongFootprints(const ImageShape& shape)
         : columns_(cell_borders(shape.width, shape.sampling)),
           rows_(cell_borders(shape.height, shape.sampling)) {}
 
@@ -29,7 +30,7 @@ public:
         // An arc of angle d in place of a parallel moves less than d^2 / 12 of a pixel's area: 1e-6
         // at this number per turn.
         constexpr double ArcsPerTurn = 1536.0;
-        // Patches beyond this are taken in parts, which keeps them well within a half-sphere.
+        // Footprints beyond this are taken in parts, which keeps them well within a half-sphere.
         constexpr double LargestPart = Pi / 8.0;
         const double top = Pi * rows_[y], bottom = Pi * rows_[y + 1];
         const double left = 2.0 * Pi * (0.5 - columns_[x]),

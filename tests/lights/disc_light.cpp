@@ -1,7 +1,7 @@
 // Based on: Snyder, "Area light sources for real-time graphics", 1996, the integral of the cosine
 // over a spherical cap that the horizon cuts; also known from the view factors of spheres in heat
 // transfer.
-#include "lights/disc_light.h"
+#include "tests/lights/disc_light.h"
 
 #include <algorithm>
 #include <cmath>

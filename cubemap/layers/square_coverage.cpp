@@ -1,4 +1,4 @@
-#include "cubemap/layers/cell_coverage.h"
+#include "cubemap/layers/square_coverage.h"
 
 namespace relumine::cubemap {
 

@@ -1,4 +1,5 @@
-// The patches of the sphere that the pixels of a Projection stand for, as spherical polygons.
+// Footprints: the parts of the sphere that the pixels of a Projection stand for, as spherical
+// polygons.
 #pragma once
 
 #include <array>
@@ -15,15 +16,15 @@
 
 namespace relumine::cubemap {
 
-/// Finds a pixel's patch. Keeps its buffers; one per thread.
+/// Finds a pixel's footprint. Keeps its buffers; one per thread.
 ///
-/// A patch comes in pieces well within a half-sphere. Its edges, curves on the sphere, become
-/// chords that are no further off than 1e-4 of a pixel; neighbours share them, so patches tile the
-/// sphere. Pixels on the rim of a disc keep the part inside, and the rim itself shrinks to the one
-/// direction that it shows.
-class PatchPieces {
+/// A footprint comes in pieces well within a half-sphere. Its edges, curves on the sphere, become
+/// chords that are no further off than 1e-4 of a pixel; neighbours share them, so footprints tile
+/// the sphere. Pixels on the rim of a disc keep the part inside, and the rim itself shrinks to the
+/// one direction that it shows.
+class ProjectionFootprints {
 public:
-    PatchPieces(const Projection& projection, std::uint32_t width, std::uint32_t height);
+    ProjectionFootprints(const Projection& projection, std::uint32_t width, std::uint32_t height);
 
     /// True if the whole pixel shows something.
     [[nodiscard]] bool is_whole(std::uint32_t x, std::uint32_t y) const;

@@ -34,14 +34,14 @@ struct FacePlane {
 };
 
 /// The square [u - half, u + half] x [v - half, v + half] of a face's plane.
-struct Cell {
+struct FaceSquare {
     double u = 0.0;
     double v = 0.0;
     double half = 1.0;
-    /// No direction of the cell is further than this chord from its centre's: moving points of the
-    /// plane to the sphere brings them closer together.
+    /// No direction of the square is further than this chord from its centre's: moving points of
+    /// the plane to the sphere brings them closer together.
     [[nodiscard]] double chord() const { return 1.4142135623730952 * half; }
-    [[nodiscard]] Cell quarter(int i) const {
+    [[nodiscard]] FaceSquare quarter(int i) const {
         const double h = 0.5 * half;
         return {(i & 1) != 0 ? u + h : u - h, (i & 2) != 0 ? v + h : v - h, h};
     }
@@ -60,14 +60,15 @@ struct Cell {
 /// Mean of smoothstep(a + p x + q y) over the unit square.
 [[nodiscard]] double mean_smoothstep(double a, double p, double q);
 
-/// Mean coverage of a cell that bound() calls Part, [0, 1].
+/// Mean coverage of a square that bound() calls Part, [0, 1].
 template<typename Shape>
-[[nodiscard]] double mean_coverage(const Shape& shape, const FacePlane& plane, const Cell& cell);
+[[nodiscard]] double mean_coverage(const Shape& shape, const FacePlane& plane,
+                                   const FaceSquare& square);
 
 namespace detail {
 
-/// Mean of one ramp's smoothstep over a cell, from samples at the four corners (row by row) and the
-/// centre.
+/// Mean of one ramp's smoothstep over a square, from samples at the four corners (row by row) and
+/// the centre.
 struct RampFit {
     RampFit(const std::array<double, 4>& corners, double centre);
     double mean = 0.0;
@@ -84,21 +85,21 @@ struct RampFit {
 /// The fits' product, if it can be trusted.
 template<typename Shape>
 std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane,
-                                      const Cell& cell) {
+                                      const FaceSquare& square) {
     constexpr std::size_t N = Shape::NumRamps;
-    // Beyond this size the density of solid angle varies too much within a cell (by a percent).
+    // Beyond this size the density of solid angle varies too much within a square (by a percent).
     constexpr double LargestHalf = 1.0 / 256.0;
-    const bool smallest = cell.chord() <= shape.smallest_feature();
-    if (!smallest && cell.half > LargestHalf)
+    const bool smallest = square.chord() <= shape.smallest_feature();
+    if (!smallest && square.half > LargestHalf)
         return std::nullopt;
     const auto ramps_at = [&](double u, double v) {
         return shape.ramps(plane.direction(u, v));
     };
-    const double u0 = cell.u - cell.half, u1 = cell.u + cell.half;
-    const double v0 = cell.v - cell.half, v1 = cell.v + cell.half;
+    const double u0 = square.u - square.half, u1 = square.u + square.half;
+    const double v0 = square.v - square.half, v1 = square.v + square.half;
     const std::array<std::array<double, N>, 4> corners = {ramps_at(u0, v0), ramps_at(u1, v0),
                                                           ramps_at(u0, v1), ramps_at(u1, v1)};
-    const glm::dvec3 middle = plane.direction(cell.u, cell.v);
+    const glm::dvec3 middle = plane.direction(square.u, square.v);
     const std::array<double, N> centre = shape.ramps(middle);
     double product = 1.0;
     std::size_t num_partial = 0;
@@ -109,7 +110,7 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
         product *= fit.mean;
         if (smallest || (fit.full && Shape::HasConcaveRamps))
             continue;
-        const bool straight = fit.linear && !shape.has_kink(i, middle, cell.chord());
+        const bool straight = fit.linear && !shape.has_kink(i, middle, square.chord());
         if (fit.none && straight)
             return 0.0;
         num_partial += 1;
@@ -123,35 +124,35 @@ std::optional<double> fitted_coverage(const Shape& shape, const FacePlane& plane
     return product;
 }
 
-/// Integral of coverage over a cell's solid angle.
+/// Integral of coverage over a square's solid angle.
 template<typename Shape>
-double covered_solid_angle(const Shape& shape, const FacePlane& plane, const Cell& cell) {
-    switch (shape.bound(plane.direction(cell.u, cell.v), cell.chord())) {
+double covered_solid_angle(const Shape& shape, const FacePlane& plane, const FaceSquare& square) {
+    switch (shape.bound(plane.direction(square.u, square.v), square.chord())) {
     case Overlap::None:
         return 0.0;
     case Overlap::All:
-        return cell.solid_angle();
+        return square.solid_angle();
     case Overlap::Part:
         break;
     }
-    if (const std::optional<double> fitted = fitted_coverage(shape, plane, cell))
-        return *fitted * cell.solid_angle();
+    if (const std::optional<double> fitted = fitted_coverage(shape, plane, square))
+        return *fitted * square.solid_angle();
     double sum = 0.0;
     for (int i = 0; i < 4; ++i)
-        sum += covered_solid_angle(shape, plane, cell.quarter(i));
+        sum += covered_solid_angle(shape, plane, square.quarter(i));
     return sum;
 }
 
 } // namespace detail
 
 template<typename Shape>
-double mean_coverage(const Shape& shape, const FacePlane& plane, const Cell& cell) {
-    if (const std::optional<double> fitted = detail::fitted_coverage(shape, plane, cell))
+double mean_coverage(const Shape& shape, const FacePlane& plane, const FaceSquare& square) {
+    if (const std::optional<double> fitted = detail::fitted_coverage(shape, plane, square))
         return *fitted;
     double sum = 0.0;
     for (int i = 0; i < 4; ++i)
-        sum += detail::covered_solid_angle(shape, plane, cell.quarter(i));
-    return std::min(1.0, sum / cell.solid_angle());
+        sum += detail::covered_solid_angle(shape, plane, square.quarter(i));
+    return std::min(1.0, sum / square.solid_angle());
 }
 
 } // namespace relumine::cubemap
