@@ -71,7 +71,7 @@ public:
                                                  const DirectionPacket& directions,
                                                  std::uint32_t active) const = 0;
 
-    /// Clears bit j of rays[i] where the ray from the receiver i in the patch's direction j is
+    /// Clears bit j of rays[i] where the ray from receiver i in the patch's direction j is
     /// blocked. A bit that is clear asks for nothing. The answers are the same as from occluded(),
     /// which this default asks.
     virtual void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
