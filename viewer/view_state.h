@@ -51,7 +51,7 @@ struct ViewState {
     std::string path = {};
     /// The text field takes the keyboard.
     bool wants_path = false;
-    /// A picture that waits for the dialogue's question how to use it; empty: none.
+    /// A dropped picture, until the dialogue has asked how to use it; empty: none.
     std::filesystem::path dropped = {};
     std::string message = {};
     bool message_is_error = false;
