@@ -23,7 +23,8 @@ namespace relumine::relight {
 [[nodiscard]] cubemap::CubeMap contribution_map(const Relighter& relighter,
                                                 std::span<const std::uint32_t> receivers);
 
-/// Returns the radiance that a part of the environment gives to each receiver, for albedo 1.
+/// Returns the radiance that a part of the environment gives to each receiver, as
+/// Relighter::radiance().
 ///
 /// Shape:   [num_receivers] in the receivers' own order. weights is [6 * R * R] in the relighter's
 ///          environment: the part of each texel, 0 to 1.

@@ -48,7 +48,7 @@ exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> r
 
 /// The difference between relit and exact radiance.
 struct ErrorReport {
-    /// |B - B_exact|| / ||B_exact|| over receivers and RGB; 0 where both are black.
+    /// ||B - B_exact|| / ||B_exact|| over receivers and RGB; 0 where both are black.
     double relative_l2 = 0.0;
     /// Mean |B - B_exact| over receivers and RGB, over mean_radiance.
     double mean_abs = 0.0;

@@ -90,8 +90,8 @@ public:
     [[nodiscard]] bool can_undo() const { return at_ > 0; }
     [[nodiscard]] bool can_redo() const { return at_ + 1 < history_.size(); }
 
-    /// Radiance (albedo 1) of all receivers after the last complete update. For the writer's
-    /// thread.
+    /// Radiance of all receivers after the last complete update, as Relighter::radiance(). For the
+    /// writer's thread.
     ///
     /// Shape:   [num_receivers] in the receivers' order.
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return relighter_.radiance(); }

@@ -1,6 +1,6 @@
-// A few lights that together light receivers as a given radiance does. Based on: Chen, Billings,
-// Luo, "Orthogonal Least Squares Methods and Their Application to Non-linear System
-// Identification", 1989, with non-negative weights and exchanges.
+// A few lights that together light receivers as a given radiance does.
+// Based on: Chen, Billings, Luo, "Orthogonal Least Squares Methods and Their Application to
+// Non-linear System Identification", 1989, with non-negative weights and exchanges.
 #pragma once
 
 #include <array>

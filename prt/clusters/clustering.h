@@ -1,6 +1,7 @@
 // The clustering behind precompute(): cells of the sphere are tested, then kept as clusters or
-// split, until none is left. Based on: Johan and Nishita, "Efficient Relighting by Clustering
-// Environment Lights" [JN], Section 4.
+// split, until none is left.
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN],
+// Section 4.
 #pragma once
 
 #include <cstddef>
