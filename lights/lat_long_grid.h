@@ -11,21 +11,10 @@
 #include <glm/vec4.hpp>
 
 #include "cubemap/image/environment.h"
+#include "lights/luminance.h"
+#include "lights/pixel_rectangle.h"
 
 namespace relumine::lights {
-
-/// Pixels [x0, x1) x [y0, y1) of a lat-long.
-struct PixelRectangle {
-    std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    [[nodiscard]] std::uint32_t width() const { return x1 - x0; }
-    [[nodiscard]] std::uint32_t height() const { return y1 - y0; }
-    bool operator==(const PixelRectangle&) const = default;
-};
-
-/// Luminance of linear RGB with the weights that [D05] takes from ITU-R BT.709.
-[[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
-    return 0.2125 * rgb.r + 0.7154 * rgb.g + 0.0721 * rgb.b;
-}
 
 /// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must
 /// outlive it.

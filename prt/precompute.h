@@ -37,14 +37,9 @@ struct PrecomputeOptions {
     /// Columns of clusters that may be in memory, the largest part of it next to the planes;
     /// joining and writing them takes as much again. Beyond it TooManyClusters is thrown.
     std::uint64_t max_column_bytes = std::numeric_limits<std::uint64_t>::max();
-    /// Of a trial: columns count as those of so many times the receivers
-    double column_scale = 1.0;
-    /// Where the work is left now and then, and taken up
+    /// Where the work is left now and then, and taken up. Where the receivers have highlights,
+    /// precompute_glossy() follows, and a last checkpoint is left for it.
     Checkpoint* checkpoint = nullptr;
-    /// Other work follows: leave a last checkpoint of this
-    bool more_follows = false;
-    /// For tests: work between two looks at the checkpoint
-    std::optional<std::uint64_t> samples_per_step = {};
     /// Polled a few times a second or more often
     std::stop_token stop = {};
     /// Estimated fraction in [0, 1], never falling; one call at a time

@@ -46,6 +46,8 @@ public:
     /// are traced, 0 where not.
     EnvironmentBinner(const prt::Transfer& transfer, float sharp_tolerance)
         : transfer_(transfer), sharp_tolerance_(sharp_tolerance) {}
+    /// Refuses a temporary transfer.
+    EnvironmentBinner(const prt::Transfer&& transfer, float sharp_tolerance) = delete;
 
     /// O(6 R^2); parallel inside, the same bits for any number of threads. One thread at a time.
     /// Throws std::invalid_argument for a map without texels or a radiance that require_radiance()

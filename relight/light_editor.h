@@ -29,6 +29,8 @@ class LightEditor {
 public:
     /// Arguments as for Relighter; the transfer must outlive the editor.
     explicit LightEditor(const prt::Transfer& transfer, const ShadowRays& rays = {});
+    /// Refuses a temporary transfer.
+    explicit LightEditor(const prt::Transfer&& transfer, const ShadowRays& rays = {}) = delete;
 
     /// Replaces the base environment and relights everything. Layers stay. The first base becomes
     /// that of all marks before it. Throws std::invalid_argument for a map without texels or a

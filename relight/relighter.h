@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,19 +12,17 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/texel_rectangle.h"
+#include "lights/light_list.h"
 #include "prt/transfer.h"
 #include "relight/binned_environment.h"
-#include "relight/block_kernels.h"
-#include "relight/cluster_lights.h"
-#include "relight/glossy_kernels.h"
-#include "relight/light_packets.h"
-#include "relight/light_pyramid.h"
+#include "relight/shadow_rays.h"
 #include "relight/sharp_lights.h"
-#include "relight/traced_light.h"
 
 namespace relumine::relight {
 
 using cubemap::TexelRectangle;
+
+struct ClusterLights;
 
 /// Where the time of set_environment() went.
 struct RelightTimes {
@@ -62,6 +59,11 @@ public:
     /// cluster are traced; without, all light goes through the clusters. Memory: about 1 KB per
     /// block of 16 receivers.
     explicit Relighter(const prt::Transfer& transfer, const ShadowRays& rays = {});
+    /// Refuses a temporary transfer, which would not outlive the Relighter.
+    explicit Relighter(const prt::Transfer&& transfer, const ShadowRays& rays = {}) = delete;
+    ~Relighter();
+    Relighter(Relighter&&) noexcept;
+    Relighter& operator=(Relighter&&) noexcept;
 
     /// Lights all receivers [JN, Eq. 8]. Any resolution: clusters are cells of the continuous
     /// sphere. O(6 R^2 + size of the transfer). Throws std::invalid_argument for a map without
@@ -108,59 +110,19 @@ public:
     /// Outgoing radiance, [num_receivers] in the receivers' own order; the unit of the
     /// environment's radiance. With the transfer's surfaces, toward the eye where it has a glossy
     /// part; for albedo 1 where it has none.
-    [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] std::span<const glm::vec3> radiance() const;
 
-    [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
+    [[nodiscard]] const cubemap::CubeMap& environment() const;
 
-    [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
+    [[nodiscard]] const prt::Transfer& transfer() const;
     /// Clusters' light without the sharp lights.
-    [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
-    [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
-    [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
+    [[nodiscard]] const ClusterLights& cluster_lights() const;
+    [[nodiscard]] std::span<const SharpLight> sharp_lights() const;
+    [[nodiscard]] const ShadowRays& shadow_rays() const;
 
 private:
-    void check(const TexelRectangle& rectangle) const;
-    void set_cluster_lights(std::span<const std::uint32_t> clusters);
-    void take(BinnedEnvironment binned);
-    bool update_sharp_lights();
-    bool replace_sharp_lights(std::vector<SharpLight> lights);
-    std::size_t update_changed(bool sharp_changed);
-    void set_pyramid();
-    void light_glossy(std::size_t block);
-    void write_radiance(std::size_t block);
-    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse) const;
-
-    const prt::Transfer& transfer_;
-    ShadowRays rays_;
-    /// [num_clusters] all light of each cluster
-    std::vector<VectorIrradiance> sums_;
-    /// [num_clusters] length of its luminance
-    std::vector<double> powers_;
-    std::vector<SharpLight> sharp_lights_;
-    /// What sharp_lights_ make
-    TracedLight traced_;
-    /// Where the transfer has a glossy part
-    std::optional<LightPyramid> pyramid_;
-    /// [num_blocks], or none
-    std::vector<GlossyLight> glossy_;
-    /// [num_blocks]
-    std::vector<BlockNormals> normals_;
-    /// tile_words()
-    std::vector<TileWord> words_;
-    /// [num_blocks]
-    std::vector<BlockLight> light_;
-    ClusterLights lights_;
-    /// ClusterLights::vectors that light_ is made of
-    std::vector<float> lit_by_;
-    EnvironmentBinner binner_;
-    /// Of environment_
-    std::shared_ptr<const LightBinning> binning_;
-    cubemap::CubeMap environment_;
-    std::vector<glm::vec3> radiance_;
-    /// Scratch: clusters whose light changes
-    std::vector<std::uint32_t> changed_;
-    /// Scratch: the same as the kernels want them
-    std::vector<ChangedWord> changed_words_;
+    class Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 /// The one-call form: radiance of all receivers under an environment, albedo 1.

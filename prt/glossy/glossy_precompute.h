@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <stop_token>
 
@@ -33,8 +32,6 @@ struct GlossyOptions {
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     /// Where finished blocks are left now and then, and taken up
     Checkpoint* checkpoint = nullptr;
-    /// For tests: work between two looks at the checkpoint
-    std::optional<std::size_t> blocks_per_step = {};
     std::stop_token stop = {};
     /// Fraction in [0, 1], one call at a time
     std::function<void(double)> on_progress = {};

@@ -9,7 +9,6 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
-#include "prt/scene/section_file.h"
 #include "prt/transfer.h"
 
 namespace relumine::prt {
@@ -56,9 +55,6 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 /// Reads a scene and checks all of it: sizes against the file before anything is allocated,
 /// checksums, indices, the tree, the counts. Throws std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
-
-/// The same of a file's sections as read_sections() gives them; `path` is for messages.
-[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
 
 /// xxHash64 of a file's bytes.
 [[nodiscard]] std::uint64_t file_hash(const std::filesystem::path& path);

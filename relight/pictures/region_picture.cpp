@@ -9,6 +9,8 @@
 #include <glm/common.hpp>
 #include <tbb/parallel_for.h>
 
+#include "lights/lat_long_grid.h"
+
 namespace relumine::relight {
 
 namespace {
