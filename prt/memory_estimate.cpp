@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "prt/precompute_context.h"
 #include "prt/receivers/receiver_order.h"
 
 namespace relumine::prt {
@@ -138,8 +139,8 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     }
     trial_options.checkpoint = nullptr;
     trial_options.on_progress = {};
-    trial_options.column_scale =
-        static_cast<double>(receivers.size()) / static_cast<double>(trial.size());
+    const PrecomputeContext context{.column_scale = static_cast<double>(receivers.size()) /
+                                                    static_cast<double>(trial.size())};
     // No limit is the largest number, which must not overflow when scaled.
     const double most =
         static_cast<double>(max_column_bytes(sizes, options.plane_bytes, max_bytes));
@@ -147,7 +148,7 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     PrecomputeStatistics statistics;
     MemoryEstimate estimate;
     try {
-        static_cast<void>(precompute(trial, blockers, trial_options, &statistics));
+        static_cast<void>(precompute(trial, blockers, trial_options, context, &statistics));
     } catch (const TooManyClusters& error) {
         estimate.is_at_least = true;
         statistics.num_clusters = error.num_clusters;

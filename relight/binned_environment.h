@@ -48,6 +48,8 @@ public:
     /// lights are traced, otherwise 0.
     EnvironmentBinner(const prt::Transfer& transfer, float sharp_tolerance)
         : transfer_(transfer), sharp_tolerance_(sharp_tolerance) {}
+    /// Refuses a temporary transfer.
+    EnvironmentBinner(const prt::Transfer&& transfer, float sharp_tolerance) = delete;
 
     /// Bins an environment.
     ///

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "relight/block_kernels.h"
+#include "relight/light_packets.h"
+
 namespace relumine::relight {
 
 namespace {

@@ -31,6 +31,8 @@ class LightEditor {
 public:
     /// Takes the arguments of Relighter. The transfer must outlive the editor.
     explicit LightEditor(const prt::Transfer& transfer, const ShadowRays& rays = {});
+    /// Refuses a temporary transfer.
+    explicit LightEditor(const prt::Transfer&& transfer, const ShadowRays& rays = {}) = delete;
 
     /// Replaces the base environment and relights everything. Layers stay. Marks made before any
     /// base was set take the first base.

@@ -91,8 +91,8 @@ Quadtree quadtree_of(const std::vector<Cell>& leaves) {
 } // namespace
 
 Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
-                       const PrecomputeOptions& options)
-    : options_(options), order_(spatial_order(receivers)),
+                       const PrecomputeOptions& options, const PrecomputeContext& context)
+    : options_(options), context_(context), order_(spatial_order(receivers)),
       progress_(options.stop, options.on_progress),
       max_level_(static_cast<std::uint32_t>(std::bit_width(options.face_resolution - 1))),
       allowed_(allowed_squared_distance(options, receivers.size())) {
@@ -150,7 +150,7 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
 
 void Clustering::add_cluster(Cluster&& cluster) {
     settled_ += part_of_sphere(cluster.cell);
-    column_bytes_ += bytes_of(cluster.column, options_.column_scale);
+    column_bytes_ += bytes_of(cluster.column, context_.column_scale);
     deepest_ = std::max<std::uint32_t>(deepest_, cluster.cell.level);
     clusters_.push_back(std::move(cluster));
 }
@@ -209,8 +209,8 @@ void Clustering::trace_batch() {
                 save_checkpoint();
         };
     }
-    if (options_.samples_per_step)
-        steps.samples_per_step = *options_.samples_per_step;
+    if (context_.samples_per_step)
+        steps.samples_per_step = *context_.samples_per_step;
     // A patch is at most four cells wide: the new points of four splits of siblings reach as far.
     const double patch_width = 4 * 2.0 * batch_.front().size();
     planes_->trace(
@@ -248,7 +248,7 @@ void Clustering::decide_batch() {
     LeafColumn empty;
     empty.visible.resize(num_words);
     empty.mixed.resize(num_words);
-    const std::uint64_t min_bytes = bytes_of(empty, options_.column_scale);
+    const std::uint64_t min_bytes = bytes_of(empty, context_.column_scale);
     while (!batch_.empty()) {
         std::vector<Decision> slice(std::min(max_slice, batch_.size()));
         tbb::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
@@ -259,7 +259,7 @@ void Clustering::decide_batch() {
         std::size_t num_clusters = clusters_.size();
         std::size_t num_split = 0;
         for (const Decision& decision : slice) {
-            num_bytes += decision.column ? bytes_of(*decision.column, options_.column_scale) : 0;
+            num_bytes += decision.column ? bytes_of(*decision.column, context_.column_scale) : 0;
             num_clusters += decision.column ? 1 : 0;
             num_split += decision.column ? 0 : 1;
         }
@@ -327,7 +327,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
             save_checkpoint();
         throw;
     }
-    if (checkpoint != nullptr && options_.more_follows && num_saved_ != clusters_.size() &&
+    if (checkpoint != nullptr && context_.more_follows && num_saved_ != clusters_.size() &&
         checkpoint->is_worthwhile())
         save_checkpoint();
     statistics.num_directions = planes_->num_directions();

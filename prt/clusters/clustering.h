@@ -16,6 +16,7 @@
 #include "prt/clusters/pending_cells.h"
 #include "prt/clusters/visibility_planes.h"
 #include "prt/precompute.h"
+#include "prt/precompute_context.h"
 #include "prt/progress.h"
 
 namespace relumine::prt {
@@ -31,7 +32,7 @@ class Clustering {
 public:
     /// The arguments must outlive this object; precompute() has checked them.
     Clustering(const Receivers& receivers, const Blockers& blockers,
-               const PrecomputeOptions& options);
+               const PrecomputeOptions& options, const PrecomputeContext& context);
 
     /// Does the work; call it once. Leaves the counts of the work in `statistics`.
     [[nodiscard]] Transfer run(PrecomputeStatistics& statistics);
@@ -59,6 +60,7 @@ private:
     [[nodiscard]] Transfer result();
 
     const PrecomputeOptions& options_;
+    const PrecomputeContext context_;
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;
     std::vector<glm::vec3> origins_;

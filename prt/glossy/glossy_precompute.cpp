@@ -24,6 +24,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/lobe_refinement.h"
 #include "prt/precompute.h"
+#include "prt/precompute_context.h"
 
 namespace relumine::prt {
 
@@ -137,7 +138,8 @@ public:
                      const GlossyOptions& options)
         : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options) {}
 
-    GlossyTransfer run(GlossyStatistics& statistics);
+    /// `blocks_per_step`: work between two looks at the checkpoint.
+    GlossyTransfer run(std::size_t blocks_per_step, GlossyStatistics& statistics);
     std::uint64_t estimate();
 
 private:
@@ -148,7 +150,7 @@ private:
     void keep(EntriesOfBlock&& block);
     void take_up();
     void save_checkpoint();
-    void work();
+    void work(std::size_t blocks_per_step);
 
     const Receivers& receivers_;
     const Blockers& blockers_;
@@ -254,15 +256,13 @@ void GlossyPrecompute::save_checkpoint() {
     rays_saved_ = num_rays_;
 }
 
-void GlossyPrecompute::work() {
+void GlossyPrecompute::work(std::size_t blocks_per_step) {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
-    const std::size_t per_step = options_.blocks_per_step.value_or(
-        BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
     std::mutex mutex;
     std::size_t num_done = blocks_.size();
     while (blocks_.size() < num_blocks) {
         const std::size_t begin = blocks_.size();
-        std::vector<EntriesOfBlock> step(std::min(per_step, num_blocks - begin));
+        std::vector<EntriesOfBlock> step(std::min(blocks_per_step, num_blocks - begin));
         const std::uint64_t rays_before = num_rays_;
         try {
             tbb::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
@@ -288,12 +288,12 @@ void GlossyPrecompute::work() {
     }
 }
 
-GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
+GlossyTransfer GlossyPrecompute::run(std::size_t blocks_per_step, GlossyStatistics& statistics) {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
     if (options_.checkpoint != nullptr)
         take_up();
     try {
-        work();
+        work(blocks_per_step);
     } catch (const TooManyEntries&) {
         if (options_.checkpoint != nullptr)
             save_checkpoint();
@@ -380,11 +380,23 @@ GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blo
     check(receivers, transfer, options);
     const auto start = std::chrono::steady_clock::now();
     GlossyStatistics local;
-    GlossyTransfer glossy = GlossyPrecompute(receivers, blockers, transfer, options).run(local);
+    const std::size_t blocks_per_step =
+        BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    GlossyTransfer glossy =
+        GlossyPrecompute(receivers, blockers, transfer, options).run(blocks_per_step, local);
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (statistics != nullptr)
         *statistics = local;
     return glossy;
+}
+
+GlossyTransfer precompute_glossy_in_steps(const Receivers& receivers, const Blockers& blockers,
+                                          const Transfer& transfer, const GlossyOptions& options,
+                                          std::size_t blocks_per_step) {
+    check(receivers, transfer, options);
+    GlossyStatistics statistics;
+    return GlossyPrecompute(receivers, blockers, transfer, options)
+        .run(blocks_per_step, statistics);
 }
 
 } // namespace relumine::prt

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <stop_token>
 
@@ -36,8 +35,6 @@ struct GlossyOptions {
     /// Stores finished blocks now and then, and gives back the blocks of an earlier run. May be
     /// null.
     Checkpoint* checkpoint = nullptr;
-    /// For tests: blocks of work between two looks at the checkpoint.
-    std::optional<std::size_t> blocks_per_step = {};
     std::stop_token stop = {};
     /// Receives the fraction done, in [0, 1]; one call at a time.
     std::function<void(double)> on_progress = {};

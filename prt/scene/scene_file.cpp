@@ -13,6 +13,7 @@
 #include "files/output_file.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/receiver_sections.h"
+#include "prt/scene/scene_sections.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {

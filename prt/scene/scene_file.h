@@ -9,7 +9,6 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
-#include "prt/scene/section_file.h"
 #include "prt/transfer.h"
 
 namespace relumine::prt {
@@ -60,10 +59,6 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
-
-/// Makes a scene of a file's sections, as read_sections() gives them, with the same checks. `path`
-/// is for messages.
-[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
 
 /// Returns the xxHash64 of a file's bytes.
 [[nodiscard]] std::uint64_t file_hash(const std::filesystem::path& path);

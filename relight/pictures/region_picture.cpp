@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cubemap/luminance.h"
+#include "lights/lat_long_grid.h"
 #include "relight/pictures/tone_map.h"
 
 namespace relumine::relight {
