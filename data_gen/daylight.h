@@ -55,6 +55,9 @@ public:
     [[nodiscard]] glm::dvec3 sun_direction() const { return sun_direction_; }
 
 private:
+    /// Of level ground
+    [[nodiscard]] glm::dvec3 sky_irradiance() const;
+
     /// Perez's five coefficients of one of Y, x, y, and its zenith value over F(0, theta_s).
     struct Distribution {
         double A = 0.0, B = 0.0, C = 0.0, D = 0.0, E = 0.0;

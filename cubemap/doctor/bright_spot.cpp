@@ -91,16 +91,9 @@ struct Finder {
         return *middle;
     }
 
-    [[nodiscard]] BrightSpot spot(std::uint32_t start, double max_radius) const {
-        BrightSpot spot;
-        spot.peak_direction = glm::normalize(glm::dvec3(directions[start]));
-        spot.peak_luminance = luminances[start];
-        spot.surrounding_luminance = surroundings(directions[start]);
-        const double level =
-            std::max(TimesSurroundings * spot.surrounding_luminance,
-                     spot.surrounding_luminance +
-                         PeakPart * (spot.peak_luminance - spot.surrounding_luminance));
-        const double farthest = distance_of_angle(std::max(max_radius, 2.0 * texel_angle));
+    /// Sets the spot's texels: those connected with `start` that are above `level`. Where they go
+    /// on beyond the chord `farthest` the spot is cut.
+    void flood(std::uint32_t start, float farthest, double level, BrightSpot& spot) const {
         std::vector<std::uint32_t> front = {start};
         spot.texels = {start};
         std::vector<bool> seen(luminances.size(), false);
@@ -113,8 +106,7 @@ struct Finder {
                 seen[texel] = true;
                 if (luminances[texel] <= level)
                     continue;
-                if (glm::distance(directions[texel], directions[start]) >
-                    static_cast<float>(farthest)) {
+                if (glm::distance(directions[texel], directions[start]) > farthest) {
                     spot.is_cut = true;
                     continue;
                 }
@@ -123,6 +115,19 @@ struct Finder {
             spot.texels.insert(spot.texels.end(), next.begin(), next.end());
             front = std::move(next);
         }
+    }
+
+    [[nodiscard]] BrightSpot spot(std::uint32_t start, double max_radius) const {
+        BrightSpot spot;
+        spot.peak_direction = glm::normalize(glm::dvec3(directions[start]));
+        spot.peak_luminance = luminances[start];
+        spot.surrounding_luminance = surroundings(directions[start]);
+        const double level =
+            std::max(TimesSurroundings * spot.surrounding_luminance,
+                     spot.surrounding_luminance +
+                         PeakPart * (spot.peak_luminance - spot.surrounding_luminance));
+        const double farthest = distance_of_angle(std::max(max_radius, 2.0 * texel_angle));
+        flood(start, static_cast<float>(farthest), level, spot);
         std::sort(spot.texels.begin(), spot.texels.end());
         for (const std::uint32_t texel : spot.texels) {
             spot.solid_angle += solid_angle(texel);

@@ -89,6 +89,9 @@ private:
 
     void add_first_cells();
     void split(const Node& parent);
+    std::array<Lanes, GridSize> lit_grid(const Node& parent,
+                                         const std::array<glm::vec3, GridSize>& directions,
+                                         const GridValues& values);
     void add(Node node, const std::array<const Floats*, SamplesPerCell>& values);
     void find_leaf(Node& node) const;
     void weigh(Node& node, const std::array<const Floats*, SamplesPerCell>& values) const;
@@ -167,6 +170,33 @@ void LobeRefiner::add_first_cells() {
             }
 }
 
+/// Which receivers the light at each point of a split's grid reaches. The cell's own samples are
+/// known; the others are traced.
+std::array<Lanes, GridSize> LobeRefiner::lit_grid(const Node& parent,
+                                                  const std::array<glm::vec3, GridSize>& directions,
+                                                  const GridValues& values) {
+    std::array<Lanes, GridSize> lit{};
+    std::array<glm::vec3, PacketSize> new_directions;
+    std::array<const Floats*, PacketSize> new_values;
+    std::array<std::size_t, PacketSize> places{};
+    std::size_t num_new = 0;
+    std::size_t num_old = 0;
+    for (std::size_t i = 0; i < GridSize; ++i) {
+        if (!is_new(i)) {
+            lit[i] = parent.lit[num_old++];
+            continue;
+        }
+        places[num_new] = i;
+        new_directions[num_new] = directions[i];
+        new_values[num_new++] = &values[i];
+    }
+    std::array<Lanes, PacketSize> new_lit{};
+    trace(new_directions, new_values, parent.partial, new_lit);
+    for (std::size_t i = 0; i < PacketSize; ++i)
+        lit[places[i]] = new_lit[i];
+    return lit;
+}
+
 void LobeRefiner::split(const Node& parent) {
     const double size = 0.25 * parent.cell.size();
     std::array<glm::vec3, GridSize> directions;
@@ -177,28 +207,9 @@ void LobeRefiner::split(const Node& parent) {
     GridValues values;
     evaluate_lobe(block_.surfaces, lobe_, directions, values);
 
-    std::array<Lanes, GridSize> lit{};
-    if (parent.leaf != NoLeaf && parent.partial != 0) {
-        std::array<glm::vec3, PacketSize> new_directions;
-        std::array<const Floats*, PacketSize> new_values;
-        std::array<std::size_t, PacketSize> places{};
-        std::size_t num_new = 0;
-        std::size_t num_old = 0;
-        for (std::size_t i = 0; i < GridSize; ++i) {
-            if (!is_new(i)) {
-                lit[i] = parent.lit[num_old++];
-                continue;
-            }
-            places[num_new] = i;
-            new_directions[num_new] = directions[i];
-            new_values[num_new++] = &values[i];
-        }
-        std::array<Lanes, PacketSize> new_lit{};
-        trace(new_directions, new_values, parent.partial, new_lit);
-        for (std::size_t i = 0; i < PacketSize; ++i)
-            lit[places[i]] = new_lit[i];
-    }
-
+    const std::array<Lanes, GridSize> lit = parent.leaf != NoLeaf && parent.partial != 0
+                                                ? lit_grid(parent, directions, values)
+                                                : std::array<Lanes, GridSize>{};
     for (std::uint32_t i = 0; i < 4; ++i) {
         Node child{.cell = parent.cell.child(i),
                    .leaf = parent.leaf,

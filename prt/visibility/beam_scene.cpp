@@ -91,8 +91,7 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
                 doubts[word * DirectionPatch::Size + j] = active[word];
             continue;
         }
-        const ParallelResult result =
-            test_parallel_rays(tree, patch, plane, j, group.mean_normal, origins, active);
+        const ParallelResult result = test_parallel_rays(tree, {patch, plane, j}, origins, active);
         num_leaves += result.num_leaves;
         for (std::size_t word = 0; word < active.size(); ++word) {
             num_rays += static_cast<std::size_t>(std::popcount(active[word]));

@@ -31,18 +31,12 @@ constexpr std::size_t MaxReceivers = ReceiverGroup::MaxSize;
 /// Beyond so many leaves in one direction the exact tracer is faster. Measured.
 constexpr std::size_t MostLeaves = 1024;
 
-/// Bounds as those of beam_kernels.cpp, with u = 2^-24, L = longest edge and D = the largest
-/// distance of a corner from the middle plus that of the farthest origin, by components. |s|, |t|
-/// <= 2 and off by 2 u. A moved coordinate is at most 3 D and off by 8 u D, a moved edge at most 3
-/// L and off by 8 u L. The constant's two products are off by 48 u L D each and a rounding of 9 L
-/// D, their difference by one of 18 L D; the two products with the origin by as much, their sums by
-/// one of 27 and one of 36 L D, and as many again where products are not fused: less than 400 u L
-/// D. What the exact tracer adds is less than 120 u L D: see beam_kernels.cpp.
+/// Rounding errors and their bounds: docs/error-bounds.md, rows P1 to P5.
 constexpr float EdgeTolerance = 520.0f * Rounding;
-/// The normal is at most 2 L^2 and off by 8 u L^2; its product with a corner or an origin off by
-/// less than 60 u L^2 D, the difference by 12 more; the exact tracer's by less than 40.
 constexpr float SideTolerance = 180.0f * Rounding;
 constexpr float Smallest = 1e-35f; // products below are lost
+constexpr float OutlineRoundings = 128.0f;
+constexpr float DirectionSlack = 8.0f * Rounding; // of s and t
 
 /// A leaf's triangles projected along the rays, about the middle of the group.
 ///
@@ -112,9 +106,8 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
         }
         store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)),
               projected.certain);
-        // Both sides are off by 8 u D, and the exact tracer may hit what is 16 roundings of its
-        // distance off, 3 sqrt(3) times that when moved.
-        const Vector lost = hn::MulAdd(reach, hn::Set(d, 128.0f * Rounding), hn::Set(d, Smallest));
+        const Vector lost =
+            hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding), hn::Set(d, Smallest));
         store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), projected.s_low);
         store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost),
               projected.s_high);
@@ -304,25 +297,24 @@ void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& 
     }
 }
 
-ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                  const PatchPlane& patch, std::size_t j,
-                                  const glm::vec3& mean_normal, const GroupOrigins& origins,
-                                  const ReceiverBits& active) {
+ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
+                                  const GroupOrigins& origins, const ReceiverBits& active) {
     const hn::CappedTag<float, Width> d;
+    const PatchPlane& patch = of_patch.plane;
+    const std::size_t j = of_patch.index;
     const auto axis = static_cast<std::size_t>(patch.axis);
     const Direction direction{.axes = {axis, (axis + 1) % 3, (axis + 2) % 3},
                               .sign = patch.sign,
                               .s = patch.s[j],
                               .t = patch.t[j],
-                              .unit = directions.direction(j)};
-    constexpr float Slack = 8.0f * Rounding; // of s and t
+                              .unit = of_patch.patch.direction(j)};
     Shaft shaft = shaft_of({.axis = patch.axis,
                             .sign = patch.sign,
-                            .s0 = patch.s[j] - Slack,
-                            .s1 = patch.s[j] + Slack,
-                            .t0 = patch.t[j] - Slack,
-                            .t1 = patch.t[j] + Slack},
-                           mean_normal, origins.reach);
+                            .s0 = patch.s[j] - DirectionSlack,
+                            .s1 = patch.s[j] + DirectionSlack,
+                            .t0 = patch.t[j] - DirectionSlack,
+                            .t1 = patch.t[j] + DirectionSlack},
+                           origins.mean_normal, origins.reach);
     ProjectedReceivers receivers;
     project(d, direction, origins, active, shaft, receivers);
     thread_local ShaftBoxes boxes;
@@ -354,7 +346,7 @@ HWY_EXPORT(test_parallel_rays);
 } // namespace
 
 GroupOrigins::GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree)
-    : all(group.origins), reach(tree.extent) {
+    : all(group.origins), mean_normal(group.mean_normal), reach(tree.extent) {
     glm::vec3 low = group.origins.front();
     glm::vec3 high = low;
     for (const glm::vec3& origin : group.origins) {
@@ -374,12 +366,9 @@ GroupOrigins::GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree)
     }
 }
 
-ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                  const PatchPlane& patch, std::size_t j,
-                                  const glm::vec3& mean_normal, const GroupOrigins& origins,
-                                  const ReceiverBits& active) {
-    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, directions, patch, j, mean_normal,
-                                                    origins, active);
+ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
+                                  const GroupOrigins& origins, const ReceiverBits& active) {
+    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, of_patch, origins, active);
 }
 
 } // namespace relumine::prt

@@ -28,6 +28,8 @@ struct GroupOrigins {
     alignas(64) std::array<Row, 3> from_middle;
     /// In the mesh's coordinates.
     std::span<const glm::vec3> all;
+    /// As in the group.
+    glm::vec3 mean_normal{0.0f};
     glm::vec3 middle{0.0f};
     /// Largest coordinate from the middle.
     float radius = 0.0f;
@@ -38,6 +40,14 @@ struct GroupOrigins {
 /// One bit for each receiver of a group.
 using ReceiverBits = std::array<std::uint64_t, ReceiverGroup::MaxSize / 64>;
 
+/// One direction of a patch.
+struct PatchDirection {
+    const DirectionPatch& patch;
+    /// The plane of the same patch.
+    const PatchPlane& plane;
+    std::size_t index = 0;
+};
+
 struct ParallelResult {
     /// Receivers whose ray is blocked for certain.
     ReceiverBits blocked{};
@@ -47,8 +57,8 @@ struct ParallelResult {
     std::size_t num_leaves = 0;
 };
 
-/// Tests the rays of `active` receivers in the patch's direction j. Seen along the direction,
-/// receivers are points and triangles stay triangles:
+/// Tests the rays of `active` receivers in one direction. Seen along the direction, receivers are
+/// points and triangles stay triangles:
 ///
 ///          . . .
 ///      /\ . . . .
@@ -58,9 +68,9 @@ struct ParallelResult {
 /// are neighbours on a fine mesh look at the same few triangles, however fine the mesh is. A patch
 /// of directions meets more triangles on a finer mesh. Among too many triangles all rays are in
 /// doubt.
-[[nodiscard]] ParallelResult
-test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                   const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                   const GroupOrigins& origins, const ReceiverBits& active);
+[[nodiscard]] ParallelResult test_parallel_rays(const TriangleTree& tree,
+                                                const PatchDirection& of_patch,
+                                                const GroupOrigins& origins,
+                                                const ReceiverBits& active);
 
 } // namespace relumine::prt
