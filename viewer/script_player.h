@@ -35,7 +35,7 @@ private:
                Frame& frame);
     void drag_layer(const ScriptCommand& command, ViewState& state, std::size_t num_frames);
     void resize_layer(const ScriptCommand& command, ViewState& state, std::size_t num_frames);
-    /// Of the present command when this frame is over, up to 1
+    /// The part of the present command that is done after this frame, up to 1.
     [[nodiscard]] double part_done(std::size_t num_frames) const {
         return static_cast<double>(frame_ + 1) / static_cast<double>(num_frames);
     }

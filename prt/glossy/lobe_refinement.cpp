@@ -170,8 +170,8 @@ void LobeRefiner::add_first_cells() {
             }
 }
 
-/// Which receivers the light at each point of a split's grid reaches. The cell's own samples are
-/// known; the others are traced.
+/// Returns the receivers that the light at each point of a split's grid reaches. The cell's own
+/// samples are known; the others are traced.
 std::array<Lanes, GridSize> LobeRefiner::lit_grid(const Node& parent,
                                                   const std::array<glm::vec3, GridSize>& directions,
                                                   const GridValues& values) {
