@@ -17,12 +17,13 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "lights/light_export.h"
+#include "lights/luminance.h"
 #include "lights/place_lights.h"
 #include "relight/exact.h"
-#include "relight/light_packets.h"
 #include "relight/pictures/picture.h"
 #include "relight/pictures/region_picture.h"
 #include "relight/relighter.h"
+#include "relight/shadow_rays.h"
 
 namespace relumine::app {
 

@@ -6,7 +6,7 @@
 #include "app/command_line.h"
 #include "prt/scene/scene_file.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/light_packets.h"
+#include "relight/shadow_rays.h"
 
 namespace relumine::app {
 

@@ -62,7 +62,6 @@ void compute(const Options& options, prt::Scene& scene, prt::PrecomputeOptions& 
                                    : std::nullopt),
         session);
     precompute.checkpoint = checkpoint.get();
-    precompute.more_follows = is_glossy;
     {
         std::optional<prt::BeamScene> beams;
         if (options.engine == "beam")

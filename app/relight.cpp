@@ -11,8 +11,8 @@
 #include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "lights/light_file.h"
-#include "relight/light_packets.h"
 #include "relight/relighter.h"
+#include "relight/shadow_rays.h"
 
 namespace relumine::app {
 

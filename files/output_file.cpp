@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "files/posix_file.h"
+
 namespace relumine::files {
 
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "files/posix_file.h"
+#include "files/descriptor.h"
 
 namespace relumine::files {
 

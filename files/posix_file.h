@@ -1,5 +1,4 @@
-// POSIX files for the classes of this folder: descriptors, whole writes, and errors that name the
-// missing resource.
+// POSIX files for the classes of this folder: whole writes, and errors that say what is missing.
 #pragma once
 
 #include <cstddef>
@@ -7,24 +6,11 @@
 #include <filesystem>
 #include <span>
 
+#include "files/descriptor.h"
+
 namespace relumine::files {
 
-/// A file descriptor that closes itself. Negative: none.
-class Descriptor {
-public:
-    explicit Descriptor(int descriptor = -1) : fd_(descriptor) {}
-    ~Descriptor();
-    Descriptor(Descriptor&& other) noexcept;
-    Descriptor& operator=(Descriptor&& other) noexcept;
-
-    [[nodiscard]] int get() const { return fd_; }
-    [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-
-private:
-    int fd_;
-};
-
-/// Throws:  std::runtime_error "path: cannot ACTION: reason".
+/// Throws std::runtime_error "path: cannot ACTION: reason".
 [[noreturn]] void fail(const std::filesystem::path& path, const char* action, int error);
 
 /// Throws:  std::runtime_error "path: cannot write: reason". For a full disk, a quota or a limit,

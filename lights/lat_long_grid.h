@@ -11,25 +11,18 @@
 #include <glm/vec4.hpp>
 
 #include "cubemap/image/environment.h"
-#include "cubemap/luminance.h"
+#include "lights/luminance.h"
+#include "lights/pixel_rectangle.h"
 
 namespace relumine::lights {
-
-/// Pixels [x0, x1) x [y0, y1) of a lat-long.
-struct PixelRectangle {
-    std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    [[nodiscard]] std::uint32_t width() const { return x1 - x0; }
-    [[nodiscard]] std::uint32_t height() const { return y1 - y0; }
-    bool operator==(const PixelRectangle&) const = default;
-};
 
 /// Returns the luminance of linear RGB with the weights of [D05].
 [[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
     return cubemap::luminance(rgb, cubemap::MedianCutWeights);
 }
 
-/// A lat-long image with the places of its pixels. The grid refers to the image's pixels, so the
-/// image must outlive it.
+/// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must
+/// outlive it.
 class LatLongGrid {
 public:
     /// Throws:  std::invalid_argument for another layout, a wrong number of pixels, or radiance

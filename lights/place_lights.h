@@ -10,8 +10,8 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
-#include "lights/lat_long_grid.h"
 #include "lights/light_list.h"
+#include "lights/pixel_rectangle.h"
 
 namespace relumine::lights {
 

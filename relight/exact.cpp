@@ -20,16 +20,16 @@ namespace relumine::relight {
 
 namespace {
 
-// A packet is a 4 x 4 tile of texels; 64 receivers of one task share the work of setting it up.
+// A packet is a 4 x 4 tile of texels. The 64 receivers of one task share the work of setting it up.
 constexpr std::uint32_t TileSize = 4;
 constexpr std::size_t ReceiversPerTask = 64;
 static_assert(std::size_t{TileSize} * TileSize == prt::PacketSize);
 
 struct Tile {
     prt::DirectionPacket packet;
-    /// L dw
+    /// L dw.
     std::array<glm::dvec3, prt::PacketSize> power{};
-    /// Lanes with any light
+    /// Lanes with any light.
     std::uint32_t lit = 0;
 };
 
@@ -54,7 +54,7 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
     return tile;
 }
 
-/// Light that one receiver sends back, colours put in last.
+/// Computes the light that one receiver sends back. Colours are put in last.
 class ExactReceiver {
 public:
     ExactReceiver(const prt::Receivers& receivers, std::uint32_t index, float bias)
@@ -95,7 +95,7 @@ public:
 private:
     glm::vec3 normal_;
     glm::vec3 origin_;
-    /// Below every horizon: no highlight
+    /// Zero is below every horizon: no highlight.
     glm::vec3 to_eye_{0.0f};
     prt::Surface surface_;
 };

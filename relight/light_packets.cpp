@@ -41,7 +41,7 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
                              glm::length(irradiance.blue)};
 }
 
-/// Which of the packet's lights reach the receiver.
+/// Returns the lanes whose light reaches the receiver.
 std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position,
                                     const glm::vec3& normal, const ShadowRays& rays) {
     const std::uint32_t used = (1u << packet.directions.num_directions) - 1;
@@ -66,7 +66,7 @@ void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
                                std::span<prt::Lobes<glm::dvec3>> sums) const {
     std::fill(sums.begin(), sums.end(), prt::Lobes<glm::dvec3>());
     for (const Packet& packet : packets_) {
-        // By light, as the lobes are evaluated for a block at a time.
+        // Transposed to lights, as the lobes are evaluated for a block at a time.
         std::array<std::uint32_t, prt::PacketSize> reached{};
         for (std::size_t i = 0; i < sums.size(); ++i)
             for (std::uint32_t lights = visible(packet, positions[i], normals[i], rays);

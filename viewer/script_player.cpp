@@ -29,7 +29,7 @@ std::size_t layer_of(const ScriptCommand& command, const ViewState& state) {
     return *index;
 }
 
-/// The pointer arrives, presses and goes, and lets go.
+/// The pointer arrives, presses, moves, and lets go.
 Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
     const double t =
         frame < 2 ? 0.0 : static_cast<double>(frame - 1) / static_cast<double>(num_frames - 3);
@@ -39,7 +39,7 @@ Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size
             .down = frame > 0 && frame + 1 < num_frames};
 }
 
-/// The same around the ellipse that fills a rectangle.
+/// As dragged(), around the ellipse that fills a rectangle.
 Pointer lassoed(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
     Pointer pointer = dragged({0.0, 0.0, 1.0, 0.0}, frame, num_frames);
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(pointer.pixel.x);
@@ -94,7 +94,7 @@ void set_gain(const ScriptCommand& command, ViewState& state) {
     state.desk.finish();
 }
 
-/// Where the pointer is in a frame of a command, and what it takes hold of.
+/// Returns the pointer in a frame of a command, and sets the tool that it uses.
 Pointer moved_pointer(const ScriptCommand& command, std::size_t frame, std::size_t num_frames,
                       Tool& tool) {
     const std::vector<double>& n = command.numbers;
@@ -102,7 +102,7 @@ Pointer moved_pointer(const ScriptCommand& command, std::size_t frame, std::size
     case Action::Click:
         return {.pixel = glm::vec2(n[0], n[1]), .down = frame == 1};
     case Action::LassoEnvironment:
-        // The panel goes back to moving when the outline is closed.
+        // The panel goes back to the move tool when the outline is closed.
         if (frame == 0)
             tool = Tool::Lasso;
         return lassoed(n, frame, num_frames);
@@ -126,7 +126,7 @@ void set_look(Action action, double value, ViewState& state) {
         state.environment_look.quadtree = value != 0.0;
 }
 
-/// Opens or saves; false where the state says what went wrong.
+/// Opens or saves a file. Returns false for a failure; the state's message tells the reason.
 bool use_file(Action action, const std::string& path, ViewState& state) {
     switch (action) {
     case Action::Open:
@@ -152,7 +152,7 @@ ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
     const std::size_t count = num_frames(command);
     try {
         apply(command, state, count, frame);
-    } catch (const std::invalid_argument& error) { // a layer that no layer can be
+    } catch (const std::invalid_argument& error) { // values that no layer can have
         fail(command, error.what());
     }
     if (++frame_ >= count) {

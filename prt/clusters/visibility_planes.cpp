@@ -24,8 +24,8 @@ namespace {
 constexpr std::size_t WordsPerTask = 8;
 constexpr std::size_t WordsPerGroup = ReceiverGroup::MaxSize / WordSize;
 
-/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Splitting
-/// the directions, too, keeps all threads busy when the receivers are few.
+/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Tasks
+/// also split the directions, which keeps all threads busy when the receivers are few.
 constexpr std::size_t PatchesPerTask = 32;
 
 /// Side of the smallest axis-aligned cube around points.
@@ -50,7 +50,7 @@ private:
 struct VisibilityPlanes::TracedPatch {
     DirectionPatch directions;
     std::array<LatticePoint, DirectionPatch::Size> points{};
-    /// From the start of the patch's step on
+    /// Set when the patch's step starts.
     std::array<std::uint64_t*, DirectionPatch::Size> planes{};
 };
 
@@ -165,8 +165,7 @@ std::uint64_t VisibilityPlanes::trace_group(std::size_t first_word,
                                             const TracedPatch& patch) const {
     const std::size_t first = first_word * WordSize;
     const std::size_t size = std::min(origins_.size() - first, ReceiverGroup::MaxSize);
-    std::array<std::uint64_t, ReceiverGroup::MaxSize>
-        rays{}; // a word per receiver, bits are directions
+    std::array<std::uint64_t, ReceiverGroup::MaxSize> rays{}; // [receiver], a bit per direction
     const std::span<std::uint64_t> of_group(rays.data(), size);
     directions_above_horizon(normals_, first, patch.directions, of_group);
     std::uint64_t num_rays = 0;
@@ -185,7 +184,7 @@ std::uint64_t VisibilityPlanes::trace_group(std::size_t first_word,
     for (std::size_t word = 0; word < WordsPerGroup && first_word + word < normals_.num_words();
          ++word) {
         const std::span<std::uint64_t, WordSize> square(rays.data() + word * WordSize, WordSize);
-        transpose(square); // a word per direction, bits are receivers
+        transpose(square); // now [direction], a bit per receiver
         for (std::size_t j = 0; j < patch.directions.num_directions; ++j)
             patch.planes[j][first_word + word] = square[j];
     }

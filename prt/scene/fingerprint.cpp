@@ -11,8 +11,8 @@ namespace relumine::prt {
 
 namespace {
 
-/// Of the algorithm and of what a checkpoint holds; to be raised when a change of either makes old
-/// checkpoints worthless.
+/// Version of the algorithm and of a checkpoint's content. Raise it when a change of either makes
+/// old checkpoints worthless.
 constexpr int FingerprintVersion = 1;
 
 class Hash {
@@ -28,7 +28,7 @@ private:
     std::uint64_t hash_ = 0;
 };
 
-/// Surfaces have padding, whose bytes are anything.
+/// Takes the fields that count; a Surface in memory has padding with random bytes.
 std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
     std::vector<float> numbers;
     numbers.reserve(surfaces.size() * 2);

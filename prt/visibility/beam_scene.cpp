@@ -20,12 +20,12 @@
 namespace relumine::prt {
 namespace {
 
-/// Coordinates beyond which triple products overflow, in this file's tests or in the exact
-/// tracer's, whose answers are then its own.
+/// Beyond this coordinate triple products overflow, in this file's tests or in the exact tracer's.
+/// Then the exact tracer answers alone.
 constexpr float LargestReach = 1e12f;
 
-/// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right
-/// through an edge may depend on the packet's other rays.
+/// Asks the exact tracer for rays in doubt, with their whole packets: Embree's answer for a ray
+/// right through an edge may depend on the packet's other rays.
 void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch,
          std::uint64_t doubts, std::uint64_t asked, std::uint64_t& rays) {
     for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
@@ -38,18 +38,18 @@ void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& p
     }
 }
 
-/// A word for each receiver, bits are directions; or, for each 64 receivers, a word for each
-/// direction.
+/// A word for each receiver with a bit per direction; or, for each 64 receivers, a word for each
+/// direction with a bit per receiver.
 using RayWords = std::array<std::uint64_t, ReceiverGroup::MaxSize>;
 
-/// Turns one into the other.
+/// Turns one form of RayWords into the other.
 void transpose_squares(RayWords& words) {
     for (std::size_t first = 0; first < words.size(); first += DirectionPatch::Size)
         transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first,
                                                                  DirectionPatch::Size));
 }
 
-/// Around the rays that are asked for.
+/// Returns the shaft around the rays that are asked for.
 Shaft shaft_of_rays(const ReceiverGroup& group, const PatchPlane& plane, const TriangleTree& tree,
                     float reach, std::span<const std::uint64_t> rays) {
     Shaft shaft = shaft_of(plane, group.mean_normal, reach);
@@ -66,12 +66,12 @@ Shaft shaft_of_rays(const ReceiverGroup& group, const PatchPlane& plane, const T
     return shaft;
 }
 
-/// Where directions meet more leaves on average, as those of receivers far apart do, the exact
-/// tracer is faster. Measured.
+/// With more leaves per ray on average, as for receivers far apart, the exact tracer is faster.
+/// Measured.
 constexpr std::size_t LeavesPerRay = 4;
 
-/// One direction after the other, all receivers at once; those that are left when it does not pay
-/// are the exact tracer's.
+/// Traces one direction after the other, all receivers at once. Where this does not pay, the exact
+/// tracer gets the remaining directions.
 void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverGroup& group,
                         const GroupOrigins& origins, const DirectionPatch& patch,
                         const PatchPlane& plane, std::span<std::uint64_t> rays) {

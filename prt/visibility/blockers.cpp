@@ -6,7 +6,7 @@ namespace relumine::prt {
 
 void DirectionPatch::add(const glm::vec3& direction) {
     const std::size_t first = num_directions++;
-    // A first direction fills all lanes, so that they never are wild numbers.
+    // The first direction fills all lanes, so that no lane holds a wild number.
     const std::size_t end = first == 0 ? Size : first + 1;
     for (std::size_t j = first; j < end; ++j)
         packets[j / PacketSize].set(j % PacketSize, direction);

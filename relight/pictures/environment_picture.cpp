@@ -24,7 +24,7 @@ namespace relumine::relight {
 namespace {
 
 constexpr int MapWidth = 1024, MapHeight = 512;
-/// Size of a letter's dots.
+/// Pixels of a letter's dot, on a side.
 constexpr int Dot = 2;
 
 struct Glyph {
@@ -56,14 +56,14 @@ public:
         pixel = glm::mix(pixel, colour, opacity);
     }
 
-    /// A rectangle's pixels.
+    /// Fills a rectangle's pixels.
     void box(int x0, int y0, int x1, int y1, const glm::vec3& colour, float opacity) {
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x)
                 put(x, y, colour, opacity);
     }
 
-    /// Centred at (x, y) and moved into the picture.
+    /// Draws letters centred at (x, y), moved into the picture.
     void text(int x, int y, std::string_view letters, const glm::vec3& colour) {
         const int width = static_cast<int>(letters.size()) * 6 * Dot + Dot, height = 9 * Dot;
         const int left = std::clamp(x - width / 2, 0, MapWidth - width);
@@ -102,7 +102,7 @@ public:
             for (int dx = -reach; dx <= reach; ++dx) {
                 const int column = static_cast<int>(x) + dx, row = static_cast<int>(y) + dy;
                 const double off = std::abs(std::hypot(column + 0.5 - x, row + 0.5 - y) - Radius);
-                // The ring goes on at the other end, as the sky does.
+                // The ring goes on at the other end of the row, as the sky does.
                 if (off < 3.0)
                     put((column + MapWidth) % MapWidth, row, off < 1.5 ? colour : glm::vec3(0.0f),
                         off < 1.5 ? 1.0f : 0.6f);
@@ -124,7 +124,7 @@ Place place(const glm::dvec3& w) {
             (0.5 - angles.elevation_degrees / 180.0) * MapHeight};
 }
 
-/// The brightest pixel stays below white, a black one does not spoil the mean.
+/// Tone-maps the pixels. The brightest stays below white, and a black one does not spoil the mean.
 void tone_map(std::vector<glm::vec3>& pixels) {
     std::vector<LuminanceSample> samples;
     samples.reserve(pixels.size());

@@ -39,7 +39,7 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-/// From values to positions along an axis, [0, 1].
+/// Turns values into positions along an axis, [0, 1].
 class Axis {
 public:
     explicit Axis(Scale scale) : scale_(scale) {}
@@ -53,12 +53,12 @@ public:
         high_ = std::max(high_, value);
     }
 
-    /// Widens what was included to round numbers; to call once.
+    /// Widens the range of included values to round numbers. Call it once.
     void finish() {
         if (low_ > high_)
             low_ = high_ = 1.0;
         if (scale_ == Scale::Log) {
-            // Whole powers of two or ten would waste the plot; a twentieth of the range stays free
+            // Whole powers of two or ten would waste the plot. A twentieth of the range stays free
             // at both ends.
             const double margin = std::max(0.05 * std::log(high_ / low_), 0.05);
             low_ *= std::exp(-margin);
@@ -87,7 +87,7 @@ public:
                 result.push_back(low_ + i * step_);
             return result;
         }
-        // 1, 2, 5 of each decade, or decades alone where that were too many.
+        // 1, 2, 5 of each decade, or decades alone where these would be too many.
         const bool decades_only = high_ / low_ > 2e3;
         const auto first = static_cast<int>(std::floor(std::log10(low_)));
         const auto last = static_cast<int>(std::floor(std::log10(high_)));
@@ -100,7 +100,7 @@ public:
     }
 
 private:
-    /// The next of 1, 2, 5 times a power of ten.
+    /// Returns the next of 1, 2, 5 times a power of ten.
     static double round_step(double step) {
         const double decade = std::pow(10.0, std::floor(std::log10(step)));
         for (const double factor : {1.0, 2.0, 5.0})
@@ -115,7 +115,7 @@ private:
     double step_ = 1.0;
 };
 
-/// A tick's number: what rounding left of it is no part of it.
+/// Prints a tick's number. A remainder of rounding counts as 0.
 std::string number(double value) {
     return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : value);
 }

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cubemap/luminance.h"
+#include "lights/lat_long_grid.h"
 #include "relight/pictures/tone_map.h"
 
 namespace relumine::relight {
@@ -18,8 +19,7 @@ namespace {
 
 const glm::vec3 LineColour(0.05f, 0.75f, 0.2f);
 
-/// How many pixels of the picture a pixel of the map becomes, or how many of the map become one of
-/// the picture.
+/// The picture has `grow` pixels for each `shrink` pixels of the map; one of the two is 1.
 struct MapScale {
     std::uint32_t grow = 1, shrink = 1;
     explicit MapScale(std::uint32_t width) {
@@ -30,7 +30,7 @@ struct MapScale {
         else
             shrink = (width + Widest - 1) / Widest;
     }
-    /// Of a border between the map's pixels, or any position among them.
+    /// Scales a border between the map's pixels, or any position among them.
     template<typename T>
     [[nodiscard]] T of(T position) const {
         return position * static_cast<T>(grow) / static_cast<T>(shrink);
@@ -40,8 +40,8 @@ struct MapScale {
     }
 };
 
-/// The brightest hundredth of the sphere becomes white. Of large maps a few ten thousand pixels are
-/// enough to find out.
+/// Returns a tone map in which the brightest hundredth of the sphere is white. A few ten thousand
+/// pixels of a large map are enough.
 ToneMap tone_map_of(const lights::LatLongGrid& grid) {
     std::vector<LuminanceSample> samples;
     const auto step = std::max<std::uint32_t>(1, grid.width() / 512);
@@ -100,7 +100,8 @@ void draw_borders(Picture& picture, const lights::PixelRectangle& region, const 
     }
 }
 
-/// Coverage of a pixel at a distance from the centre of a disc, its edge one pixel wide.
+/// Returns the coverage of a pixel at a distance from the centre of a disc with an edge one pixel
+/// wide.
 double disc(double distance, double radius) {
     return std::clamp(radius + 0.5 - distance, 0.0, 1.0);
 }

@@ -40,7 +40,7 @@ ToneMap::ToneMap(std::vector<LuminanceSample> samples, const ToneMapOptions& opt
 
 glm::vec3 ToneMap::operator()(const glm::dvec3& radiance) const {
     const double value = key_ * cubemap::luminance(radiance, weights_);
-    // Their Eq. 4 over the value.
+    // Eq. 4 of the paper, divided by the value.
     const double factor = key_ * (1.0 + value / (white_ * white_)) / (1.0 + value);
     return glm::vec3(glm::min(radiance * factor, glm::dvec3(1.0)));
 }

@@ -13,7 +13,7 @@
 
 namespace relumine::relight {
 
-/// The luminance of a part of a picture, and how much the part counts.
+/// The luminance of a part of a picture, and the part's weight.
 struct LuminanceSample {
     double luminance = 0.0, weight = 1.0;
     auto operator<=>(const LuminanceSample&) const = default;
@@ -21,11 +21,11 @@ struct LuminanceSample {
 
 struct ToneMapOptions {
     cubemap::LuminanceWeights weights = cubemap::Rec709Weights;
-    /// Darker samples count as this share of the largest luminance. At 0 black samples do not
+    /// Darker samples are raised to this share of the largest luminance. At 0 black samples do not
     /// count.
     double floor = 0.0;
-    /// At least this share of the samples' weight is brighter than white. At 0 all stay below
-    /// white.
+    /// At least this share of the samples' weight is brighter than white. At 0 all samples stay
+    /// below white.
     double white_share = 0.0;
 };
 
@@ -35,13 +35,13 @@ public:
     /// changes.
     explicit ToneMap(std::vector<LuminanceSample> samples, const ToneMapOptions& options = {});
 
-    /// A colour in [0, 1] for radiance that is not negative.
+    /// Returns a colour in [0, 1] for radiance that is not negative.
     [[nodiscard]] glm::vec3 operator()(const glm::dvec3& radiance) const;
 
 private:
     cubemap::LuminanceWeights weights_;
     double key_ = 1.0;
-    /// The scaled luminance that becomes white
+    /// The scaled luminance that becomes white.
     double white_ = std::numeric_limits<double>::infinity();
 };
 

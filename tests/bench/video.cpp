@@ -22,8 +22,8 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/exact.h"
 #include "relight/flicker.h"
-#include "relight/light_packets.h"
 #include "relight/relighter.h"
+#include "relight/shadow_rays.h"
 #include "tests/bench/bunny.h"
 #include "tests/bench/median.h"
 

@@ -12,9 +12,9 @@
 
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "relight/light_packets.h"
 #include "relight/pictures/array_file.h"
 #include "relight/relighter.h"
+#include "relight/shadow_rays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 

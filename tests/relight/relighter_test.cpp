@@ -7,11 +7,13 @@
 #include <random>
 #include <stdexcept>
 #include <tuple>
+#include <type_traits>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "relight/light_editor.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
 #include "tests/relight/arrays.h"
@@ -20,6 +22,14 @@
 
 namespace relumine::relight {
 namespace {
+
+// A transfer that goes before what refers to it is refused when the program is compiled.
+static_assert(std::is_constructible_v<Relighter, const prt::Transfer&>);
+static_assert(!std::is_constructible_v<Relighter, prt::Transfer>);
+static_assert(!std::is_constructible_v<Relighter, const prt::Transfer>);
+static_assert(!std::is_constructible_v<Relighter, prt::Transfer, ShadowRays>);
+static_assert(!std::is_constructible_v<LightEditor, prt::Transfer>);
+static_assert(!std::is_constructible_v<EnvironmentBinner, prt::Transfer, float>);
 
 using scenes::expect_close;
 using scenes::relit_scene;
