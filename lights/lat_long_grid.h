@@ -16,11 +16,6 @@
 
 namespace relumine::lights {
 
-/// Returns the luminance of linear RGB with the weights of [D05].
-[[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
-    return cubemap::luminance(rgb, cubemap::MedianCutWeights);
-}
-
 /// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must
 /// outlive it.
 class LatLongGrid {
