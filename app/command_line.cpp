@@ -141,7 +141,6 @@ CommandTable Command::Data::table() const {
                         .description = option->get_description(),
                         .default_value = option->get_default_str(),
                         .is_required = option->get_required(),
-                        .value_is_optional = option->get_expected_min() == 0,
                         .repeats = option->get_expected_max() > 1};
         for (const std::string& name : option->get_snames())
             row.names.push_back("-" + name);
@@ -152,8 +151,10 @@ CommandTable Command::Data::table() const {
             row.choices = (*own)->choices;
             row.range = (*own)->range;
         }
-        if (row.value != OptionTable::Value::None)
+        if (row.value != OptionTable::Value::None) {
             row.type = (*own)->type;
+            row.value_is_optional = option->get_expected_min() == 0;
+        }
         table.options.push_back(std::move(row));
     }
     for (const std::unique_ptr<Data>& command : commands)

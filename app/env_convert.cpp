@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -11,6 +10,7 @@
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/output_options.h"
+#include "app/size_text.h"
 #include "app/split_sun.h"
 #include "cubemap/doctor/statistics.h"
 #include "cubemap/image/convention.h"
@@ -80,16 +80,12 @@ cubemap::EnvironmentImage load(const Options& options, const cubemap::Convention
 std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
     if (text.empty())
         return std::nullopt;
-    unsigned width = 0;
-    unsigned height = 0;
-    char rest = 0;
-    const int found = std::sscanf(text.c_str(), "%ux%u%c", &width, &height,
-                                  &rest); // NOLINT(cert-err34-c): checked by the count
-    if ((found != 2 && !(found == 1 && text.find('x') == std::string::npos)) ||
-        text.front() == '-' ||
-        text != (found == 2 ? fmt::format("{}x{}", width, height) : fmt::format("{}", width)))
+    if (const auto size = parse_size_text(text))
+        return cubemap::ImageSize{size->width, size->height};
+    const auto width = parse_side(text);
+    if (!width)
         throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
-    return cubemap::ImageSize{width, found == 2 ? height : 0};
+    return cubemap::ImageSize{*width, 0};
 }
 
 /// Throws what a layout cannot be.

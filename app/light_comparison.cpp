@@ -11,8 +11,8 @@
 #include "files/output_file.h"
 #include "lights/place_lights.h"
 #include "relight/exact.h"
-#include "relight/light_packets.h"
 #include "relight/pictures/plot.h"
+#include "relight/shadow_rays.h"
 #include "relight/transfer_lights.h"
 
 namespace relumine::app {

@@ -2,7 +2,6 @@
 #include <filesystem>
 #include <memory>
 #include <numeric>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -18,12 +17,13 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "lights/light_export.h"
+#include "lights/luminance.h"
 #include "lights/place_lights.h"
 #include "relight/exact.h"
-#include "relight/light_packets.h"
 #include "relight/pictures/picture.h"
 #include "relight/pictures/region_picture.h"
 #include "relight/relighter.h"
+#include "relight/shadow_rays.h"
 
 namespace relumine::app {
 
@@ -152,6 +152,56 @@ void compare(const Options& options, Session& session) {
                     options.environment, session);
 }
 
+/// The scene of --scene under the environment; none without the option.
+std::unique_ptr<Lit> light_scene(const Options& options, const cubemap::EnvironmentImage& map) {
+    if (options.scene.empty())
+        return nullptr;
+    EnvironmentOptions turned = options.environment;
+    turned.rotate_degrees = 0.0; // load_lat_long() has done that
+    return std::make_unique<Lit>(options.scene, cube_map_of(map, turned));
+}
+
+void save(const Options& options, const cubemap::EnvironmentImage& map,
+          const lights::Placement& placement) {
+    if (!options.path.empty()) {
+        lights::LightList list{
+            .lights = placement.lights,
+            .environment = std::filesystem::path(options.environment.path).filename().string(),
+            .method = options.method};
+        if (options.method == lights::name(lights::Method::Importance))
+            list.seed = options.seed;
+        lights::export_lights(options.path, list, format_of(options), options.export_options);
+    }
+    if (!options.picture.empty())
+        relight::save_picture(options.picture, relight::region_picture(map, placement));
+}
+
+/// Says what the lights are and how they share the light; `list` has one at least.
+Report describe(const Options& options, const cubemap::EnvironmentImage& map,
+                const std::vector<lights::DistantLight>& list, double seconds_place,
+                const Session& session) {
+    const glm::dvec3 power = lights::total_irradiance(list);
+    std::vector<double> shares;
+    for (const lights::DistantLight& light : list)
+        shares.push_back(lights::luminance(light.irradiance));
+    const auto [dimmest, brightest] = std::minmax_element(shares.begin(), shares.end());
+    const double all = lights::luminance(power);
+    const double scale = all > 0.0 ? 1.0 / all : 0.0;
+    session.say(fmt::format("{} lights by {} from {} x {} pixels in {:.1f} ms", list.size(),
+                            options.method, map.width, map.height, 1e3 * seconds_place));
+    session.say(fmt::format(
+        "power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
+        power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
+    return {{"method", options.method},
+            {"lights", list.size()},
+            {"width", map.width},
+            {"height", map.height},
+            {"power", power},
+            {"smallest_share", scale * *dimmest},
+            {"largest_share", scale * *brightest},
+            {"seconds_place", seconds_place}};
+}
+
 void run(const Options& options, Session& session) {
     if (!options.compare.empty()) {
         compare(options, session);
@@ -164,55 +214,18 @@ void run(const Options& options, Session& session) {
     const cubemap::EnvironmentImage map = load_lat_long(options.environment, session);
     const double seconds_load = watch.lap();
     session.poll();
-    std::optional<Lit> lit;
-    if (!options.scene.empty()) {
-        EnvironmentOptions turned = options.environment;
-        turned.rotate_degrees = 0.0; // load_lat_long() has done that
-        lit.emplace(options.scene, cube_map_of(map, turned));
-    }
+    const std::unique_ptr<Lit> lit = light_scene(options, map);
     watch.lap();
-    const lights::Placement placement = place(options, map, lit ? &*lit : nullptr, session);
+    const lights::Placement placement = place(options, map, lit.get(), session);
     const double seconds_place = watch.lap();
     if (placement.lights.empty())
         throw std::runtime_error(fmt::format("{}: expected light that reaches {}, got none",
                                              options.environment.path, options.scene));
     session.poll();
 
-    if (!options.path.empty()) {
-        lights::LightList list{
-            .lights = placement.lights,
-            .environment = std::filesystem::path(options.environment.path).filename().string(),
-            .method = options.method};
-        if (options.method == lights::name(lights::Method::Importance))
-            list.seed = options.seed;
-        lights::export_lights(options.path, list, format_of(options), options.export_options);
-    }
-    if (!options.picture.empty()) {
-        relight::save_picture(options.picture, relight::region_picture(map, placement));
-    }
-
-    const glm::dvec3 power = lights::total_irradiance(placement.lights);
-    std::vector<double> shares;
-    for (const lights::DistantLight& light : placement.lights)
-        shares.push_back(lights::luminance(light.irradiance));
-    const auto [dimmest, brightest] = std::minmax_element(shares.begin(), shares.end());
-    const double all = lights::luminance(power);
-    const double scale = all > 0.0 ? 1.0 / all : 0.0;
-    session.say(fmt::format("{} lights by {} from {} x {} pixels in {:.1f} ms",
-                            placement.lights.size(), options.method, map.width, map.height,
-                            1e3 * seconds_place));
-    session.say(fmt::format(
-        "power ({:.6g}, {:.6g}, {:.6g}), a light's share of the luminance {:.3g} to {:.3g} %",
-        power.r, power.g, power.b, 100.0 * scale * *dimmest, 100.0 * scale * *brightest));
-    Report result = {{"method", options.method},
-                     {"lights", placement.lights.size()},
-                     {"width", map.width},
-                     {"height", map.height},
-                     {"power", power},
-                     {"smallest_share", scale * *dimmest},
-                     {"largest_share", scale * *brightest},
-                     {"seconds_load", seconds_load},
-                     {"seconds_place", seconds_place}};
+    save(options, map, placement);
+    Report result = describe(options, map, placement.lights, seconds_place, session);
+    result.set("seconds_load", seconds_load);
     if (lit) {
         const double error = lit->error(placement.lights);
         session.say(fmt::format("{} lights: {:.2g} % relative L2 on this asset",
@@ -222,44 +235,47 @@ void run(const Options& options, Session& session) {
     session.report(result);
 }
 
-} // namespace
-
-void add_lights(Command& program, Session& session) {
-    Command command =
-        program.add_command("lights", "a few distant lights that stand for an environment");
-    auto options = std::make_shared<Options>();
-    options->environment.add_to(command);
+/// -o, --picture and -n.
+void add_output_options(Command& command, Options& options) {
     command
         .add_option(
-            "-o,--output", options->path,
+            "-o,--output", options.path,
             "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf")
         .file();
     command
-        .add_option("--picture", options->picture,
+        .add_option("--picture", options.picture,
                     "the environment with regions and lights drawn: .png or .exr")
         .file();
     command
-        .add_option("-n,--number", options->numbers,
+        .add_option("-n,--number", options.numbers,
                     "how many lights; with --compare several, 16,64,256")
         .separated_by(',')
         .between(1, 1e9)
         .show_default();
+}
+
+/// --scene, --compare and what belongs to them.
+void add_scene_options(Command& command, Options& options) {
     command
         .add_option(
-            "--scene", options->scene,
+            "--scene", options.scene,
             "scene file: says how well the lights light it; --method transfer chooses for it")
         .file();
     command
-        .add_option("--compare", options->compare,
+        .add_option("--compare", options.compare,
                     "scene file: a table of all methods' errors on it against exact integration")
         .file();
     command
-        .add_option("--samples", options->num_samples,
+        .add_option("--samples", options.num_samples,
                     "--compare: receivers chosen at random, 0 for all")
         .between(0, 1e9)
         .show_default();
-    command.add_option("--plot", options->plot, "--compare: error against number of lights, .svg")
+    command.add_option("--plot", options.plot, "--compare: error against number of lights, .svg")
         .file();
+}
+
+/// --method and --seed.
+void add_method_options(Command& command, Options& options) {
     std::vector<std::string> methods;
     methods.reserve(lights::AllMethods.size());
     for (const lights::Method method : lights::AllMethods)
@@ -267,31 +283,48 @@ void add_lights(Command& program, Session& session) {
     methods.emplace_back(TransferMethod);
     command
         .add_option(
-            "--method", options->method,
+            "--method", options.method,
             "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
             "close together (Viriyothai and Debevec); importance: random directions, stratified; "
             "transfer: those that light --scene most like the environment")
         .one_of(methods)
         .show_default();
-    command.add_option("--seed", options->seed, "of importance sampling")
+    command.add_option("--seed", options.seed, "of importance sampling")
         .between(0, 0x1p53)
         .show_default();
+}
+
+/// --format and the details of formats.
+void add_format_options(Command& command, Options& options) {
     std::vector<std::string> formats;
     formats.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         formats.emplace_back(lights::name(format));
     command
-        .add_option("--format", options->format, "format of the light list, whatever its extension")
+        .add_option("--format", options.format, "format of the light list, whatever its extension")
         .one_of(formats);
-    command.add_flag("--soft", options->export_options.soft,
+    command.add_flag("--soft", options.export_options.soft,
                      "lights as wide as the part of the sphere they stand for (USD, Blender)");
     command
-        .add_option("--lumens-per-watt", options->export_options.lumens_per_watt,
+        .add_option("--lumens-per-watt", options.export_options.lumens_per_watt,
                     "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
                     "unit, 683 is "
                     "photometric")
         .between(1e-6, 1e6)
         .show_default();
+}
+
+} // namespace
+
+void add_lights(Command& program, Session& session) {
+    Command command =
+        program.add_command("lights", "a few distant lights that stand for an environment");
+    auto options = std::make_shared<Options>();
+    options->environment.add_to(command);
+    add_output_options(command, *options);
+    add_scene_options(command, *options);
+    add_method_options(command, *options);
+    add_format_options(command, *options);
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

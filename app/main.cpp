@@ -32,8 +32,7 @@ int main(int argc, char** argv) {
                              "Relights meshes under measured environment light. Exit code 0: done, "
                              "1: the work failed, 2: wrong usage.",
                              RELUMINE_VERSION);
-    app::Command root = program.root();
-    app::add_commands(root, session);
+    app::add_commands(program, session);
 
     std::unique_ptr<tbb::global_control> thread_limit;
     program.before_run([&] {

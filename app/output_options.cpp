@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
@@ -12,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "app/session.h"
+#include "app/size_text.h"
 #include "files/output_file.h"
 #include "relight/pictures/exposure.h"
 
@@ -20,15 +20,12 @@ namespace relumine::app {
 namespace {
 
 relight::PictureOptions parse_size(const std::string& text) {
-    relight::PictureOptions options;
-    unsigned width = 0;
-    unsigned height = 0;
-    char rest = 0;
-    if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) !=
-        2) // NOLINT(cert-err34-c): checked by the count
+    const std::optional<SizeText> size = parse_size_text(text);
+    if (!size)
         throw UsageError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
-    options.width = width;
-    options.height = height;
+    relight::PictureOptions options;
+    options.width = size->width;
+    options.height = size->height;
     return options;
 }
 

@@ -1,10 +1,12 @@
 #include "app/program.h"
 
 #include "app/commands.h"
+#include "app/documentation.h"
 
 namespace relumine::app {
 
-void add_commands(Command& program, Session& session) {
+void add_commands(CommandLine& line, Session& session) {
+    Command program = line.root();
     add_precompute(program, session);
     add_relight(program, session);
     add_animate(program, session);
@@ -15,6 +17,8 @@ void add_commands(Command& program, Session& session) {
     add_generate(program, session);
     add_env(program, session);
     add_view(program, session);
+    add_completion(line);
+    add_man(line);
 }
 
 } // namespace relumine::app

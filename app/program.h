@@ -8,6 +8,6 @@ namespace relumine::app {
 
 /// Adds the subcommands, whose work runs when the line is read. The session must outlive the
 /// program.
-void add_commands(Command& program, Session& session);
+void add_commands(CommandLine& program, Session& session);
 
 } // namespace relumine::app

@@ -1,10 +1,14 @@
 #include "app/receiver_options.h"
 
+#include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "app/size_text.h"
 
 namespace relumine::app {
 
@@ -30,40 +34,35 @@ std::variant<Vertices, Pixels, Texels> ReceiverOptions::receivers() const {
             fmt::format("expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got '{}'",
                         receivers_));
     };
-    std::istringstream text(receivers_);
-    std::string kind;
-    std::getline(text, kind, ':');
-    if (kind != "pixels" && kind != "texels")
+    // KIND:SIZE, for pixels also KIND:SIZE:SAMPLES.
+    const std::string_view text = receivers_;
+    const std::size_t colon = text.find(':');
+    const std::string_view kind = text.substr(0, colon);
+    if ((kind != "pixels" && kind != "texels") || colon == std::string_view::npos)
         refuse();
     const bool are_pixels = kind == "pixels";
-    // Unsigned numbers would take a minus sign.
-    std::int64_t width = 0, height = 0, samples = 1;
-    char x = 0, colon = ':', rest = 0;
-    if (!(text >> width >> x >> height) || x != 'x')
+    const std::size_t second_colon = text.find(':', colon + 1);
+    const bool has_samples = second_colon != std::string_view::npos;
+    const auto size = parse_size_text(text.substr(colon + 1, second_colon - colon - 1));
+    const auto samples =
+        has_samples ? parse_side(text.substr(second_colon + 1)) : std::optional<std::uint32_t>(1);
+    if (!size || !samples || (has_samples && !are_pixels))
         refuse();
-    if (are_pixels && text.peek() == ':' && !(text >> colon >> samples))
-        refuse();
-    if (text >> rest)
-        refuse();
-    const auto is_size = [](std::int64_t size) {
-        return size >= 1 && size <= prt::MaxPictureSize;
+    const auto is_size = [](std::uint32_t side) {
+        return side >= 1 && side <= prt::MaxPictureSize;
     };
-    if (!is_size(width) || !is_size(height))
+    if (!is_size(size->width) || !is_size(size->height))
         throw UsageError("--receivers", fmt::format("expected a size of 1 to {} a side, got '{}'",
                                                     prt::MaxPictureSize, receivers_));
-    if (samples < 1 || samples > prt::MaxSamplesPerAxis)
+    if (*samples < 1 || *samples > prt::MaxSamplesPerAxis)
         throw UsageError("--receivers", fmt::format("expected 1 to {} samples a side, got '{}'",
                                                     prt::MaxSamplesPerAxis, receivers_));
-    if (static_cast<std::size_t>(width * height * samples * samples) > prt::MaxLayoutPlaces)
+    if (std::size_t{size->width} * size->height * *samples * *samples > prt::MaxLayoutPlaces)
         throw UsageError("--receivers", fmt::format("expected at most {} samples in all, got '{}'",
                                                     prt::MaxLayoutPlaces, receivers_));
-    const Texels size{.width = static_cast<std::uint32_t>(width),
-                      .height = static_cast<std::uint32_t>(height)};
     if (!are_pixels)
-        return size;
-    return Pixels{.width = size.width,
-                  .height = size.height,
-                  .samples_per_axis = static_cast<std::uint32_t>(samples)};
+        return Texels{.width = size->width, .height = size->height};
+    return Pixels{.width = size->width, .height = size->height, .samples_per_axis = *samples};
 }
 
 std::optional<View> ReceiverOptions::view() const {

@@ -13,6 +13,7 @@
 #include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
+#include "app/size_text.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "relight/pictures/exposure.h"
@@ -43,15 +44,14 @@ void run(const Options& /*options*/, Session& /*session*/) {
 #else
 
 void set_size(const std::string& text, viewer::ViewOptions& view) {
-    const std::size_t x = text.find('x');
-    const auto number = [](const std::string& digits) {
-        const std::uint32_t value = parse_count(digits).value_or(0);
-        return value >= 320 && value <= 16384 ? static_cast<int>(value) : 0;
+    const std::optional<SizeText> size = parse_size_text(text);
+    const auto fits = [](std::uint32_t side) {
+        return side >= 320 && side <= 16384;
     };
-    view.width = x == std::string::npos ? 0 : number(text.substr(0, x));
-    view.height = x == std::string::npos ? 0 : number(text.substr(x + 1));
-    if (view.width == 0 || view.height == 0)
+    if (!size || !fits(size->width) || !fits(size->height))
         throw UsageError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
+    view.width = static_cast<int>(size->width);
+    view.height = static_cast<int>(size->height);
 }
 
 /// Without an environment: an even grey, in which layers show.

@@ -1,5 +1,15 @@
-# One library per folder: relumine_library(NAME HEADERS ... SOURCES ...) makes relumine::NAME with the warnings, the
-# language level and the include spelling ("NAME/file.h") that all folders share.
+# One library per folder:
+#
+#   relumine_library(NAME [INTERNAL]
+#       HEADERS ...           what users of the library include: installed, each verified to compile alone
+#       PRIVATE_HEADERS ...   kernels, scratch, readers of files: for this project's own sources and tests
+#       SOURCES ...)
+#
+# makes relumine::NAME with the warnings, the language level and the include spelling ("NAME/file.h") that all
+# folders share. A public header includes public headers, GLM and std only (tests/headers checks it). The library
+# is static or shared as BUILD_SHARED_LIBS says; an INTERNAL one is always static and is not installed.
+
+include(GNUInstallDirs)
 
 add_library(relumine_warnings INTERFACE)
 target_compile_options(relumine_warnings INTERFACE -Wall -Wextra -Wshadow -Wconversion)
@@ -7,12 +17,57 @@ if(RELUMINE_WARNINGS_AS_ERRORS)
     target_compile_options(relumine_warnings INTERFACE -Werror)
 endif()
 
+# Compiles each private header by itself, as all_verify_interface_header_sets does for public ones.
+add_custom_target(verify_private_headers)
+
+function(relumine_verify_private_headers name)
+    set(sources "")
+    foreach(header IN LISTS ARGN)
+        set(source ${CMAKE_CURRENT_BINARY_DIR}/private_headers/${header}.cpp)
+        file(CONFIGURE OUTPUT ${source} CONTENT "#include \"${name}/${header}\"\n")
+        list(APPEND sources ${source})
+    endforeach()
+    set(verify relumine_${name}_verify_private_headers)
+    add_library(${verify} OBJECT EXCLUDE_FROM_ALL ${sources})
+    target_compile_features(${verify} PRIVATE cxx_std_20)
+    target_include_directories(${verify} PRIVATE $<TARGET_PROPERTY:relumine_${name},INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${verify} PRIVATE $<TARGET_PROPERTY:relumine_${name},COMPILE_DEFINITIONS>)
+    target_link_libraries(${verify} PRIVATE relumine_warnings)
+    add_dependencies(verify_private_headers ${verify})
+endfunction()
+
 function(relumine_library name)
-    cmake_parse_arguments(arg "" "" "HEADERS;SOURCES" ${ARGN})
-    add_library(relumine_${name} STATIC ${arg_SOURCES})
+    cmake_parse_arguments(arg "INTERNAL" "" "HEADERS;PRIVATE_HEADERS;SOURCES" ${ARGN})
+    set(kind "")
+    if(arg_INTERNAL)
+        set(kind STATIC)
+    endif()
+    add_library(relumine_${name} ${kind} ${arg_SOURCES} ${arg_PRIVATE_HEADERS})
     add_library(relumine::${name} ALIAS relumine_${name})
     target_sources(relumine_${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR} FILES ${arg_HEADERS})
     target_compile_features(relumine_${name} PUBLIC cxx_std_20)
-    set_target_properties(relumine_${name} PROPERTIES EXPORT_NAME ${name} VERIFY_INTERFACE_HEADER_SETS ON)
+    set_target_properties(relumine_${name} PROPERTIES
+        EXPORT_NAME ${name}
+        VERIFY_INTERFACE_HEADER_SETS ON
+        VERSION ${PROJECT_VERSION}
+        SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+        INSTALL_RPATH "$ORIGIN")
     target_link_libraries(relumine_${name} PRIVATE $<BUILD_INTERFACE:relumine_warnings>)
+    # A shared library depends on no more than it uses.
+    target_link_options(relumine_${name} PRIVATE LINKER:--as-needed)
+
+    if(arg_PRIVATE_HEADERS)
+        relumine_verify_private_headers(${name} ${arg_PRIVATE_HEADERS})
+    endif()
+    if(NOT arg_INTERNAL)
+        list(TRANSFORM arg_HEADERS PREPEND ${name}/)
+        set_property(GLOBAL APPEND PROPERTY RELUMINE_PUBLIC_HEADERS ${arg_HEADERS})
+        set_property(GLOBAL APPEND PROPERTY RELUMINE_LIBRARIES ${name})
+        install(TARGETS relumine_${name} EXPORT relumine
+            RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT runtime
+            LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT runtime NAMELINK_COMPONENT development
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/relumine COMPONENT development)
+    endif()
+    relumine_compile_together(relumine_${name})
 endfunction()

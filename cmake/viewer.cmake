@@ -1,5 +1,10 @@
 # RELUMINE_BUILD_VIEWER: whether `relumine view` gets its window. On where everything it needs is found; RELUMINE_VIEWER_MISSING names
 # the rest.
+if(NOT RELUMINE_BUILD_APP)
+    # The window is a command of the program.
+    set(RELUMINE_BUILD_VIEWER OFF)
+    return()
+endif()
 set(RELUMINE_VIEWER_MISSING "")
 find_package(glfw3 3.3 CONFIG QUIET)
 pkg_check_modules(epoxy QUIET IMPORTED_TARGET epoxy)

@@ -14,14 +14,15 @@ namespace relumine::cubemap {
 
 namespace {
 
-constexpr std::uint32_t MaxResolution = 16384; // 6 R^2 texels of 12 bytes are 19 GB there
+constexpr std::uint32_t MaxResolution =
+    16384; // 6 R^2 texels of 12 bytes are 19 GB at this resolution
 
-/// The texel of a neighbouring face (or of this one) that shares the border where column x or row y
-/// leaves the face. Exactly one of x and y lies outside, by one.
+/// Returns the texel of the neighbouring face (or of this face) beyond the border at column x or
+/// row y. Exactly one of x and y lies outside the face, by one.
 const glm::vec3& over_the_edge(const CubeMap& map, Face face, std::int64_t x, std::int64_t y) {
     const auto resolution = static_cast<std::int64_t>(map.resolution);
-    // A point just over the edge, level with the texel's centre, lies in the adjoining texel of the
-    // other face.
+    // The point just over the edge, level with the texel's centre, lies in the adjoining texel of
+    // the other face.
     constexpr double JustOver = 1e-9;
     const auto coordinate = [&](std::int64_t i) {
         if (i < 0)
@@ -38,7 +39,8 @@ const glm::vec3& over_the_edge(const CubeMap& map, Face face, std::int64_t x, st
     return map.at(point.face, texel(point.s), texel(point.t));
 }
 
-/// Fixed-order parallel sum over the rows of all faces: `row_sum(face, y)` gives one row's part.
+/// Sums over the rows of all faces in parallel and in a fixed order. `row_sum(face, y)` returns one
+/// row's part.
 template<typename RowSum>
 glm::dvec3 sum_over_rows(std::uint32_t resolution, const RowSum& row_sum) {
     std::vector<glm::dvec3> sums(std::size_t{NumFaces} * resolution);
@@ -72,7 +74,7 @@ std::vector<double> texel_solid_angles(std::uint32_t resolution) {
     const auto at = [&](std::size_t x, std::size_t y) -> double& {
         return angles[y * resolution + x];
     };
-    // One eighth is computed, the rest is its mirror image; exactly symmetric as a by-product.
+    // One eighth is computed and mirrored to the rest, so the result is exactly symmetric.
     const std::uint32_t half = (resolution + 1) / 2;
     tbb::parallel_for(std::uint32_t{0}, half, [&](std::uint32_t y) {
         for (std::uint32_t x = y; x < half; ++x) {
@@ -100,7 +102,7 @@ glm::vec3 sample(const CubeMap& map, const glm::vec3& direction) {
         return i >= 0 && i < resolution;
     };
     std::array<glm::vec3, 4> corners{};
-    int missing = -1; // the corner of the cube has three texels only
+    int missing = -1; // only three texels meet at a corner of the cube
     for (int i = 0; i < 4; ++i) {
         const std::int64_t column = x0 + (i & 1), row = y0 + (i >> 1);
         glm::vec3& corner = corners[static_cast<std::size_t>(i)];

@@ -1,4 +1,4 @@
-// A cube map of radiance: what every environment becomes before it lights anything.
+// A cube map of radiance. Every environment becomes a cube map before it lights a scene.
 #pragma once
 
 #include <cstddef>
@@ -12,18 +12,23 @@
 
 namespace relumine::cubemap {
 
-/// 6 x R x R texels of linear RGB radiance (Rec. 709 primaries as in the files; not converted). A
-/// texel holds the mean radiance over its solid angle.
+/// Radiance of the sphere of directions on six faces. A texel holds the mean radiance over its
+/// solid angle.
+///
+/// Shape:   6 x R x R texels, linear RGB.
+/// Unit:    radiance; the primaries of the file are kept and read as Rec. 709.
 struct CubeMap {
-    /// R, texels along a face's edge
+    /// R: the number of texels along the edge of a face.
     std::uint32_t resolution = 0;
-    /// [6 * R * R], face-major, then row by row from the top
+    /// [6 * R * R] face by face, each face row by row from the top.
     std::vector<glm::vec3> texels;
 
     CubeMap() = default;
-    /// All texels `radiance`. Throws std::invalid_argument unless 1 <= R <= 16384.
+    /// Sets all texels to `radiance`.
+    /// Throws:  std::invalid_argument unless 1 <= R <= 16384.
     explicit CubeMap(std::uint32_t face_resolution, const glm::vec3& radiance = glm::vec3(0.0f));
 
+    /// Returns the index of texel (x, y) of a face in `texels`.
     [[nodiscard]] std::size_t index(Face face, std::uint32_t x, std::uint32_t y) const {
         return (static_cast<std::size_t>(face) * resolution + y) * resolution + x;
     }
@@ -35,33 +40,39 @@ struct CubeMap {
     }
 };
 
-/// Unit direction of a texel's centre.
+/// Returns the unit direction of a texel's centre.
 [[nodiscard]] glm::dvec3 texel_direction(Face face, std::uint32_t x, std::uint32_t y,
                                          std::uint32_t resolution);
 
-/// Exact solid angles of one face's texels, [R * R] row by row (the same for all faces),
-/// steradians.
+/// Returns the exact solid angles of the texels of one face. All faces have the same.
+///
+/// Shape:   [R * R] row by row.
+/// Unit:    steradian.
 [[nodiscard]] std::vector<double> texel_solid_angles(std::uint32_t resolution);
 
-/// Radiance seen in a direction: bilinear between texel centres, seamless over face edges.
+/// Returns the radiance seen in a direction. Values between texel centres are bilinear, also across
+/// the edges of faces.
 [[nodiscard]] glm::vec3 sample(const CubeMap& map, const glm::vec3& direction);
 
-/// Diffuse irradiance (W/m^2 per channel if radiance is W/(m^2 sr)) on a surface of unit normal n
-/// with nothing in the way: the sum over all texels of L max(n.w, 0) dw, in double. O(6 R^2).
+/// Returns the diffuse irradiance of a surface with unit normal n when nothing is in the way: the
+/// sum of L max(n.w, 0) dw over all texels, in double.
+///
+/// Unit:    W/m^2 per channel if radiance is in W/(m^2 sr).
+/// Cost:    O(6 R^2).
 [[nodiscard]] glm::dvec3 irradiance(const CubeMap& map, const glm::dvec3& normal);
 
-/// The integral of radiance over the sphere, per channel, in double.
+/// Returns the integral of radiance over the sphere, per channel, in double.
 [[nodiscard]] glm::dvec3 total_power(const CubeMap& map);
 
-/// The map turned by a matrix that carries axes to axes, mirror images among them: what was seen in
-/// direction w is seen in `turn` w. Texels go to texels.
+/// Returns the map turned by a matrix that carries axes to axes; mirror images are allowed. What
+/// was seen in direction w is then seen in direction `turn` w. Texels are moved, not mixed.
 [[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn);
 
-/// The matrix of rotated(): exact for whole quarters.
+/// Returns the matrix that rotated() uses. The matrix is exact for multiples of 90 degrees.
 [[nodiscard]] glm::dmat3 turn_about_y(double degrees);
 
-/// The map turned about +Y by an angle in degrees: light that came from +Z comes from +X after 90
-/// degrees (counter-clockwise seen from above, right-handed). Energy is kept as in resample().
+/// Returns the map turned about +Y by an angle in degrees. Light from +Z comes from +X after 90
+/// degrees: counter-clockwise seen from above, right-handed. Energy is kept as in resample().
 [[nodiscard]] CubeMap rotated(const CubeMap& map, double degrees_about_y);
 
 } // namespace relumine::cubemap

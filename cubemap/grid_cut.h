@@ -1,8 +1,8 @@
 // Cuts a polygon of the plane along the lines of an axis-parallel grid.
 //
-// Polygons need not be convex: a piece may come out with seams of no area along a grid line, which
-// integrals over it do not see. Buffers are kept between calls, so that cutting millions of
-// polygons allocates nothing.
+// Polygons need not be convex. A piece may then have seams without area along a grid line; an
+// integral over the piece does not see such a seam. Buffers are kept between calls, so cutting
+// millions of polygons allocates nothing.
 #pragma once
 
 #include <algorithm>
@@ -16,11 +16,13 @@ namespace relumine::cubemap {
 
 using Polygon = std::vector<glm::dvec2>;
 
-/// Area of a polygon, positive if it runs clockwise with y pointing down.
+/// Returns the area of a polygon. The area is positive if the polygon runs clockwise with y
+/// pointing down.
 [[nodiscard]] inline double area(const Polygon& polygon) {
     if (polygon.size() < 3)
         return 0.0;
-    // Relative to the first corner, so that small pieces far from the origin keep their digits.
+    // Coordinates are relative to the first corner, so small pieces far from the origin keep their
+    // digits.
     const glm::dvec2 origin = polygon.front();
     double twice = 0.0;
     glm::dvec2 previous = polygon[1] - origin;
@@ -59,9 +61,8 @@ void split(const Polygon& polygon, double position, Polygon& below, Polygon& abo
     }
 }
 
-/// The lines of one direction of a grid: cell i lies between lines i and i + 1. Lines are any
-/// ascending positions; a periodic grid goes on to both sides, its lines repeating one unit
-/// further.
+/// The grid lines of one direction. Cell i lies between lines i and i + 1. Lines are any ascending
+/// positions. A periodic grid goes on to both sides: its lines repeat, one unit further each time.
 class GridLines {
 public:
     GridLines(const std::vector<double>& lines, bool periodic)
@@ -76,9 +77,9 @@ public:
                static_cast<double>(turn);
     }
 
-    /// The cell that holds a position (the last one where it lies on a line; the outermost for
-    /// positions outside a grid that is not periodic). Walks from the cell found last, since
-    /// neighbouring polygons follow each other.
+    /// Returns the cell that holds a position. A position on a line belongs to the cell after the
+    /// line. A position outside a grid that is not periodic belongs to the outermost cell. The
+    /// search starts at the cell found last, because neighbouring polygons follow each other.
     [[nodiscard]] std::ptrdiff_t cell(double position) {
         while ((periodic_ || last_ > 0) && position < line(last_))
             --last_;
@@ -87,7 +88,7 @@ public:
         return last_;
     }
 
-    /// The cell's number within [0, num_cells).
+    /// Returns the cell's number within [0, num_cells).
     [[nodiscard]] std::size_t wrapped(std::ptrdiff_t i) const {
         const std::ptrdiff_t rest = i % num_cells_;
         return static_cast<std::size_t>(rest < 0 ? rest + num_cells_ : rest);
@@ -100,7 +101,7 @@ private:
     std::ptrdiff_t last_ = 0;
 };
 
-/// Lines at the whole numbers 0 ... num_cells.
+/// Grid lines at the whole numbers 0 ... num_cells.
 class UnitLines {
 public:
     explicit UnitLines(std::size_t num_cells)
@@ -117,11 +118,11 @@ private:
     std::ptrdiff_t last_cell_;
 };
 
-/// Cuts polygons along grid lines.
+/// Cuts polygons along the lines of a grid.
 class GridCutter {
 public:
     /// Calls `visit(column, row, piece)` for every cell of the grid that the polygon meets. The
-    /// polygon is used up.
+    /// polygon's content is lost.
     template<typename Columns, typename Rows, typename Visit>
     void cut(Polygon& polygon, Columns& columns, Rows& rows, const Visit& visit) {
         if (polygon.empty())

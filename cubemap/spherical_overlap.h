@@ -1,4 +1,4 @@
-// Overlaps of polygons on the sphere with the texels of a cube map.
+// Overlaps of spherical polygons with the texels of a cube map.
 #pragma once
 
 #include <array>
@@ -18,10 +18,11 @@
 
 namespace relumine::cubemap {
 
-/// Solid angle of a polygon on a face, given in coordinates [-1, 1]^2: the density (1 + u^2 +
-/// v^2)^(-3/2) to second order about `centre`. The expansion is additive: pieces of one cell add up
-/// to the cell if all use the cell's centre. Relative error below (distance from centre)^3 / 2 for
-/// a piece and far less for a whole cell.
+/// Returns the solid angle of a polygon on a face, given in coordinates [-1, 1]^2. The integral
+/// takes the density (1 + u^2 + v^2)^(-3/2) to second order about `centre`. The expansion is
+/// additive: pieces of one cell add up to the cell if all use the cell's centre.
+///
+/// Error:   relative, below (distance from centre)^3 / 2 for a piece and far less for a whole cell.
 [[nodiscard]] inline double solid_angle_about(const glm::dvec2& centre, const Polygon& polygon) {
     if (polygon.size() < 3)
         return 0.0;
@@ -42,7 +43,7 @@ namespace relumine::cubemap {
     const double inverse = 1.0 / (1.0 + glm::dot(centre, centre));
     const double density = inverse * std::sqrt(inverse);
     const double slope = -3.0 * inverse,
-                 bend = 15.0 * inverse * inverse; // times u, v and their products
+                 bend = 15.0 * inverse * inverse; // factors of u, v and their products
     return density * (moment / 2.0 + slope * (centre.x * moment_x + centre.y * moment_y) / 6.0 +
                       ((slope + bend * centre.x * centre.x) * moment_xx +
                        (slope + bend * centre.y * centre.y) * moment_yy +
@@ -50,16 +51,18 @@ namespace relumine::cubemap {
                           24.0);
 }
 
-/// Finds the texels under a spherical polygon. Keeps its buffers; one per thread.
+/// Finds the texels under a spherical polygon.
+///
+/// Threads: use one object per thread; it keeps its buffers.
 class TexelOverlaps {
 public:
     explicit TexelOverlaps(std::uint32_t resolution)
         : resolution_(resolution), cells_per_texel_((FinestCell + resolution - 1) / resolution),
           num_cells_(resolution * cells_per_texel_) {}
 
-    /// Calls `visit(face, x, y, solid_angle)` for the texels that the polygon overlaps, some of
-    /// them more than once. Corners are directions of any length, clockwise seen from the centre of
-    /// the sphere and within a half-sphere; edges are great circles.
+    /// Calls `visit(face, x, y, solid_angle)` for the texels that the polygon overlaps; a texel may
+    /// come more than once. Corners are directions of any length, clockwise seen from the centre of
+    /// the sphere and within a half-sphere. Edges are great circles.
     template<typename Visit>
     void find(std::span<const glm::dvec3> corners, const Visit& visit) {
         const Face first = face_point(corners.front()).face;
@@ -79,11 +82,11 @@ public:
     }
 
 private:
-    // Finer cells than 1/128 of a face are needed nowhere: the solid angles of pieces are good to
-    // 3e-7 there.
+    // Solid angles of pieces have an error of 3e-7 in cells of 1/128 of a face. No caller needs
+    // finer cells.
     static constexpr std::uint32_t FinestCell = 128;
 
-    /// Axes of a face: to the right and down in its image, outwards.
+    /// Axes of a face: to the right and down in its image, and outwards.
     struct Axes {
         glm::dvec3 right, down, out;
     };
@@ -92,7 +95,7 @@ private:
         return {cube_point(face, 1.0, 0.5) - out, cube_point(face, 0.5, 1.0) - out, out};
     }
 
-    /// The part of the polygon inside the pyramid of a face, into clipped_.
+    /// Puts the polygon's part inside the pyramid of a face into clipped_.
     void clip(std::span<const glm::dvec3> corners, Face face) {
         const auto [right, down, out] = axes(face);
         const std::array<glm::dvec3, 4> planes = {out - right, out + right, out - down, out + down};
@@ -126,7 +129,7 @@ private:
         for (const glm::dvec3& corner : clipped_) {
             const double distance = glm::dot(out, corner);
             if (!(distance > 0.0))
-                return; // nothing but the origin itself
+                return; // the part is the origin alone
             polygon_.emplace_back((glm::dot(right, corner) / distance + 1.0) * 0.5 * n,
                                   (glm::dot(down, corner) / distance + 1.0) * 0.5 * n);
         }
@@ -137,15 +140,15 @@ private:
                         const glm::dvec2 centre((2.0 * static_cast<double>(column) + 1.0) / n - 1.0,
                                                 (2.0 * static_cast<double>(row) + 1.0) / n - 1.0);
                         const double overlap = solid_angle_about(centre, scaled_);
-                        // Slivers may come out negative by rounding, and a bright texel would make
-                        // a dark pixel negative with them.
+                        // Rounding may make the area of a sliver negative. With a bright texel,
+                        // such an area would make a dark pixel negative.
                         if (overlap > 0.0)
                             visit(face, static_cast<std::uint32_t>(column / cells_per_texel_),
                                   static_cast<std::uint32_t>(row / cells_per_texel_), overlap);
                     });
     }
 
-    /// From units of cells to [-1, 1]^2.
+    /// Converts units of cells to [-1, 1]^2, into scaled_.
     void to_face(const Polygon& piece) {
         scaled_.clear();
         for (const glm::dvec2& point : piece)

@@ -1,4 +1,4 @@
-// A part of a cube map's face, counted in texels.
+// A rectangle of texels on a face of a cube map.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace relumine::cubemap {
 
-/// Texels [x0, x1) x [y0, y1) of a face.
+/// The texels [x0, x1) x [y0, y1) of a face.
 struct TexelRectangle {
     Face face = Face::PositiveX;
     std::uint32_t x0 = 0;
@@ -21,8 +21,8 @@ struct TexelRectangle {
     [[nodiscard]] std::uint64_t num_texels() const { return std::uint64_t{x1 - x0} * (y1 - y0); }
 };
 
-/// Adds a rectangle to a list, or makes one of the list's larger where that covers no more texels
-/// than both apart.
+/// Adds a rectangle to a list. A rectangle of the list grows instead if the rectangle around both
+/// covers no more texels than the two apart.
 inline void add_merged(const TexelRectangle& rectangle, std::vector<TexelRectangle>& list) {
     for (TexelRectangle& other : list) {
         if (other.face != rectangle.face)

@@ -16,15 +16,15 @@ namespace relumine::data_gen {
 namespace {
 
 enum class Detail {
-    /// Few columns without bases
+    /// Few columns, without bases.
     Plain,
-    /// All mouldings
+    /// All mouldings.
     Full,
-    /// And grooves in the shafts, each at least VerticesPerFlute wide
+    /// All mouldings, and grooves in the shafts that are at least VerticesPerFlute wide.
     Fluted,
 };
 
-// Measures in metres; heights of a column's parts are above the stylobate, the top of the steps.
+// Measures in metres. Heights of a column's parts are above the stylobate, the top of the steps.
 constexpr double FloorRadius = 13.0;
 constexpr double RingRadius = 3.6; // axes of the columns
 constexpr double StylobateHeight = 0.6;
@@ -40,8 +40,8 @@ std::uint32_t multiple_of(std::uint32_t factor, double value) {
     return factor * std::max(1u, static_cast<std::uint32_t>(std::lround(value / factor)));
 }
 
-// A shaft's outline with entasis: the taper starts slowly. Upwards it may be coarser than
-// elsewhere.
+// The outline of a shaft with entasis: the taper starts slowly. `spacing` along the height may be
+// coarser than elsewhere.
 Curve shaft(double bottom, double top, double spacing) {
     Curve points = line({FootRadius, bottom}, {NeckRadius, top}, spacing);
     for (glm::dvec2& point : points) {
@@ -131,8 +131,8 @@ mesh::TriangleMesh steps(double spacing, Detail detail) {
     return mesh;
 }
 
-// The floor around the steps, from their foot outwards: a grid that ran on below them would smear
-// the dark under them over the nearest vertices outside. A ring k of the floor has 6 k vertices.
+// The floor around the steps, from their foot outwards. A grid below the steps would spread the
+// dark under them to the nearest vertices outside. Ring k of the floor has 6 k vertices.
 void append_floor_around(mesh::TriangleMesh& mesh, double foot_radius,
                          std::uint32_t foot_num_around, std::size_t num_vertices) {
     const double foot_ring = foot_num_around / 6.0;
@@ -219,7 +219,8 @@ mesh::TriangleMesh colonnade(std::size_t num_vertices) {
     const Detail detail = num_vertices < 8'000    ? Detail::Plain
                           : num_vertices < 80'000 ? Detail::Full
                                                   : Detail::Fluted;
-    // The widest spacing that fills half of the wish; the count falls as the spacing grows.
+    // Finds the widest spacing that fills half of the wished number. The count falls as the spacing
+    // grows.
     double fine = 0.001;
     double coarse = 4.0;
     for (int step = 0; step < 12; ++step) {

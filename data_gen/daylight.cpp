@@ -15,16 +15,16 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-// One wavelength: the sun's radiance above the atmosphere and ozone's absorption ([P99] Table 2),
-// and the CIE 1931 2-degree observer.
+// One wavelength: the sun's radiance above the atmosphere and the absorption of ozone and water
+// ([P99] Table 2), and the CIE 1931 2-degree observer.
 struct SpectralRow {
-    /// micrometres
+    /// In micrometres.
     double wavelength;
-    /// W / (m^2 sr nm)
+    /// In W / (m^2 sr nm).
     double sun;
-    /// 1/cm
+    /// In 1/cm.
     double ozone;
-    /// 1/cm
+    /// In 1/cm.
     double water;
     double x, y, z;
 };
@@ -48,15 +48,15 @@ constexpr std::array<SpectralRow, 16> Spectrum = {{
     {0.70, 20240.4, 0.023, 0.024, 0.01136, 0.00410, 0.00000},
 }};
 
-// IEC 61966-2-1: linear Rec. 709 from CIE XYZ; what lies outside becomes 0.
+// Linear Rec. 709 from CIE XYZ (IEC 61966-2-1). Negative values become 0.
 glm::dvec3 rgb_from_xyz(const glm::dvec3& c) {
     return glm::max(glm::dvec3(0.0), glm::dvec3(3.2406 * c.x - 1.5372 * c.y - 0.4986 * c.z,
                                                 -0.9689 * c.x + 1.8758 * c.y + 0.0415 * c.z,
                                                 0.0557 * c.x - 0.2040 * c.y + 1.0570 * c.z));
 }
 
-// Part of the light of one wavelength that comes through the air straight [P99, A.1]. Mixed gases
-// absorb beyond 759 nm only.
+// The part of the light of one wavelength that passes straight through the air [P99, A.1]. Mixed
+// gases absorb only beyond 759 nm.
 double transmittance(const SpectralRow& row, double turbidity, double air_mass) {
     const double m = air_mass;
     const double rayleigh = std::exp(-0.008735 * m * std::pow(row.wavelength, -4.08));
@@ -70,7 +70,7 @@ double transmittance(const SpectralRow& row, double turbidity, double air_mass) 
     return rayleigh * aerosol * ozone * water;
 }
 
-// kcd/m^2 as linear RGB.
+// The sun's radiance in kcd/m^2 as linear RGB.
 glm::dvec3 sun_radiance(double turbidity, double zenith_angle) {
     const double zenith_degrees = zenith_angle * 180.0 / Pi;
     const double air_mass =
@@ -81,6 +81,22 @@ glm::dvec3 sun_radiance(double turbidity, double zenith_angle) {
     }
     constexpr double LumensPerWatt = 683.0;
     return rgb_from_xyz(xyz * (LumensPerWatt * RowWidth / 1000.0));
+}
+
+// Luminance Y and chromaticities x and y at the zenith, for a sun at the angle `theta` from it
+// [P99, A.2].
+std::array<double, 3> zenith_values(double T, double theta) {
+    const double chi = (4.0 / 9.0 - T / 120.0) * (Pi - 2.0 * theta);
+    const auto cubic = [&](double a, double b, double c, double d) {
+        return ((a * theta + b) * theta + c) * theta + d;
+    };
+    return {(4.0453 * T - 4.9710) * std::tan(chi) - 0.2155 * T + 2.4192,
+            T * T * cubic(0.00166, -0.00375, 0.00209, 0.0) +
+                T * cubic(-0.02903, 0.06377, -0.03202, 0.00394) +
+                cubic(0.11693, -0.21196, 0.06052, 0.25886),
+            T * T * cubic(0.00275, -0.00610, 0.00317, 0.0) +
+                T * cubic(-0.04214, 0.08970, -0.04153, 0.00516) +
+                cubic(0.15346, -0.26756, 0.06670, 0.26688)};
 }
 
 void check(bool valid, const char* what, double value) {
@@ -114,25 +130,14 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
         direction_from_angles(options.sun_elevation_degrees, options.sun_azimuth_degrees);
     const double theta = glm::radians(90.0 - options.sun_elevation_degrees);
 
-    // [P99, A.2]: coefficients of the distributions and values at the zenith.
+    // [P99, A.2]: coefficients of the distributions.
     distributions_ = {{{0.1787 * T - 1.4630, -0.3554 * T + 0.4275, -0.0227 * T + 5.3251,
                         0.1206 * T - 2.5771, -0.0670 * T + 0.3703},
                        {-0.0193 * T - 0.2592, -0.0665 * T + 0.0008, -0.0004 * T + 0.2125,
                         -0.0641 * T - 0.8989, -0.0033 * T + 0.0452},
                        {-0.0167 * T - 0.2608, -0.0950 * T + 0.0092, -0.0079 * T + 0.2102,
                         -0.0441 * T - 1.6537, -0.0109 * T + 0.0529}}};
-    const double chi = (4.0 / 9.0 - T / 120.0) * (Pi - 2.0 * theta);
-    const auto cubic = [&](double a, double b, double c, double d) {
-        return ((a * theta + b) * theta + c) * theta + d;
-    };
-    const std::array<double, 3> zenith = {(4.0453 * T - 4.9710) * std::tan(chi) - 0.2155 * T +
-                                              2.4192,
-                                          T * T * cubic(0.00166, -0.00375, 0.00209, 0.0) +
-                                              T * cubic(-0.02903, 0.06377, -0.03202, 0.00394) +
-                                              cubic(0.11693, -0.21196, 0.06052, 0.25886),
-                                          T * T * cubic(0.00275, -0.00610, 0.00317, 0.0) +
-                                              T * cubic(-0.04214, 0.08970, -0.04153, 0.00516) +
-                                              cubic(0.15346, -0.26756, 0.06670, 0.26688)};
+    const std::array<double, 3> zenith = zenith_values(T, theta);
     for (std::size_t i = 0; i < 3; ++i) {
         Distribution& d = distributions_[i];
         const double cos_theta = std::cos(theta);
@@ -143,8 +148,13 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
 
     sun_ = scale_ * sun_radiance(T, theta);
 
-    // Irradiance of level ground: the midpoint rule in azimuth and in the squared sine of the angle
-    // from the zenith.
+    const double sun_sine = std::sin(glm::radians(SunRadiusDegrees));
+    const glm::dvec3 from_sun = sun_ * (Pi * sun_sine * sun_sine * sun_direction_.y);
+    ground_ = options.ground_albedo / Pi * (sky_irradiance() + from_sun);
+}
+
+glm::dvec3 Daylight::sky_irradiance() const {
+    // The midpoint rule in azimuth and in the squared sine of the angle from the zenith.
     constexpr int NumRings = 128;
     constexpr int NumSectors = 256;
     glm::dvec3 sum(0.0);
@@ -157,10 +167,7 @@ Daylight::Daylight(const DaylightOptions& options) : scale_(options.scale) {
                 {sine * std::sin(azimuth), std::sqrt(1.0 - sin_squared), sine * std::cos(azimuth)});
         }
     }
-    const glm::dvec3 from_sky = sum * (Pi / (NumRings * NumSectors));
-    const double sun_sine = std::sin(glm::radians(SunRadiusDegrees));
-    const glm::dvec3 from_sun = sun_ * (Pi * sun_sine * sun_sine * sun_direction_.y);
-    ground_ = options.ground_albedo / Pi * (from_sky + from_sun);
+    return sum * (Pi / (NumRings * NumSectors));
 }
 
 glm::dvec3 Daylight::sky(const glm::dvec3& direction) const {

@@ -1,4 +1,4 @@
-// Round lights, exact to the rim.
+// Round lights with exact coverage of the texels at the rim.
 #include <cmath>
 #include <span>
 #include <stdexcept>

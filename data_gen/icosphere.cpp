@@ -20,7 +20,7 @@ constexpr std::array<mesh::Triangle, 20> Faces = {
      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}}};
 
-// The three golden rectangles.
+// The corners of three golden rectangles.
 std::array<glm::dvec3, NumCorners> corners() {
     const double g = (1.0 + std::sqrt(5.0)) / 2.0;
     return {{{-1, g, 0},
@@ -37,7 +37,7 @@ std::array<glm::dvec3, NumCorners> corners() {
              {-g, 0, 1}}};
 }
 
-// Number of the edge between two corners, in the order in which the faces first meet them.
+// Numbers the edges between two corners, in the order in which the faces first meet them.
 class EdgeNumbers {
 public:
     EdgeNumbers() {
@@ -79,8 +79,8 @@ mesh::TriangleMesh icosphere(std::uint32_t frequency) {
         sphere.positions.emplace_back(glm::normalize(point));
     };
 
-    // Vertices: the corners, then the inner points of each edge (from its lower corner), then those
-    // of each face, row by row.
+    // Vertices: the corners, then the inner points of each edge (from its lower corner), then the
+    // inner points of each face, row by row.
     for (const glm::dvec3& point : corner) {
         add(point);
     }
@@ -103,7 +103,7 @@ mesh::TriangleMesh icosphere(std::uint32_t frequency) {
     };
     const std::uint32_t first_inner = NumCorners + NumEdges * (f - 1);
     const std::uint32_t inner_per_face = f < 3 ? 0 : (f - 1) * (f - 2) / 2;
-    // The vertex i steps towards the face's second corner and j towards its third.
+    // Returns the vertex i steps towards the face's second corner and j steps towards its third.
     const auto vertex = [&](std::uint32_t face, std::uint32_t i, std::uint32_t j) {
         const auto [a, b, c] = Faces[face];
         if (i == 0 && j == 0) {

@@ -1,4 +1,4 @@
-// Evenly triangulated sphere.
+// An evenly triangulated sphere.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 
 namespace relumine::data_gen {
 
-/// The unit sphere as an icosahedron with every edge cut into `frequency` >= 1 parts: 10 f^2 + 2
-/// shared vertices, 20 f^2 triangles, normals not set. Edge lengths differ by a factor of at
-/// most 1.6.
+/// Returns the unit sphere as an icosahedron whose edges are cut into `frequency` f >= 1 parts. It
+/// has 10 f^2 + 2 shared vertices and 20 f^2 triangles, and no normals. Edge lengths differ by a
+/// factor of at most 1.6.
 [[nodiscard]] mesh::TriangleMesh icosphere(std::uint32_t frequency);
 
-/// The frequency whose vertex count comes closest to a wish, at least 1.
+/// Returns the frequency, at least 1, whose vertex count is closest to `num_vertices`.
 [[nodiscard]] std::uint32_t icosphere_frequency(std::size_t num_vertices);
 
 } // namespace relumine::data_gen

@@ -8,14 +8,13 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
+#include "data_gen/scene_parts.h"
 #include "data_gen/shapes.h"
 
 namespace relumine::data_gen {
 namespace {
 
-constexpr double FullTurn = 2.0 * std::numbers::pi;
-
-// The one formula for a vertex of a ring: what uses the same arguments meets to the bit.
+// The only formula for a vertex of a ring. The same arguments give the same vertex to the bit.
 glm::vec3 ring_point(double radius, double height, std::uint32_t i, std::uint32_t num_around) {
     const double angle = FullTurn * i / num_around;
     return {glm::dvec3(radius * std::cos(angle), height, radius * std::sin(angle))};
@@ -28,7 +27,7 @@ double groove(const Flutes& flutes, double height, std::uint32_t i, std::uint32_
     }
     const std::uint32_t per_flute = num_around / flutes.count;
     const double across = double(i % per_flute) / per_flute;
-    // The ends are round, about as long as the groove is deep and wide.
+    // The ends are round, about as long as a groove is deep and wide.
     const double to_end =
         std::min(height - flutes.bottom, flutes.top - height) / (3.0 * flutes.depth);
     const double end = to_end >= 1.0 ? 1.0 : std::sqrt(1.0 - (1.0 - to_end) * (1.0 - to_end));
@@ -95,7 +94,7 @@ void append_disc(mesh::TriangleMesh& mesh, const Disc& disc) {
         }
         return;
     }
-    // Ring k has 6 k vertices, ring 0 is the centre; the strip between two rings is six sectors of
+    // Ring k has 6 k vertices; ring 0 is the centre. The strip between two rings is six sectors of
     // k inner and k + 1 outer edges.
     assert(disc.num_around % 6 == 0 && disc.inner_num_around % 6 == 0 &&
            "an even disc needs rims of six equal parts");

@@ -8,7 +8,7 @@
 namespace relumine::data_gen {
 namespace {
 
-// Integer finaliser in the manner of MurmurHash3: every input bit changes about half of the output
+// Integer finaliser in the manner of MurmurHash3. Every input bit changes about half of the output
 // bits.
 std::uint32_t mixed(std::uint32_t value) {
     value ^= value >> 16;
@@ -26,8 +26,8 @@ std::uint32_t lattice_hash(const glm::ivec3& point, std::uint32_t seed) {
     return hash;
 }
 
-// Dot product with one of the twelve directions to the middle of a cube's edges (four of them
-// twice).
+// Dot product with one of the twelve directions to the middle of a cube's edges. Four of them occur
+// twice.
 double gradient_dot(std::uint32_t hash, const glm::dvec3& offset) {
     static constexpr std::array<std::array<int, 3>, 16> Gradients = {{{1, 1, 0},
                                                                       {-1, 1, 0},
@@ -79,7 +79,7 @@ double fractal_noise(const glm::dvec3& point, const FractalOptions& options) {
     for (int octave = 0; octave < options.num_octaves; ++octave) {
         sum += amplitude * gradient_noise(p, options.seed + static_cast<std::uint32_t>(octave));
         amplitude *= options.gain;
-        // The shift keeps the zeros at the lattice points of the octaves from falling together.
+        // The shift keeps lattice points of different octaves apart, where the noise is zero.
         p = 2.0 * p + glm::dvec3(0.37, 0.61, 0.23);
     }
     return sum;

@@ -1,4 +1,4 @@
-// Functions of the direction as cube maps.
+// Cube maps of functions of the direction.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +12,9 @@
 
 namespace relumine::data_gen {
 
-/// A cube map whose texels are means over num_sub(texel)^2 evenly spread directions, weighted with
-/// their solid angles. Rows are written by one thread each, so the result does not depend on their
-/// number.
+/// Returns a cube map whose texels are means over num_sub(texel)^2 evenly spread directions,
+/// weighted with their solid angles. One thread writes each row, so the result does not depend on
+/// the number of threads.
 template<typename Radiance, typename NumSub>
 cubemap::CubeMap sampled(std::uint32_t resolution, const Radiance& radiance,
                          const NumSub& num_sub) {
@@ -44,7 +44,7 @@ cubemap::CubeMap sampled(std::uint32_t resolution, const Radiance& radiance,
     return map;
 }
 
-/// Enough samples for functions that are smooth over 1/512 of a face.
+/// Returns enough samples for functions that are smooth over 1/512 of a face.
 inline int num_smooth_samples(std::uint32_t resolution) {
     return std::clamp(static_cast<int>(512 / std::max(resolution, 1u)), 1, 16);
 }

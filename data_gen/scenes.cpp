@@ -20,15 +20,13 @@
 namespace relumine::data_gen {
 namespace {
 
-constexpr double FullTurn = 2.0 * std::numbers::pi;
-
 glm::dvec3 leaning(const glm::dvec3& p) {
     constexpr double Angle = 0.35; // radians
     return {p.x, p.y * std::cos(Angle) + p.z * std::sin(Angle),
             p.z * std::cos(Angle) - p.y * std::sin(Angle)};
 }
 
-// The knot's centre line, standing upright and leaning back; period 1.
+// The knot's centre line, upright and leaning back. Its period is 1.
 glm::dvec3 knot_line(double t) {
     constexpr double Ring = 1.0;
     constexpr double Tube = 0.42;
@@ -42,8 +40,8 @@ glm::dvec3 knot_line(double t) {
 
 // Parameters at equal distances along the closed line, [num].
 std::vector<double> even_parameters(std::uint32_t num) {
-    constexpr int NumChords =
-        20'000; // the chords' length differs from the line's by less than 1e-7 of it
+    // The chords are shorter than the line by less than 1e-7 of its length.
+    constexpr int NumChords = 20'000;
     std::vector<double> length_to = {0.0};
     for (int i = 0; i < NumChords; ++i) {
         const double chord =
@@ -60,8 +58,8 @@ std::vector<double> even_parameters(std::uint32_t num) {
     return parameters;
 }
 
-// Two axes square on the line that close up after a turn: the first points away from the ring
-// around which the knot winds.
+// Two axes perpendicular to the line that close up after one turn. The first points away from the
+// ring around which the knot winds.
 std::array<glm::dvec3, 2> knot_axes(double t) {
     constexpr double Step = 1e-5;
     const glm::dvec3 along = glm::normalize(knot_line(t + Step) - knot_line(t - Step));
@@ -91,7 +89,8 @@ mesh::TriangleMesh on_ground(mesh::TriangleMesh objects, double floor_side,
 
 mesh::TriangleMesh knot(std::size_t num_vertices) {
     check_num_vertices(num_vertices);
-    constexpr double LineLength = 15.0; // of knot_line; sets how even the spacing is, nothing else
+    // Length of knot_line. It only sets how even the spacing is.
+    constexpr double LineLength = 15.0;
     constexpr double TubeRadius = 0.27;
     const double wish = 0.5 * static_cast<double>(num_vertices);
     const auto num_across = static_cast<std::uint32_t>(
@@ -124,7 +123,7 @@ mesh::TriangleMesh blob(std::size_t num_vertices) {
     float lowest = 0.0f;
     for (glm::vec3& p : mesh.positions) {
         const glm::dvec3 direction(p);
-        // Broad lumps, bent by a second noise, worn ridges between them and a fine grain.
+        // Broad lumps bent by a second noise, worn ridges between them, and a fine grain.
         const glm::dvec3 bend(gradient_noise(1.3 * direction, 11),
                               gradient_noise(1.3 * direction, 12),
                               gradient_noise(1.3 * direction, 13));
@@ -135,7 +134,7 @@ mesh::TriangleMesh blob(std::size_t num_vertices) {
                                          {.num_octaves = 3, .gain = 0.35, .seed = 21}));
         const double radius = 1.0 + 0.42 * lumps + 0.30 * (ridges * ridges - 0.6);
         const glm::dvec3 rough = radius * direction;
-        // It lies on a side: heights below `bed` are pressed together, smoothly and one to one.
+        // The boulder lies on a side: heights below `bed` are compressed, smoothly and one to one.
         constexpr double Bed = -0.62;
         constexpr double Softness = 0.06;
         const double height = Bed + Softness * std::log1p(std::exp((rough.y - Bed) / Softness));

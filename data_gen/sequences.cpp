@@ -20,7 +20,7 @@ namespace relumine::data_gen {
 
 namespace {
 
-/// As the environment sun_sky: radiance 1 is 20 kcd/m^2.
+/// The scale of the environment sun_sky: radiance 1 is 20 kcd/m^2.
 DaylightOptions daylight_options(const cubemap::SkyAngles& sun) {
     return {.sun_elevation_degrees = sun.elevation_degrees,
             .sun_azimuth_degrees = sun.azimuth_degrees,
@@ -64,20 +64,21 @@ FrameMaker switched(const SequenceOptions& options) {
     };
 }
 
-/// The sun of `clouds`, as that of the environment sun_sky.
+/// The sun of `clouds`, at the same place as in the environment sun_sky.
 constexpr cubemap::SkyAngles CloudySun{.elevation_degrees = 35.0, .azimuth_degrees = -60.0};
 
 FrameMaker clouds(const SequenceOptions& options) {
     check(options);
     const Daylight daylight(daylight_options(CloudySun));
     const glm::dvec3 albedo = daylight_options(CloudySun).ground_albedo;
-    // What the sun and the clear sky send to level ground. Clouds take the sun's part away; what
-    // they take of the sky's part they give back themselves, about.
+    // Irradiance of level ground from the sun and the clear sky. Clouds take the sun's part away.
+    // They also take a part of the sky's light, but give about the same back.
     const glm::dvec3 both = std::numbers::pi * daylight.ground() / albedo;
     const double sun_sine = std::sin(glm::radians(Daylight::SunRadiusDegrees));
     const glm::dvec3 from_sun =
         daylight.sun() * (std::numbers::pi * sun_sine * sun_sine * daylight.sun_direction().y);
-    // Seen from below, a cloud is lit through: half of what falls on it.
+    // From below, a cloud shows the light that passes through it: half of the light that falls on
+    // it.
     const glm::dvec3 cloud = 0.5 * both / std::numbers::pi;
     return [=, r = options.face_resolution](std::size_t frame) {
         const auto time = static_cast<double>(frame);
@@ -122,8 +123,8 @@ cubemap::SkyAngles sun_angles(std::size_t frame, std::size_t num_frames) {
 double cloud_cover(const glm::dvec3& direction, double frame) {
     if (direction.y <= 0.0)
         return 0.0;
-    // Clouds of the size of their height, less of them the lower they stand: far away they are
-    // finer than any texel.
+    // Clouds are as wide as their height. Low in the sky there are fewer, because distant clouds
+    // are finer than any texel.
     constexpr double Frequency = 0.9, Threshold = 0.0, Softness = 0.35, Haze = 0.15;
     const glm::dvec3 place = direction / direction.y - CloudWind * frame;
     const double noise = fractal_noise({Frequency * place.x, 0.37, Frequency * place.z},
@@ -137,7 +138,7 @@ double cloud_transmission(double frame) {
 }
 
 std::vector<TunnelLamp> tunnel_lamps(std::size_t frame) {
-    // Metres. Lamps fade in and out far away, where each is a thousandth of one overhead.
+    // In metres. Lamps fade in and out far away, where a lamp gives a thousandth of one overhead.
     constexpr double Spacing = 8.0, Height = 2.2, Aside = 1.6, Radius = 0.3, Far = 80.0,
                      Visible = 60.0;
     const double driven =

@@ -11,8 +11,8 @@ std::uint32_t next_index(const mesh::TriangleMesh& mesh) {
     return static_cast<std::uint32_t>(mesh.positions.size());
 }
 
-// Two triangles of the quad a b c d, counter-clockwise. Alternating diagonals keep shadow edges
-// from looking combed.
+// Appends the two triangles of the quad a b c d, counter-clockwise. Alternating diagonals keep
+// shadow edges from looking combed.
 void append_quad(mesh::TriangleMesh& mesh, const std::array<std::uint32_t, 4>& q, bool flip) {
     if (flip) {
         mesh.triangles.push_back({q[0], q[1], q[3]});
@@ -23,7 +23,7 @@ void append_quad(mesh::TriangleMesh& mesh, const std::array<std::uint32_t, 4>& q
     }
 }
 
-// An open grid of (num_u + 1) x (num_v + 1) vertices; d/du x d/dv points outside.
+// Appends an open grid of (num_u + 1) x (num_v + 1) vertices; d/du x d/dv points outside.
 template<typename Position>
 void append_grid(mesh::TriangleMesh& mesh, std::uint32_t num_u, std::uint32_t num_v,
                  const Position& position) {
@@ -50,7 +50,7 @@ std::uint32_t num_intervals(double length, double spacing, std::uint32_t minimum
 
 void append_box(mesh::TriangleMesh& mesh, const glm::dvec3& min, const glm::dvec3& max,
                 double spacing) {
-    // Each coordinate depends on its own index alone, so that neighbouring faces meet to the bit.
+    // Each coordinate depends on its own index alone, so neighbouring faces meet to the bit.
     std::array<std::uint32_t, 3> num = {};
     for (int axis = 0; axis < 3; ++axis) {
         num[static_cast<std::size_t>(axis)] = num_intervals(max[axis] - min[axis], spacing);
@@ -61,7 +61,7 @@ void append_box(mesh::TriangleMesh& mesh, const glm::dvec3& min, const glm::dvec
     };
     for (int axis = 0; axis < 3; ++axis) {
         for (const bool upper : {false, true}) {
-            // On the lower side u and v change places, which turns the face around.
+            // On the lower side u and v are exchanged, which turns the face around.
             const int u = upper ? (axis + 1) % 3 : (axis + 2) % 3;
             const int v = upper ? (axis + 2) % 3 : (axis + 1) % 3;
             append_grid(mesh, num[static_cast<std::size_t>(u)], num[static_cast<std::size_t>(v)],

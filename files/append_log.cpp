@@ -62,7 +62,7 @@ void AppendLog::append(std::span<const std::byte> record) {
     open();
     const Head head{.size = record.size(), .checksum = XXH64(record.data(), record.size(), 0)};
     const std::uint64_t needed = sizeof head + record.size();
-    // What lies behind the last record is of a run that was killed.
+    // Bytes behind the last record come from a run that was killed.
     if (::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0)
         fail(path_, "write", errno);
     write_at(path_, file_.get(), size_, std::as_bytes(std::span(&head, 1)), needed, size_);

@@ -1,4 +1,4 @@
-// A file that grows by whole records, and survives a crash in the middle of one.
+// A file that grows by whole records. A crash in the middle of a record does no harm.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,29 @@
 
 namespace relumine::files {
 
-/// Each record is 24 bytes of head (a mark, its size, xxHash64 of its bytes) and its bytes.
-/// append() syncs before it returns, so a record is either whole on the disk or torn and known as
-/// torn.
+/// A log of records. A record is a head of 24 bytes (a mark, the record's size, xxHash64 of its
+/// bytes) and its bytes. append() syncs before it returns, so a record on the disk is either whole
+/// or recognised as torn.
 class AppendLog {
 public:
-    /// Nothing is touched yet.
+    /// Only keeps the path. No file is touched.
     explicit AppendLog(std::filesystem::path path);
 
-    /// The whole records of the first `max_bytes` of the file, none where there is no file; later
-    /// records follow the last of them and what was behind it goes. A torn or damaged record ends
-    /// the list. Throws std::runtime_error when the file cannot be read.
+    /// Returns the whole records in the first `max_bytes` of the file; none if there is no file. A
+    /// torn or damaged record ends the list. Later records are appended after the last returned
+    /// one, and replace what the file has there.
+    /// Throws:  std::runtime_error if the file cannot be read.
     [[nodiscard]] std::vector<std::vector<std::byte>>
     read(std::optional<std::uint64_t> max_bytes = {});
 
-    /// Throws std::runtime_error naming the file; the log is then as before.
+    /// Appends a record.
+    /// Throws:  std::runtime_error naming the file; the log is then as before.
     void append(std::span<const std::byte> record);
 
-    /// Takes back records: those up to a size() of before stay.
+    /// Drops records from the end. `size` is an earlier result of size().
     void cut(std::uint64_t size) { size_ = size; }
 
-    /// Bytes of all records.
+    /// Returns the size of all records in bytes.
     [[nodiscard]] std::uint64_t size() const { return size_; }
 
 private:

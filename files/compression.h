@@ -1,4 +1,4 @@
-// zstd, as scene files and checkpoints use it.
+// zstd compression for scene files and checkpoints.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,12 @@
 
 namespace relumine::files {
 
-/// What says that it is larger than this for its bytes was not made here (zstd reaches some 30,000
-/// : 1).
+/// Largest ratio of declared size to compressed bytes that a reader accepts. Our files stay below
+/// it: zstd reaches about 30,000 : 1.
 inline constexpr std::uint64_t MaxCompressionRatio = 1 << 17;
 
-/// One frame, which says its own size. Throws std::runtime_error when zstd fails.
+/// Returns one zstd frame that states its own size.
+/// Throws:  std::runtime_error if zstd fails.
 [[nodiscard]] std::vector<std::byte> compressed(std::span<const std::byte> bytes, int level);
 
 } // namespace relumine::files

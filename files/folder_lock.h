@@ -1,4 +1,4 @@
-// One process at a time in a folder.
+// A lock that gives a folder to one process at a time.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,12 @@
 
 namespace relumine::files {
 
-/// Held as long as this lives or the process does, however that ends.
+/// A lock on a folder. It is held until the object or the process ends, however the process ends.
 class FolderLock {
 public:
-    /// None while another process (or another lock of this one) has the folder. A file system
-    /// without locks gives them to all. Throws std::runtime_error for what is no folder.
+    /// Takes the lock. Returns null while another process, or another lock of this process, has the
+    /// folder. On a file system without locks every call succeeds.
+    /// Throws:  std::runtime_error for a path that is no folder.
     [[nodiscard]] static std::unique_ptr<FolderLock> acquire(const std::filesystem::path& folder);
 
 private:

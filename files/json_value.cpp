@@ -12,10 +12,10 @@ namespace relumine::files {
 
 namespace {
 
-/// Deeper nesting is no layer file, and would overflow the stack when it is destroyed.
+/// A layer file never nests deeper. Deeper values would overflow the stack when they are destroyed.
 constexpr std::size_t MaxDepth = 32;
 
-/// The line of the last character read that is not white space: the parser reads one character past
+/// The line of the last character read that is not white space. The parser reads one character past
 /// a number.
 struct Place {
     int line = 1;
@@ -53,7 +53,7 @@ private:
     Place* place_;
 };
 
-/// Builds the value from the parser's events (the names are nlohmann's).
+/// Builds the value from the parser's events. nlohmann gives the names of the functions.
 class Builder {
 public:
     Builder(const JsonReader& reader, const Place& place) : reader_(reader), place_(place) {}
@@ -77,8 +77,8 @@ public:
         return true;
     }
     bool parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
-        // "[json.exception...] parse error at line 1, column 2: syntax error while parsing value -
-        // unexpected X; expected Y"
+        // The text is "[json.exception...] parse error at line 1, column 2: syntax error while
+        // parsing value - unexpected X; expected Y".
         const std::string_view text = error.what();
         const std::size_t dash = text.find(" - ");
         std::string_view reason = dash == std::string_view::npos ? text : text.substr(dash + 3);
@@ -146,7 +146,7 @@ std::string description(const JsonValue& value) {
     return std::visit(Describe{}, value.value);
 }
 
-/// The content if it is a T, otherwise refused.
+/// Returns the content if it is a T and refuses it otherwise.
 template<typename T>
 const T& content(const JsonReader& reader, const JsonValue& value, std::string_view what,
                  std::string_view type) {
@@ -167,7 +167,7 @@ JsonValue JsonReader::parse(std::span<const std::byte> text) const {
 }
 
 void JsonReader::refuse(int line, std::string_view expected, std::string_view got) const {
-    // Both may quote the file: a name, a text, or all that the parser read since.
+    // Both may quote the file: a name, a text, or all that the parser has read since.
     std::string message =
         fmt::format("{}:{}: expected {:.500}, got {:.500}", name_, line, expected, got);
     std::replace_if(

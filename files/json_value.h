@@ -1,4 +1,4 @@
-// JSON that remembers the line of every value, for error messages that say where.
+// JSON that keeps the line of every value, so error messages can name it.
 #pragma once
 
 #include <cstddef>
@@ -12,28 +12,32 @@
 
 namespace relumine::files {
 
+/// A value of a JSON text.
 struct JsonValue {
     using Array = std::vector<JsonValue>;
-    /// As in the file
+    /// Members in the order of the file.
     using Object = std::vector<std::pair<std::string, JsonValue>>;
-    /// Where the value begins; for a string or a number where it stands
+    /// The line on which the value begins.
     int line = 1;
     std::variant<std::nullptr_t, bool, double, std::string, Array, Object> value = nullptr;
 };
 
-/// What reading needs to know: the file's name and the values' text.
+/// Reads JSON and checks types. Messages name the file and the line.
 class JsonReader {
 public:
     /// `name` stands for the file in messages.
     explicit JsonReader(std::string name) : name_(std::move(name)) {}
 
-    /// Throws std::runtime_error "name:line: expected X, got Y"; a name that an object has twice is
-    /// refused too.
+    /// Parses a text.
+    /// Throws:  std::runtime_error "name:line: expected X, got Y". An object with the same name
+    ///          twice is refused too.
     [[nodiscard]] JsonValue parse(std::span<const std::byte> text) const;
 
+    /// Throws:  std::runtime_error "name:line: expected X, got Y".
     [[noreturn]] void refuse(int line, std::string_view expected, std::string_view got) const;
 
-    /// The value's content if it is of the type, otherwise refused: `what` says what it is for.
+    /// These functions return the value's content and refuse a value of another type. `what` says
+    /// what the value is for.
     [[nodiscard]] double number(const JsonValue& value, std::string_view what) const;
     [[nodiscard]] bool boolean(const JsonValue& value, std::string_view what) const;
     [[nodiscard]] const std::string& string(const JsonValue& value, std::string_view what) const;
@@ -42,7 +46,7 @@ public:
     [[nodiscard]] const JsonValue::Object& object(const JsonValue& value,
                                                   std::string_view what) const;
 
-    /// A member of an object, or null.
+    /// Returns a member of an object. Null if there is none.
     [[nodiscard]] static const JsonValue* find(const JsonValue::Object& object,
                                                std::string_view field);
 

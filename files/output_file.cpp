@@ -13,11 +13,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "files/posix_file.h"
+
 namespace relumine::files {
 
 namespace {
 
-/// Opens for reading and states the size; refuses everything that is not a regular file.
+/// Opens a file for reading and returns its size. Refuses everything that is not a regular file.
 std::pair<Descriptor, std::size_t> open_for_reading(const std::filesystem::path& path) {
     // Without O_NONBLOCK, opening a pipe would wait for a writer.
     Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
@@ -29,9 +31,10 @@ std::pair<Descriptor, std::size_t> open_for_reading(const std::filesystem::path&
     return {std::move(file), static_cast<std::size_t>(status.st_size)};
 }
 
-/// Where a write to `path` ends up: a symbolic link's target, which need not exist.
+/// Returns the place that a write to `path` reaches: a symbolic link's target, which need not
+/// exist.
 std::filesystem::path followed(const std::filesystem::path& path) {
-    constexpr int MaxLinks = 40; // as Linux
+    constexpr int MaxLinks = 40; // as in Linux
     std::filesystem::path place = path;
     for (int i = 0; i < MaxLinks; ++i) {
         std::error_code error;
@@ -43,8 +46,8 @@ std::filesystem::path followed(const std::filesystem::path& path) {
     fail(path, "write", ELOOP);
 }
 
-/// Whether an open and locked file is this process's alone to write: still there under its name,
-/// and no one else's.
+/// Returns true if an open and locked file may be written by this process: the file is still there
+/// under its name and belongs to no one else.
 bool is_own(int file, const std::filesystem::path& name) {
     struct stat opened {};
     struct stat named {};
@@ -56,7 +59,7 @@ bool is_own(int file, const std::filesystem::path& name) {
 } // namespace
 
 OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
-    // Renaming over a pipe or a device would put a file in its place.
+    // Renaming over a pipe or a device would replace it by a file.
     struct stat status {};
     if (::stat(target_.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
         if (S_ISDIR(status.st_mode))
@@ -68,9 +71,9 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
     open_temporary();
 }
 
-// A name has a number, and is taken by the process that has locked it. What a killed process left
-// is not locked: it is taken over, so that nothing piles up. The extension is kept for writers that
-// look at it.
+// Temporary names are numbered. A name belongs to the process that has locked its file. The file of
+// a killed process is not locked and is taken over, so such files do not pile up. The extension is
+// kept for writers that look at it.
 void OutputFile::open_temporary() {
     constexpr int MaxWriters = 1000; // of one target at the same time
     const std::string extension = place_.extension().string();
@@ -84,7 +87,7 @@ void OutputFile::open_temporary() {
             const int error = errno; // access() changes it
             if (error == ELOOP || error == EISDIR ||
                 (error == EACCES && ::access(name.c_str(), F_OK) == 0))
-                continue; // someone else's
+                continue; // the file of another user
             fail(target_, "write", error);
         }
         if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) {
@@ -93,7 +96,7 @@ void OutputFile::open_temporary() {
             break; // a file system without locks
         }
         if (!is_own(file.get(), name)) {
-            // It was renamed or removed before it was locked: the name is free again.
+            // The file was renamed or removed before it was locked, so the name is free again.
             if (::access(name.c_str(), F_OK) != 0)
                 --i;
             continue;
@@ -104,7 +107,7 @@ void OutputFile::open_temporary() {
         file_ = std::move(file);
         return;
     }
-    // Names that no other process has.
+    // mkstemps chooses a name that no other process has.
     std::string name =
         (place_.parent_path() / fmt::format(".{}.XXXXXX{}", place_.stem().string(), extension))
             .string();
@@ -112,7 +115,7 @@ void OutputFile::open_temporary() {
     if (!file_.is_open())
         fail(target_, "write", errno);
     temporary_ = name;
-    // mkstemps makes private files; an output has the permissions any other program would give it.
+    // mkstemps makes private files. An output gets the usual permissions instead.
     const mode_t mask = ::umask(0);
     ::umask(mask);
     ::fchmod(file_.get(), 0666 & ~mask);
@@ -120,7 +123,7 @@ void OutputFile::open_temporary() {
 
 OutputFile::~OutputFile() {
     if (!committed_)
-        ::unlink(temporary_.c_str()); // before the lock goes with the descriptor
+        ::unlink(temporary_.c_str()); // before the lock ends with the descriptor
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -138,7 +141,7 @@ void OutputFile::append(std::span<const std::byte> bytes) {
 }
 
 void OutputFile::commit() {
-    // Some file systems say only now that there is no room.
+    // Some file systems report a full disk only now.
     if (::fsync(file_.get()) != 0)
         fail_to_write(target_, errno, std::max(expected_size_, size_), file_.get());
     if (::rename(temporary_.c_str(), place_.c_str()) != 0)

@@ -9,8 +9,8 @@ namespace relumine::files {
 
 namespace {
 
-// The fastest: planes of bits of neighbouring directions shrink well at any level, and a checkpoint
-// is read at most once.
+// The fastest level. Planes of bits of neighbouring directions shrink well at any level, and a
+// checkpoint is read at most once.
 constexpr int CompressionLevel = 1;
 
 } // namespace

@@ -1,5 +1,5 @@
-// Parts of bytes, each compressed on its own and in parallel, in one array. For checkpoints: fast
-// before small.
+// Parts of bytes in one array, each compressed on its own and in parallel. Made for checkpoints:
+// speed matters more than size.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +14,17 @@
 
 namespace relumine::files {
 
-/// `part(i)` makes part i; called in parallel, in any order.
+/// Packs parts. `part(i)` makes part i.
+/// Threads: `part` is called in parallel and in any order.
 [[nodiscard]] std::vector<std::byte>
 pack(std::size_t num_parts, const std::function<std::vector<std::byte>(std::size_t)>& part);
 
-/// Gives the parts back one after the other. Throws std::runtime_error for what pack() did not
-/// make.
+/// Passes the parts to the caller, one after the other.
+/// Throws:  std::runtime_error for bytes that pack() did not make.
 void unpack(std::span<const std::byte> packed,
             const std::function<void(std::span<const std::byte>)>& on_part);
 
-/// Numbers one after the other, as they lie in memory.
+/// Writes numbers one after the other, as they lie in memory.
 class ByteWriter {
 public:
     template<typename Number>
@@ -42,8 +43,8 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Reads them back. Throws std::runtime_error at the end of the bytes, before anything is
-/// allocated.
+/// Reads the numbers of a ByteWriter.
+/// Throws:  std::runtime_error at the end of the bytes, before anything is allocated.
 class ByteReader {
 public:
     explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}

@@ -39,7 +39,7 @@ void fail_to_write(const std::filesystem::path& path, int error, std::uint64_t b
         figures = fmt::format(": {} bytes needed", bytes_needed);
     struct statvfs disk {};
     struct rlimit limit {};
-    // What a quota leaves cannot be asked for portably.
+    // There is no portable way to ask how much a quota leaves.
     if (error == ENOSPC && ::fstatvfs(file, &disk) == 0)
         figures +=
             fmt::format(", {} free", static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize);

@@ -1,5 +1,4 @@
-// POSIX files for the classes of this folder: descriptors, whole writes, and errors that say what
-// is missing.
+// POSIX files for the classes of this folder: whole writes, and errors that say what is missing.
 #pragma once
 
 #include <cstddef>
@@ -7,42 +6,31 @@
 #include <filesystem>
 #include <span>
 
+#include "files/descriptor.h"
+
 namespace relumine::files {
-
-/// A file descriptor that closes itself; negative: none.
-class Descriptor {
-public:
-    explicit Descriptor(int descriptor = -1) : fd_(descriptor) {}
-    ~Descriptor();
-    Descriptor(Descriptor&& other) noexcept;
-    Descriptor& operator=(Descriptor&& other) noexcept;
-
-    [[nodiscard]] int get() const { return fd_; }
-    [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-
-private:
-    int fd_;
-};
 
 /// Throws std::runtime_error "path: cannot ACTION: reason".
 [[noreturn]] void fail(const std::filesystem::path& path, const char* action, int error);
 
-/// Throws std::runtime_error "path: cannot write: reason", for a full disk, a quota or a limit with
-/// the bytes needed, and what there is where the system tells. `file` lies on the disk in question.
+/// Throws:  std::runtime_error "path: cannot write: reason". For a full disk, a quota or a limit,
+///          the message adds the bytes needed, and the bytes available where the system tells.
+///          `file` lies on the disk in question.
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int error,
                                 std::uint64_t bytes_needed, int file);
 
-/// Writes all bytes at an offset. Throws as fail_to_write() does, the file cut to
-/// `size_after_error` before, so that what is free is what was free before.
+/// Writes all bytes at an offset.
+/// Throws:  as fail_to_write(). The file is first cut to `size_after_error`, so the space that was
+///          free is free again.
 void write_at(const std::filesystem::path& path, int file, std::uint64_t offset,
               std::span<const std::byte> bytes, std::uint64_t bytes_needed,
               std::uint64_t size_after_error);
 
-/// After a file appeared or went, so that it does so on the disk. Not all file systems can; those
-/// that cannot do it by themselves.
+/// Syncs a folder after a file appeared in it or vanished, so that the disk holds the change. A
+/// file system that cannot do so does it by itself.
 void sync_folder(const std::filesystem::path& folder);
 
-/// The folder a file lies in, "." where its name has none.
+/// Returns the folder of a file; "." if the path has none.
 [[nodiscard]] std::filesystem::path folder_of(const std::filesystem::path& path);
 
 } // namespace relumine::files

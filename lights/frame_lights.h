@@ -9,14 +9,14 @@
 
 namespace relumine::lights {
 
-/// Distant lights for every frame of a sequence. A light that lives over several frames stands in
+/// Distant lights for every frame of a sequence. A light that lives over several frames appears in
 /// each of them.
 struct FrameLights {
-    /// [num_frames]
+    /// [num_frames], the lights of each frame.
     std::vector<std::vector<DistantLight>> frames;
 
     [[nodiscard]] std::size_t num_frames() const { return frames.size(); }
-    /// The lights of a frame, 0 <= frame < num_frames().
+    /// Returns the lights of a frame, 0 <= frame < num_frames().
     [[nodiscard]] std::span<const DistantLight> at(std::size_t frame) const {
         return frames[frame];
     }

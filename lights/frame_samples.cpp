@@ -8,6 +8,7 @@
 #include "lights/importance_sampling.h"
 #include "lights/lat_long_grid.h"
 #include "lights/place_lights.h"
+#include "lights/split_mix64.h"
 
 namespace relumine::lights {
 
@@ -20,9 +21,9 @@ void add_frame(const cubemap::EnvironmentImage& image, std::uint32_t frame,
         throw std::invalid_argument(
             fmt::format("expected at most {} samples for {} x {} pixels, got {}", grid.num_pixels(),
                         grid.width(), grid.height(), options.samples_per_frame));
-    // splitmix64's constant: seeds of neighbouring frames have nothing in common
+    // Seeds with such large steps make the samples of neighbouring frames independent.
     const std::uint64_t seed = options.seed_per_frame
-                                   ? options.seed + (std::uint64_t{frame} + 1) * 0x9e3779b97f4a7c15u
+                                   ? options.seed + (std::uint64_t{frame} + 1) * SplitMix64::Step
                                    : options.seed;
     for (const ImportanceSample& sample :
          options.stratified ? importance_samples(grid, options.samples_per_frame, seed)

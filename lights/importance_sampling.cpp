@@ -6,24 +6,21 @@
 
 #include <tbb/parallel_for.h>
 
+#include "lights/split_mix64.h"
+
 namespace relumine::lights {
 
 namespace {
 
-/// A number in [0, 1) that depends on its arguments only (the mixing steps of splitmix64), the same
-/// on every machine.
+/// Returns a number in [0, 1) that depends on its arguments only, so it is the same on every
+/// machine. Mixing twice keeps the neighbouring indices of one seed apart from the indices of the
+/// next.
 double random(std::uint64_t seed, std::uint64_t index) {
-    std::uint64_t bits = seed * 0x9e3779b97f4a7c15u + index;
-    for (int round = 0; round < 2; ++round) {
-        bits += 0x9e3779b97f4a7c15u;
-        bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
-        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-        bits ^= bits >> 31;
-    }
-    return static_cast<double>(bits >> 11) * 0x1p-53;
+    const std::uint64_t mixed = SplitMix64(seed * SplitMix64::Step + index).next();
+    return static_cast<double>(SplitMix64(mixed).next() >> 11) * 0x1p-53;
 }
 
-/// What the directions are distributed by: energy, or solid angle for a map without light.
+/// The distribution of the directions: by energy, or by solid angle for a map without light.
 class Distribution {
 public:
     explicit Distribution(const LatLongGrid& grid)
@@ -41,7 +38,7 @@ public:
     /// [height + 1] sums over the rows above.
     [[nodiscard]] const std::vector<double>& marginal() const { return marginal_; }
 
-    /// The row's weights added from the left, always in the same order.
+    /// Returns the sum of the row's weights, always added from left to right.
     [[nodiscard]] double row_sum(std::uint32_t y) const {
         double sum = 0.0;
         for (std::uint32_t x = 0; x < grid_.width(); ++x)
@@ -51,16 +48,17 @@ public:
 
     struct Place {
         glm::dvec3 direction{0.0};
-        /// Of the pixel
+        /// Radiance of the pixel.
         glm::dvec3 radiance{0.0};
     };
 
-    /// The place at a share of the marginal sum and of the conditional one.
+    /// Returns the place at a share `down` of the marginal sum and a share `across` of the
+    /// conditional sum.
     [[nodiscard]] Place place(double down, double across) const {
         const double wanted_down = down * marginal_.back();
-        // the last row that begins at or before it and has light
+        // The last row with light that begins at or before the wanted sum.
         auto row = std::upper_bound(marginal_.begin(), marginal_.end(), wanted_down) - 1;
-        if (row == marginal_.end() - 1) // beyond the last by rounding
+        if (row == marginal_.end() - 1) // rounding went beyond the last row
             row = std::lower_bound(marginal_.begin(), marginal_.end(), marginal_.back()) - 1;
         const auto y = static_cast<std::uint32_t>(row - marginal_.begin());
         const double part_down = std::clamp((wanted_down - row[0]) / (row[1] - row[0]), 0.0, 1.0);
@@ -96,8 +94,8 @@ private:
     std::vector<double> marginal_;
 };
 
-/// Adds the share `down` of an image row to the strata of a row of strata, each getting as much of
-/// the conditional sum.
+/// Adds the share `down` of an image row to a row of strata. Each stratum gets an equal part of the
+/// conditional sum.
 void share_row(const LatLongGrid& grid, const Distribution& distribution, std::uint32_t y,
                double down, std::span<ImportanceSample> strata) {
     const double sum = distribution.row_sum(y);
@@ -114,8 +112,7 @@ void share_row(const LatLongGrid& grid, const Distribution& distribution, std::u
         const glm::dvec3 irradiance = grid.radiance(x, y) * grid.solid_angle(x, y);
         const double after = before + weight;
         double from = before;
-        // The parts of the pixel's share of the sum that end at a border of strata; the last
-        // stratum has none.
+        // Parts of the pixel's share end at the borders of strata. The last stratum has no border.
         while (stratum + 1 < num_strata && border(stratum + 1) < after) {
             const double part = down * (std::max(border(stratum + 1), from) - from) / weight;
             strata[stratum].light.irradiance += part * irradiance;
@@ -136,7 +133,8 @@ std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid, std::s
                                                  std::uint64_t seed) {
     const Distribution distribution(grid);
     const std::vector<double>& marginal = distribution.marginal();
-    // The image is twice as wide as high: strata are about square where the distribution is even.
+    // The image is twice as wide as high. With this number of rows, strata are about square where
+    // the distribution is even.
     const auto num_rows = std::clamp(
         static_cast<std::size_t>(std::lround(std::sqrt(0.5 * static_cast<double>(num_lights)))),
         std::size_t{1}, num_lights);

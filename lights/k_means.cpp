@@ -11,36 +11,23 @@
 #include <tbb/parallel_for.h>
 
 #include "lights/nearest_centre.h"
+#include "lights/split_mix64.h"
 
 namespace relumine::lights {
 
 namespace {
 
-/// Points of one task: about 0.3 ms where each is searched.
+/// Points per task: about 0.3 ms if each point needs a search.
 constexpr std::size_t PointsPerTask = 512;
 
-/// Random numbers by SplitMix64 (Steele, Lea, Flood 2014): the same on every system.
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-    std::uint64_t bits() {
-        std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
-        z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-        z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-        return z ^ (z >> 31);
-    }
-
-private:
-    std::uint64_t state_;
-};
-
 std::vector<ClusterPoint> forgy(std::span<const ClusterPoint> points, std::size_t num_clusters,
-                                Random& random) {
+                                SplitMix64& random) {
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
     std::vector<ClusterPoint> centres;
-    for (std::size_t i = 0; i < num_clusters; ++i) { // Fisher and Yates' shuffle of the first ones
-        std::swap(order[i], order[i + random.bits() % (points.size() - i)]);
+    // Fisher and Yates' shuffle, stopped after the first num_clusters.
+    for (std::size_t i = 0; i < num_clusters; ++i) {
+        std::swap(order[i], order[i + random.below(points.size() - i)]);
         centres.push_back(points[order[i]]);
     }
     return centres;
@@ -57,10 +44,10 @@ public:
         result_.cluster_of.assign(points.size(), 0);
     }
 
-    /// Gives every point to its nearest centre. Returns how many changed.
+    /// Assigns every point to its nearest centre. Returns the number of points that changed.
     std::size_t assign() {
-        // [H10]: a point that is nearer to its centre than any other centre can have come stays
-        // without a search.
+        // [H10]: a point keeps its centre without a search if no other centre can have come nearer
+        // than its own.
         const auto farthest = std::max_element(moves_.begin(), moves_.end());
         const auto most_moved = static_cast<std::uint32_t>(farthest - moves_.begin());
         const double first = *farthest;
@@ -95,7 +82,7 @@ public:
         return std::accumulate(changed.begin(), changed.end(), std::size_t{0});
     }
 
-    /// Moves every centre. Returns whether any has moved.
+    /// Moves every centre. Returns true if any moved.
     bool move_centres() {
         std::fill(moves_.begin(), moves_.end(), 0.0);
         reseed();
@@ -121,8 +108,8 @@ public:
     }
 
 private:
-    /// Each cluster without points takes the point farthest from its centre, the first of equally
-    /// far ones, from a cluster that has others.
+    /// Gives each cluster without points the point farthest from its centre, the first of equally
+    /// far ones, from a cluster with several points.
     void reseed() {
         std::vector<std::size_t> sizes(result_.centres.size(), 0);
         for (const std::uint32_t cluster : result_.cluster_of)
@@ -137,7 +124,7 @@ private:
                     chosen = i;
                     farthest = distance_[i];
                 }
-            if (chosen == points_.size()) // all points stand on centres
+            if (chosen == points_.size()) // all points lie on centres
                 return;
             --sizes[result_.cluster_of[chosen]];
             sizes[cluster] = 1;
@@ -145,12 +132,13 @@ private:
             result_.centres[cluster] = points_[chosen];
             result_.cluster_of[chosen] = static_cast<std::uint32_t>(cluster);
             distance_[chosen] = 0.0;
-            others_[chosen] = 0.0; // nothing is known of it
+            others_[chosen] = 0.0; // its bound is unknown
             ++result_.num_reseeded;
         }
     }
 
-    /// The points by cluster, in their order within each: sums over a cluster then have one order.
+    /// Sorts the points by cluster and keeps their order within each. So a sum over a cluster
+    /// always has the same order.
     void sort_members() {
         begin_.assign(result_.centres.size() + 1, 0);
         for (const std::uint32_t cluster : result_.cluster_of)
@@ -176,7 +164,7 @@ private:
         mean.direction = length > 1e-9 * size ? mean.direction / length : centre.direction;
         mean.luminance /= size;
         mean.time /= size;
-        double position = 0.0; // how much the mean's distances are less
+        double position = 0.0; // by how much the mean reduces the distances
         double luminance = 0.0;
         double time = 0.0;
         for (const std::uint32_t i : members) {
@@ -185,7 +173,7 @@ private:
                 luminance_distance(points_[i], centre) - luminance_distance(points_[i], mean);
             time += time_distance(points_[i], centre) - time_distance(points_[i], mean);
         }
-        // Beyond rounding: equal points must not walk about in the last bits.
+        // Only a gain above rounding counts, or equal points would wander in the last bits.
         const double rounding = 1e-14 * size;
         return {.direction = position > rounding ? mean.direction : centre.direction,
                 .luminance = luminance > rounding ? mean.luminance : centre.luminance,
@@ -196,15 +184,15 @@ private:
     ClusterWeights weights_;
     double slack_;
     KMeans& result_;
-    /// [points] to the own centre
+    /// [points] distance to the point's own centre.
     std::vector<double> distance_;
-    /// [points] no other centre is nearer
+    /// [points] no other centre is nearer than this.
     std::vector<double> others_;
-    /// [clusters] how far the centre moved since the last assignment
+    /// [clusters] how far the centre moved since the last assignment.
     std::vector<double> moves_;
-    /// [clusters + 1] of each cluster in members_
+    /// [clusters + 1] begin of each cluster in members_.
     std::vector<std::size_t> begin_;
-    /// [points]
+    /// [points] point indices, cluster after cluster.
     std::vector<std::uint32_t> members_;
 };
 
@@ -228,7 +216,7 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
         result.converged = true;
         return result;
     }
-    Random random(options.seed);
+    SplitMix64 random(options.seed);
     const std::size_t num_clusters = std::min(options.num_clusters, points.size());
     Iteration iteration(points, forgy(points, num_clusters, random), options.weights, result);
     iteration.assign();

@@ -1,6 +1,6 @@
 // k-means of a video environment's samples in direction, luminance and time.
 // Based on: [S], Section 3.2; G. Hamerly, "Making k-means even faster", 2010 [H10] for the bounds
-// that spare searches.
+// that save searches.
 #pragma once
 
 #include <cstddef>
@@ -14,47 +14,50 @@
 
 namespace relumine::lights {
 
+/// Number of clusters, start and weights of k_means().
 struct KMeansOptions {
-    /// Fewer where there are fewer points
+    /// Number of clusters. Fewer if there are fewer points.
     std::size_t num_clusters = 512;
     ClusterWeights weights = {};
-    /// Of the first centres: any points, all as likely (Forgy)
+    /// Seed for the first centres: random points, all equally likely (Forgy).
     std::uint64_t seed = 1;
     std::size_t max_iterations = 300;
-    /// Polled once an iteration; the clusters by then are returned
+    /// Polled once per iteration. After a stop, the clusters reached so far are returned.
     std::stop_token stop = {};
     std::function<void(std::size_t iteration, double objective)> on_iteration = {};
 };
 
+/// The clusters, and how the iteration went.
 struct KMeans {
-    /// [points] index of the nearest centre, the first of equally near ones
+    /// [points] index of the nearest centre. Of equally near centres the first.
     std::vector<std::uint32_t> cluster_of;
-    /// [clusters]
+    /// [clusters] the centre of each cluster.
     std::vector<ClusterPoint> centres;
-    /// The sum of D over all points, after each assignment; it never rises
+    /// Sum of D over all points after each assignment. It never rises.
     std::vector<double> objective;
-    /// No point changed its cluster in the last iteration
+    /// True if no point changed its cluster in the last iteration.
     bool converged = false;
-    /// Times that a cluster without points was given a new one
+    /// How often a cluster without points was given a new point.
     std::size_t num_reseeded = 0;
-    /// Clusters without points at the end: more clusters than points that differ
+    /// Clusters without points at the end. There are some if there are more clusters than different
+    /// points.
     std::size_t num_empty = 0;
-    /// Of points among all centres; points x assignments without bounds
+    /// Number of searches among all centres. Without bounds: points x assignments.
     std::size_t num_searches = 0;
     double seconds = 0.0;
 };
 
-/// Assigns points to their nearest centres and moves centres to their points' mean (of directions:
-/// on the sphere) until no point changes.
+/// Assigns points to their nearest centres and moves centres to the mean of their points, until no
+/// point changes its cluster. The mean of directions lies on the sphere.
 ///
-/// Differs from [S]: the mean lessens squares of distances, D adds up the distances themselves, so
+/// Differs from [S]: means reduce squares of distances, but D adds up the distances themselves, so
 /// plain means may go round in circles. Here a centre's direction, luminance and time each move to
-/// the mean only where that brings the sum of their distances down. So the objective never rises
-/// and the iteration ends. A cluster left without points restarts at the point farthest from its
-/// centre.
+/// the mean only if the move reduces the sum of their distances. So the objective never rises and
+/// the iteration ends. A cluster without points restarts at the point farthest from its centre.
 ///
-/// Parallel; bitwise the same for any number of threads, and as without bounds. Throws
-/// std::invalid_argument for weights that are negative or not finite, and for 0 clusters.
+/// Threads: parallel; the result is bitwise the same for any number of threads, and the same as
+///          without bounds.
+/// Throws:  std::invalid_argument for weights that are negative or not finite, and for 0 clusters.
 [[nodiscard]] KMeans k_means(std::span<const ClusterPoint> points,
                              const KMeansOptions& options = {});
 

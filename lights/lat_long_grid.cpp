@@ -14,8 +14,6 @@ namespace relumine::lights {
 
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 bool is_radiance(const glm::vec3& value) {
     return std::isfinite(value.r) && std::isfinite(value.g) && std::isfinite(value.b) &&
            value.r >= 0.0f && value.g >= 0.0f && value.b >= 0.0f;
@@ -51,23 +49,24 @@ LatLongGrid::LatLongGrid(const cubemap::EnvironmentImage& image) : pixels_(image
                                                 image.width, image.height, image.pixels.size()));
     check_radiance(pixels_, image.width);
 
-    // sin a - sin b and so on as products, without cancellation between narrow borders
+    // Differences such as sin a - sin b are written as products, so narrow borders cause no
+    // cancellation.
     const std::vector<double> down = cubemap::cell_borders(image.height, image.sampling);
     for (std::uint32_t y = 0; y < image.height; ++y) {
-        const double top = Pi * down[y];
-        const double bottom = Pi * down[y + 1];
+        const double top = std::numbers::pi * down[y];
+        const double bottom = std::numbers::pi * down[y + 1];
         const double height = 2.0 * std::sin(0.5 * (top + bottom)) * std::sin(0.5 * (bottom - top));
-        // integral of sin^2 = (bottom - top) / 2 - (sin 2 bottom - sin 2 top) / 4
+        // The integral of sin^2 is (bottom - top) / 2 - (sin 2 bottom - sin 2 top) / 4.
         const double across =
             0.5 * (bottom - top) - 0.5 * std::cos(top + bottom) * std::sin(bottom - top);
-        // integral of sin cos = (sin^2 bottom - sin^2 top) / 2
+        // The integral of sin cos is (sin^2 bottom - sin^2 top) / 2.
         const double upwards = 0.5 * std::sin(top + bottom) * std::sin(bottom - top);
         rows_.push_back({top, bottom, height, across, upwards});
     }
     const std::vector<double> across = cubemap::cell_borders(image.width, image.sampling);
     for (std::uint32_t x = 0; x < image.width; ++x) {
-        const double left = 2.0 * Pi * (0.5 - across[x]); // the left edge is longitude +pi
-        const double right = 2.0 * Pi * (0.5 - across[x + 1]);
+        const double left = 2.0 * std::numbers::pi * (0.5 - across[x]); // the left edge is longitude +pi
+        const double right = 2.0 * std::numbers::pi * (0.5 - across[x + 1]);
         const double half = 0.5 * (left - right);
         const double middle = 0.5 * (left + right);
         columns_.push_back({left, right, 2.0 * half, 2.0 * std::sin(middle) * std::sin(half),

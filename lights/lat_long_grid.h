@@ -1,5 +1,5 @@
-// A lat-long environment as patches of constant radiance on the sphere: what all placing of lights
-// works on.
+// A lat-long environment as patches of constant radiance on the sphere. All methods that place
+// lights work on it.
 #pragma once
 
 #include <cstddef>
@@ -11,28 +11,17 @@
 #include <glm/vec4.hpp>
 
 #include "cubemap/image/environment.h"
+#include "lights/luminance.h"
+#include "lights/pixel_rectangle.h"
 
 namespace relumine::lights {
-
-/// Pixels [x0, x1) x [y0, y1) of a lat-long.
-struct PixelRectangle {
-    std::uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    [[nodiscard]] std::uint32_t width() const { return x1 - x0; }
-    [[nodiscard]] std::uint32_t height() const { return y1 - y0; }
-    bool operator==(const PixelRectangle&) const = default;
-};
-
-/// Luminance of linear RGB with the weights that [D05] takes from ITU-R BT.709.
-[[nodiscard]] inline double luminance(const glm::dvec3& rgb) {
-    return 0.2125 * rgb.r + 0.7154 * rgb.g + 0.0721 * rgb.b;
-}
 
 /// A lat-long image with the place of its pixels. Refers to the image's pixels: the image must
 /// outlive it.
 class LatLongGrid {
 public:
-    /// Throws std::invalid_argument for another layout, a wrong number of pixels, or radiance that
-    /// is negative or not finite.
+    /// Throws:  std::invalid_argument for another layout, a wrong number of pixels, or radiance
+    ///          that is negative or not finite.
     explicit LatLongGrid(const cubemap::EnvironmentImage& image);
 
     [[nodiscard]] std::uint32_t width() const {
@@ -48,11 +37,12 @@ public:
     [[nodiscard]] double solid_angle(std::uint32_t x, std::uint32_t y) const {
         return rows_[y].height * columns_[x].width;
     }
-    /// Luminance times solid angle: the pixel's energy.
+    /// Returns the pixel's energy: luminance times solid angle.
     [[nodiscard]] double energy(std::uint32_t x, std::uint32_t y) const {
         return luminance(radiance(x, y)) * solid_angle(x, y);
     }
-    /// The integral of w over the pixel's patch in x, y, z, and its solid angle in w.
+    /// Returns the integral of w over the pixel's footprint in x, y and z, and the footprint's
+    /// solid angle in w.
     [[nodiscard]] glm::dvec4 moments(std::uint32_t x, std::uint32_t y) const {
         const Row& row = rows_[y];
         const Column& column = columns_[x];
@@ -61,25 +51,26 @@ public:
     }
 
     [[nodiscard]] double solid_angle(const PixelRectangle& region) const;
-    /// [D05]: width of a region in radians, weighted by the cosine of the inclination at its
-    /// centre.
+    /// Returns the width of a region in radians, weighted by the cosine of the inclination at its
+    /// centre [D05].
     [[nodiscard]] double angular_width(const PixelRectangle& region) const;
+    /// Returns the height of a region in radians.
     [[nodiscard]] double angular_height(const PixelRectangle& region) const;
-    /// Unit direction of a region's centre in the image.
+    /// Returns the unit direction of a region's centre in the image.
     [[nodiscard]] glm::dvec3 centre(const PixelRectangle& region) const;
-    /// Unit direction inside a pixel: at a fraction of its width from the left and of its solid
-    /// angle from the top.
+    /// Returns a unit direction inside a pixel: at a fraction of its width from the left and of its
+    /// solid angle from the top.
     [[nodiscard]] glm::dvec3 direction(std::uint32_t x, std::uint32_t y, double across,
                                        double down) const;
 
 private:
-    /// Polar angles of a row's borders and the integrals over it per unit of longitude: solid
-    /// angle, of sine and cosine of the polar angle over solid angle.
+    /// Polar angles of a row's borders, and three integrals over the row per unit of longitude: its
+    /// solid angle, and the sine and cosine of the polar angle over solid angle.
     struct Row {
         double top, bottom, height, across, upwards;
     };
-    /// Longitudes of a column's borders and the integrals over it of 1, sine and cosine of the
-    /// longitude.
+    /// Longitudes of a column's borders, and three integrals over the column: of 1, sine and cosine
+    /// of the longitude.
     struct Column {
         double left, right, width, sine, cosine;
     };

@@ -21,7 +21,7 @@ bool same_light(std::span<const FrameSample> a, std::span<const FrameSample> b) 
                       });
 }
 
-/// The samples as points of [S, Eq. 4-6]; repeated frames share their time.
+/// Returns the samples as points of [S, Eq. 4-6]. Repeated frames share their time.
 std::vector<ClusterPoint> points_of(const FrameSamples& samples) {
     double max_luminance = 0.0;
     std::vector<std::size_t> begin(samples.num_frames + 1, 0);
@@ -49,7 +49,7 @@ std::vector<ClusterPoint> points_of(const FrameSamples& samples) {
     return points;
 }
 
-/// A raised cosine from -reach to reach, adding up to 1.
+/// Returns a raised cosine from -reach to reach that adds up to 1.
 std::vector<double> fade_kernel(std::size_t reach) {
     std::vector<double> kernel(2 * reach + 1);
     double sum = 0.0;
@@ -63,8 +63,8 @@ std::vector<double> fade_kernel(std::size_t reach) {
     return kernel;
 }
 
-/// The strengths, smoothed. What would leave the sequence at an end is reflected there, so that the
-/// total stays and what is constant stays so.
+/// Returns the strengths, smoothed. What would leave the sequence at an end is reflected there, so
+/// the total stays and a constant stays constant.
 std::vector<glm::dvec3> faded(const std::vector<glm::dvec3>& strengths,
                               const std::vector<double>& kernel) {
     const auto last = static_cast<std::ptrdiff_t>(strengths.size()) - 1;
@@ -85,7 +85,7 @@ std::vector<glm::dvec3> faded(const std::vector<glm::dvec3>& strengths,
     return result;
 }
 
-/// The light's irradiance in every frame of the sequence.
+/// Returns the light's irradiance in every frame of the sequence.
 std::vector<glm::dvec3> strengths(const LightCluster& cluster, std::size_t num_frames,
                                   Strength strength) {
     std::vector<glm::dvec3> result(num_frames, glm::dvec3(0.0));
@@ -122,7 +122,7 @@ LightClusters cluster_lights(const FrameSamples& samples, const KMeansOptions& o
         cluster.light.irradiance += sample.irradiance;
         cluster.light.solid_angle += sample.solid_angle;
         directions += sample.direction;
-        // samples come frame after frame
+        // Samples come frame after frame, so the span ends here for now.
         cluster.frame_irradiance.resize(cluster.num_frames(), glm::dvec3(0.0));
         cluster.frame_irradiance.back() += sample.irradiance;
         ++cluster.num_samples;
@@ -133,7 +133,7 @@ LightClusters cluster_lights(const FrameSamples& samples, const KMeansOptions& o
             continue;
         const auto span = static_cast<double>(cluster.num_frames());
         const double length = glm::length(directions);
-        // Directions that cancel have no mean: the centre stays.
+        // Directions that cancel have no mean. The centre then stays.
         cluster.light.direction = length > 1e-9 * static_cast<double>(cluster.num_samples)
                                       ? directions / length
                                       : result.k_means.centres[j].direction; // [S, Eq. 7]

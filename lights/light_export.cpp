@@ -38,7 +38,7 @@ const FormatName& names_of(LightFormat format) {
 
 using Out = std::back_insert_iterator<std::string>;
 
-/// A name for a comment: ASCII, and nothing in it that could end a comment or a string.
+/// Returns a name for a comment: ASCII, without anything that could end a comment or a string.
 std::string harmless(const std::string& name) {
     std::string result;
     for (const char c : name) {
@@ -50,7 +50,7 @@ std::string harmless(const std::string& name) {
     return result;
 }
 
-/// "64 lights of grace.hdr by median-cut": the first line of every file's head.
+/// Returns the first line of every file's head: "64 lights of grace.hdr by median-cut".
 std::string title(const LightList& list) {
     std::string result =
         fmt::format("{} distant light{}", list.lights.size(), list.lights.size() == 1 ? "" : "s");
@@ -70,12 +70,12 @@ constexpr std::string_view Unit =
 constexpr std::string_view Axes =
     "Axes: right-handed, +Y up, as the environment's: the centre of a lat-long is +Z.";
 
-/// Diameter of a disc of that solid angle, 2 pi (1 - cos(angle / 2)), in radians.
+/// Returns the diameter in radians of a disc with the solid angle 2 pi (1 - cos(diameter / 2)).
 double angular_diameter(double solid_angle) {
     return 4.0 * std::asin(std::clamp(std::sqrt(solid_angle / (4.0 * std::numbers::pi)), 0.0, 1.0));
 }
 
-/// A colour with a channel of 1 at most, and the rest.
+/// A colour whose largest channel is 1, and the intensity to multiply it by.
 struct ColourAndIntensity {
     glm::dvec3 colour{1.0};
     double intensity = 0.0;
@@ -85,8 +85,8 @@ ColourAndIntensity split(const glm::dvec3& irradiance) {
     return largest > 0.0 ? ColourAndIntensity{irradiance / largest, largest} : ColourAndIntensity{};
 }
 
-/// Right, up and back axes of a light whose back axis, local +Z, points at it: it shines along
-/// local -Z.
+/// Right, up and back axes of a light. The back axis, local +Z, points at the light, which shines
+/// along local -Z.
 struct LightFrame {
     glm::dvec3 right, up, back;
 };

@@ -1,5 +1,5 @@
-// Light lists as text for other programs. Units and axes of each: docs/light-lists.md and the head
-// of each file.
+// Light lists as text for other programs. docs/light-lists.md and the head of each file state units
+// and axes.
 #pragma once
 
 #include <array>
@@ -12,50 +12,54 @@
 
 namespace relumine::lights {
 
-/// What a light list can be written as. Only Json is read back.
+/// The formats of a light list. Only Json can be read back.
 enum class LightFormat {
-    /// .json: lights/light_file.h
+    /// .json, see lights/light_file.h.
     Json,
-    /// .csv: direction, irradiance, solid angle per line
+    /// .csv: direction, irradiance and solid angle per line.
     Csv,
-    /// .pbrt: pbrt-v4, LightSource "distant"
+    /// .pbrt: pbrt-v4, LightSource "distant".
     Pbrt,
-    /// .xml: Mitsuba 3, emitter "directional"
+    /// .xml: Mitsuba 3, emitter "directional".
     Mitsuba,
-    /// .usda: UsdLux DistantLight
+    /// .usda: UsdLux DistantLight.
     Usd,
-    /// .py: a script for Blender 2.8 or newer that makes sun lamps
+    /// .py: a script that makes sun lamps in Blender 2.8 or newer.
     Blender,
-    /// .gltf: KHR_lights_punctual, directional
+    /// .gltf: KHR_lights_punctual, directional.
     Gltf,
 };
 inline constexpr std::array AllLightFormats = {
     LightFormat::Json, LightFormat::Csv,     LightFormat::Pbrt, LightFormat::Mitsuba,
     LightFormat::Usd,  LightFormat::Blender, LightFormat::Gltf};
 
-/// "json", "csv", "pbrt", "mitsuba", "usd", "blender", "gltf".
+/// Returns "json", "csv", "pbrt", "mitsuba", "usd", "blender" or "gltf".
 [[nodiscard]] std::string_view name(LightFormat format);
-/// ".json", ".csv", ".pbrt", ".xml", ".usda", ".py", ".gltf".
+/// Returns ".json", ".csv", ".pbrt", ".xml", ".usda", ".py" or ".gltf".
 [[nodiscard]] std::string_view extension(LightFormat format);
-/// The format of a name, or of a path's extension; nothing for others.
+/// Returns the format of a name. Nothing for an unknown name.
 [[nodiscard]] std::optional<LightFormat> light_format_named(std::string_view name);
+/// Returns the format of a path's extension. Nothing for any other extension.
 [[nodiscard]] std::optional<LightFormat> light_format_of(const std::filesystem::path& path);
 
+/// Choices of the formats that have them.
 struct ExportOptions {
-    /// Lights as wide as the part of the sphere they stand for, where the format knows an angle
-    /// (USD, Blender): softer shadows. Otherwise all light comes from one direction.
+    /// True: lights are as wide as the part of the sphere they stand for, in formats with an angle
+    /// (USD, Blender), and shadows are softer. False: all light comes from one direction.
     bool soft = false;
-    /// glTF's unit is the lux. Most viewers take it for whatever unit the materials and other
-    /// lights are in: 1. For true lux of an environment in W/(m^2 sr): 683.
+    /// Factor for glTF, whose unit is the lux. 1 suits most viewers, which take the lux for the
+    /// unit of the materials and other lights. 683 gives true lux for an environment in W/(m^2 sr).
     double lumens_per_watt = 1.0;
 };
 
-/// The file's text; all numbers read back to the same doubles, but colours times intensity where a
-/// format has both. Throws std::invalid_argument for lists that validate() refuses.
+/// Returns the file's text. All numbers read back to the same doubles; only colours times intensity
+/// may not, in formats that have both.
+/// Throws:  std::invalid_argument for lists that validate() refuses.
 [[nodiscard]] std::string light_text(const LightList& list, LightFormat format,
                                      const ExportOptions& options = {});
 
-/// Writes light_text(). Whole or not at all. Throws std::runtime_error naming the file, too.
+/// Writes light_text(). The file appears whole or not at all.
+/// Throws:  as light_text(), and std::runtime_error naming the file.
 void export_lights(const std::filesystem::path& path, const LightList& list, LightFormat format,
                    const ExportOptions& options = {});
 

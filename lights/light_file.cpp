@@ -22,7 +22,7 @@ namespace {
 constexpr double Version = 1.0;
 constexpr double FullSphere = 12.566370614359172;
 
-/// What is wrong with a light, or nothing. Also what is told of a file's lights.
+/// A fault of a light, for the caller and for messages about a file.
 struct Fault {
     std::string_view field;
     std::string expected, got;
@@ -43,7 +43,7 @@ std::optional<Fault> fault(const DistantLight& light) {
             return Fault{"irradiance", "irradiance that is finite and not negative",
                          text(light.irradiance)};
     }
-    // Rounding of sums may leave a whole sphere a little larger.
+    // Rounding of sums may make a whole sphere a little larger.
     if (!(light.solid_angle >= 0.0 && light.solid_angle <= FullSphere * (1.0 + 1e-9)))
         return Fault{"solid_angle", "a solid angle from 0 to 4 pi",
                      fmt::format("{}", light.solid_angle)};
@@ -107,7 +107,7 @@ private:
                 json_.number(array[2], what)};
     }
 
-    /// Numbers beyond 2^53 are not whole in JSON.
+    /// Numbers beyond 2^53 are not exact in JSON.
     std::uint64_t seed(const files::JsonValue& value) const {
         const double number = json_.number(value, "\"seed\"");
         if (!(number >= 0.0 && number <= 0x1p53 && number == std::floor(number)))
@@ -128,7 +128,8 @@ private:
         if (const auto wrong = fault(result))
             json_.refuse(files::JsonReader::find(members, wrong->field)->line, wrong->expected,
                          wrong->got);
-        // What was written by hand or with few digits; our own files stay as they are, bit by bit.
+        // Directions written by hand or with few digits are normalised. Our own files stay as they
+        // are, bit by bit.
         if (std::abs(glm::length(result.direction) - 1.0) > 1e-12)
             result.direction = glm::normalize(result.direction);
         return result;
@@ -171,8 +172,8 @@ std::string json_text(const LightList& list) {
     if (list.seed)
         head["seed"] = *list.seed;
     try {
-        // One light per line: a list of hundreds stays readable, and an error's line is the
-        // light's.
+        // One light per line keeps a list of hundreds readable, and an error names the line of its
+        // light.
         std::string result = head.dump(2);
         result.resize(result.size() - 2); // "\n}"
         result += ",\n  \"lights\": [";

@@ -1,4 +1,4 @@
-// Light lists in JSON files. The format: docs/light-lists.md.
+// Light lists in JSON files. docs/light-lists.md describes the format.
 #pragma once
 
 #include <cstdint>
@@ -11,29 +11,32 @@
 
 namespace relumine::lights {
 
-/// What a light list file holds: the lights, and where they come from as far as it is known.
+/// The content of a light list file: the lights, and their origin if it is known.
 struct LightList {
     std::vector<DistantLight> lights = {};
-    /// Name of the environment's file; empty: not known
+    /// Name of the environment's file. Empty: not known.
     std::string environment = {};
-    /// How they were chosen; empty: not known
+    /// How the lights were chosen. Empty: not known.
     std::string method = {};
     std::optional<std::uint64_t> seed = {};
 };
 
-/// Reads a file. Throws std::runtime_error "path:line: expected X, got Y" for anything that is not
-/// as the format's page says: unknown fields, no light at all, irradiance that is negative or not
-/// finite, a direction whose length is not 1 within 0.001.
+/// Reads a file.
+/// Throws:  std::runtime_error "path:line: expected X, got Y" for anything that the format does not
+///          allow: unknown fields, no light at all, irradiance that is negative or not finite, a
+///          direction whose length differs from 1 by more than 0.001.
 [[nodiscard]] LightList load_lights(const std::filesystem::path& path);
 
-/// The text of a file that load_lights() reads back to the same values, bit by bit. Throws
-/// std::invalid_argument for what load_lights() would refuse.
+/// Returns the text of a file that load_lights() reads back to the same values, bit by bit.
+/// Throws:  std::invalid_argument for lists that load_lights() would refuse.
 [[nodiscard]] std::string json_text(const LightList& list);
 
-/// Writes json_text(). Whole or not at all. Throws std::runtime_error naming the file, too.
+/// Writes json_text(). The file appears whole or not at all.
+/// Throws:  as json_text(), and std::runtime_error naming the file.
 void save_lights(const std::filesystem::path& path, const LightList& list);
 
-/// Throws std::invalid_argument "expected X, got Y" for lights that no file may hold.
+/// Checks a list.
+/// Throws:  std::invalid_argument "expected X, got Y" for lights that no file may hold.
 void validate(const LightList& list);
 
 } // namespace relumine::lights

@@ -23,7 +23,7 @@ public:
         return std::max(table_.sum(region), 0.0);
     }
 
-    /// [D05] step 2: along the longest dimension, such that the energy is divided evenly.
+    /// [D05] step 2: cuts along the longest dimension and divides the energy evenly.
     [[nodiscard]] Halves cut(const PixelRectangle& region) const {
         const double whole = energy(region);
         if (whole <= 0.0)
@@ -32,8 +32,8 @@ public:
         const auto halves = [&](std::uint32_t at) {
             return at_column ? cut_at_column(region, at) : cut_at_row(region, at);
         };
-        // The first cut that leaves half of the energy or more before it: the energy before a cut
-        // grows with it.
+        // Finds the first cut with half of the energy or more before it. The energy before a cut
+        // grows with its position.
         std::uint32_t first = (at_column ? region.x0 : region.y0) + 1;
         std::uint32_t last = (at_column ? region.x1 : region.y1) - 1;
         const std::uint32_t lowest = first;
@@ -44,7 +44,7 @@ public:
             else
                 first = middle + 1;
         }
-        // Of it and the one before, the better.
+        // This cut or the one before, whichever divides more evenly.
         const auto imbalance = [&](std::uint32_t at) {
             return std::abs(2.0 * energy(halves(at).first) - whole);
         };

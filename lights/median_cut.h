@@ -1,4 +1,4 @@
-// Regions of equal energy.
+// Cuts a lat-long into regions of equal energy.
 // Based on: [D05] P. Debevec, "A Median Cut Algorithm for Light Probe Sampling", SIGGRAPH 2005
 // poster.
 #pragma once
@@ -10,10 +10,12 @@
 
 namespace relumine::lights {
 
-/// A number of regions that is a power of two comes from cutting every region in each round, as the
-/// paper has it; regions of one pixel stay as they are. Any other number, and what such regions
-/// leave short, comes from cutting the region with most energy. Cuts divide the energy as evenly as
-/// columns or rows allow. O(pixels) for the table, then O(log pixels) per region.
+/// Returns `num_regions` regions. For a power of two, each round cuts every region, as in the
+/// paper; regions of one pixel stay as they are. For any other number, and for regions still
+/// missing then, the region with the most energy is cut next. Cuts divide the energy as evenly as
+/// columns or rows allow.
+///
+/// Cost:    O(pixels) for the table, then O(log pixels) per region.
 [[nodiscard]] std::vector<PixelRectangle> median_cut(const LatLongGrid& grid,
                                                      std::size_t num_regions);
 

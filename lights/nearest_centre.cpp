@@ -31,7 +31,7 @@ NearestCentre::Found NearestCentre::find(const ClusterPoint& point, std::uint32_
     const auto time = static_cast<float>(weights_.time * point.time);
     const auto margin = static_cast<float>(slack(weights_));
     float* const bound = bounds.data();
-    // No branches, so that compilers make vectors of it.
+    // The loop has no branches, so compilers vectorise it.
     for (std::size_t i = 0; i < num_centres; ++i) {
         const float dx = x_[i] - px;
         const float dy = y_[i] - py;
@@ -45,7 +45,7 @@ NearestCentre::Found NearestCentre::find(const ClusterPoint& point, std::uint32_
                 .others = std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < num_centres; ++i) {
         const auto least = static_cast<double>(bound[i]);
-        // A centre that is neither the nearest nor the next one needs no look.
+        // A centre that is neither the nearest nor the second nearest needs no exact distance.
         if (least >= found.others || i == guess)
             continue;
         if (least > found.distance) {

@@ -1,4 +1,4 @@
-// Which of some hundred centres is nearest to a sample.
+// Finds the nearest of some hundred centres.
 #pragma once
 
 #include <cstddef>
@@ -10,27 +10,28 @@
 
 namespace relumine::lights {
 
-/// Finds the nearest centre as a loop over all of them would, the first of equally near ones, but
-/// works out the arc sine of a few only: a chord is never longer than its arc, so
-///     D >= alpha |u - v| / pi + beta L + gamma T,
-/// in float and for many centres at once, leaves those that could be the nearest.
+/// Finds the centre nearest to a point, as a loop over all centres would: of equally near centres
+/// the first. Only a few arc sines are computed. A chord is never longer than its arc, so
+///     D >= alpha |u - v| / pi + beta L + gamma T.
+/// This bound, in float and for many centres at once, leaves the centres that could be the nearest.
 class NearestCentre {
 public:
-    /// The centres are copied, in float for the bound; they must outlive it, too.
+    /// Copies the centres in float for the bound. `centres` must also outlive the object.
     NearestCentre(std::span<const ClusterPoint> centres, const ClusterWeights& weights);
 
     struct Found {
         std::uint32_t centre = 0;
         double distance = 0.0;
-        /// No other centre is nearer than this; infinite where there is none
+        /// No other centre is nearer than this. Infinite if there is no other centre.
         double others = 0.0;
     };
-    /// `guess`: a centre that is likely to be near. The result does not depend on it. `bounds` is
-    /// room for work, resized.
+    /// Finds the centre nearest to a point. `guess` is a centre that is likely to be near; the
+    /// result does not depend on it. `bounds` is scratch space and is resized.
     [[nodiscard]] Found find(const ClusterPoint& point, std::uint32_t guess,
                              std::vector<float>& bounds) const;
 
-    /// What float and rounding may do to a bound on D: bounds are trusted beyond this only.
+    /// Returns the largest error that float and rounding may cause in a bound on D. Bounds are
+    /// trusted only beyond this slack.
     [[nodiscard]] static double slack(const ClusterWeights& weights) {
         return 2e-6 * (weights.position + weights.luminance + weights.time);
     }
@@ -38,7 +39,7 @@ public:
 private:
     std::span<const ClusterPoint> centres_;
     ClusterWeights weights_;
-    /// Times their weight, x, y and z over pi
+    /// Coordinates times their weight; x, y and z also over pi.
     std::vector<float> x_, y_, z_, luminance_, time_;
 };
 

@@ -68,14 +68,14 @@ glm::dvec3 power(const LatLongGrid& grid) {
 cubemap::EnvironmentImage lat_long_of(const cubemap::CubeMap& map) {
     cubemap::EnvironmentImage image =
         cubemap::to_image(map, cubemap::Layout::LatLong, 4 * map.resolution, 2 * map.resolution);
-    // What is negative in the map itself stays, to be refused.
+    // Values that are negative in the map itself stay, so they are refused later.
     const auto is_positive = [](const glm::vec3& texel) {
         return texel.r >= 0.0f && texel.g >= 0.0f && texel.b >= 0.0f;
     };
     if (image.pixels.empty() || !std::all_of(map.texels.begin(), map.texels.end(), is_positive))
         return image;
-    // The mean over overlaps of patches may leave -1e-28 beside a bright texel, and of a single
-    // bright texel up to 1e-6 is lost: lights have to keep the power better than that.
+    // The mean over overlaps of footprints may leave -1e-28 beside a bright texel, and may lose up
+    // to 1e-6 of a single bright texel. Lights have to keep the power better than this.
     for (glm::vec3& pixel : image.pixels)
         pixel = glm::max(pixel, glm::vec3(0.0f));
     const glm::dvec3 wanted = cubemap::total_power(map);

@@ -32,7 +32,7 @@ DistantLight light_of(const LatLongGrid& grid, const PixelRectangle& region) {
     light.solid_angle = grid.solid_angle(region);
     glm::dvec3 moment(0.0);
     double energy = 0.0;
-    // Row by row, so that sums of very many pixels keep their last digits.
+    // Sums go row by row, so sums of very many pixels keep their last digits.
     for (std::uint32_t y = region.y0; y < region.y1; ++y) {
         glm::dvec3 row_irradiance(0.0);
         glm::dvec3 row_moment(0.0);
@@ -49,7 +49,7 @@ DistantLight light_of(const LatLongGrid& grid, const PixelRectangle& region) {
         moment += row_moment;
         energy += row_energy;
     }
-    // Shorter than this, what is left is rounding (1e-16 per pixel) and says nothing.
+    // A shorter vector is rounding (1e-16 per pixel) and has no meaning.
     constexpr double Shortest = 1e-9;
     const double length = glm::length(moment);
     light.direction =

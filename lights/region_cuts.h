@@ -1,4 +1,5 @@
-// Cutting a lat-long into regions, one light each: what median cut and variance minimisation share.
+// Cuts a lat-long into regions with one light each. Median cut and variance minimisation share
+// these functions.
 #pragma once
 
 #include <cstddef>
@@ -13,24 +14,25 @@
 
 namespace relumine::lights {
 
-/// A region's two parts.
+/// The two parts of a region.
 using Halves = std::pair<PixelRectangle, PixelRectangle>;
 
-/// The parts left and right of column `at` (or above and below row `at`).
+/// Return the parts left and right of column `at`, or above and below row `at`.
 [[nodiscard]] Halves cut_at_column(const PixelRectangle& region, std::uint32_t at);
 [[nodiscard]] Halves cut_at_row(const PixelRectangle& region, std::uint32_t at);
 
-/// True if a region is cut across its width: [D05]'s longest dimension, unless that is a single
-/// pixel.
+/// Returns true if a region is to be cut at a column: the width is the longest dimension of [D05]
+/// and has more than one pixel, or the height has only one.
 [[nodiscard]] bool is_cut_at_column(const LatLongGrid& grid, const PixelRectangle& region);
 
-/// The cut in the middle of the longest dimension, for regions without light. The region has two
-/// pixels at least.
+/// Cuts a region in the middle of its longest dimension; used for regions without light. The region
+/// has at least two pixels.
 [[nodiscard]] Halves cut_in_the_middle(const LatLongGrid& grid, const PixelRectangle& region);
 
-/// Regions in the order they came to be, until there are `num_regions` (at most the pixels of
-/// `grid`). `weight(region)` says which to cut next: the heaviest, then that of the largest solid
-/// angle, then the first; `cut(region)` cuts one of two pixels or more.
+/// Cuts regions until there are `num_regions`, at most the number of pixels of `grid`. The next
+/// region to cut is the one with the largest `weight(region)`, then the largest solid angle, then
+/// the lowest index. `cut(region)` gets regions of at least two pixels. The first half takes the
+/// place of its region; the second goes to the end.
 template<typename Weight, typename Cut>
 void cut_heaviest(const LatLongGrid& grid, std::vector<PixelRectangle>& regions,
                   std::size_t num_regions, const Weight& weight, const Cut& cut) {
@@ -61,10 +63,12 @@ void cut_heaviest(const LatLongGrid& grid, std::vector<PixelRectangle>& regions,
     }
 }
 
-/// One light per region: irradiance the sum of radiance times solid angle of its pixels; direction
-/// the centroid of its energy on the sphere, or the region's centre where it has no energy or none
-/// in particular (a whole sphere of constant radiance). Differs from [D05]: the centroid of
-/// directions, not of pixel coordinates, so that it is right near the poles.
+/// Returns one light per region. Its irradiance is the sum of radiance times solid angle over the
+/// region's pixels. Its direction is the centroid of the region's energy on the sphere, or the
+/// region's centre if there is no energy or no centroid (a whole sphere of constant radiance).
+///
+/// Differs from [D05]: the centroid is taken over directions, not pixel coordinates, so it is right
+/// near the poles.
 [[nodiscard]] std::vector<DistantLight> lights_of(const LatLongGrid& grid,
                                                   const std::vector<PixelRectangle>& regions);
 

@@ -14,18 +14,21 @@
 
 namespace relumine::lights {
 
-/// Prefix sums of values of type T (double, or a vector of doubles) over the columns and rows of an
-/// image. A sum is off by rounding of the whole image's sum, about 1e-16 of it, so that of a
-/// rectangle of zeros need not be 0 exactly.
+/// Prefix sums over the columns and rows of an image. Values are of type T: double, or a vector of
+/// doubles.
+///
+/// Error:   a sum has the rounding error of the whole image's sum, about 1e-16 of it. The sum over
+///          a rectangle of zeros may therefore differ from 0.
 template<typename T>
 class SummedAreaTable {
 public:
-    /// `row_values(y, T* row)` writes the values of a row. O(pixels), in parallel; bitwise the same
-    /// for any number of threads.
+    /// Builds the table. `row_values(y, T* row)` writes the values of a row.
+    ///
+    /// Cost:    O(pixels), in parallel; bitwise the same for any number of threads.
     template<typename RowValues>
     SummedAreaTable(std::uint32_t width, std::uint32_t height, const RowValues& row_values);
 
-    /// Over pixels [x0, x1) x [y0, y1).
+    /// Returns the sum over pixels [x0, x1) x [y0, y1).
     [[nodiscard]] T sum(const PixelRectangle& region) const {
         return (at(region.x1, region.y1) - at(region.x0, region.y1)) -
                (at(region.x1, region.y0) - at(region.x0, region.y0));
@@ -37,7 +40,7 @@ private:
     }
 
     std::size_t stride_;
-    /// [(height + 1) * (width + 1)]: sums over the pixels left of and above
+    /// [(height + 1) * (width + 1)]: sums over the pixels to the left and above.
     std::unique_ptr<T[]> table_;
 };
 
@@ -55,7 +58,7 @@ SummedAreaTable<T>::SummedAreaTable(std::uint32_t width, std::uint32_t height,
         for (std::size_t x = 1; x < stride_; ++x)
             row[x] += row[x - 1];
     });
-    // 4 KiB of each row at a time: the row above is still in the cache when it is added.
+    // Columns are added in strips of 4 KiB per row, so the row above is still in the cache.
     constexpr std::size_t Grain = 4096 / sizeof(T);
     tbb::parallel_for(
         tbb::blocked_range<std::size_t>(0, stride_, Grain),

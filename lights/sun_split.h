@@ -1,4 +1,4 @@
-// The sun taken out of an environment: one light, and the map without it.
+// Splits the sun off an environment: one light, and the map without the sun.
 #pragma once
 
 #include <optional>
@@ -10,11 +10,11 @@
 
 namespace relumine::lights {
 
-/// The sun as a light. Light and map together light a surface like the original (irradiance() of
-/// disc_light.h).
+/// Returns the sun as a light: a disc of its solid angle and of uniform radiance. Light and map
+/// together light a surface like the original.
 [[nodiscard]] DistantLight sun_light(const cubemap::Sun& sun);
 
-/// Puts the sky around the sun in its place. `sun` must have been found in this image or map.
+/// Replaces the sun by the sky around it. `sun` must have been found in this image or map.
 void remove_sun(cubemap::EnvironmentImage& image, const cubemap::Sun& sun);
 void remove_sun(cubemap::CubeMap& map, const cubemap::Sun& sun);
 
@@ -24,7 +24,7 @@ struct SunSplit {
     Map rest;
 };
 
-/// Both in one call; nothing where cubemap::find_sun() finds no sun.
+/// Finds the sun and splits it off. Returns nothing if cubemap::find_sun() finds no sun.
 [[nodiscard]] std::optional<SunSplit<cubemap::EnvironmentImage>>
 split_sun(const cubemap::EnvironmentImage& image);
 [[nodiscard]] std::optional<SunSplit<cubemap::CubeMap>> split_sun(const cubemap::CubeMap& map);

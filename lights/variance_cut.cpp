@@ -13,7 +13,7 @@ namespace relumine::lights {
 
 namespace {
 
-/// M0 - |M1|^2 / M0, never below 0 by rounding.
+/// Returns M0 - |M1|^2 / M0, and 0 where rounding makes it negative.
 double variance(const glm::dvec4& moments) {
     const glm::dvec3 first(moments);
     return moments.w > 0.0 ? std::max(moments.w - glm::dot(first, first) / moments.w, 0.0) : 0.0;
@@ -27,7 +27,7 @@ public:
                   row[x] = luminance(grid.radiance(x, y)) * grid.moments(x, y);
           }) {}
 
-    /// E^1.5 d = E sqrt(variance)
+    /// Returns E^1.5 d = E sqrt(variance).
     [[nodiscard]] double weight(const PixelRectangle& region) const {
         const glm::dvec4 moments = table_.sum(region);
         return std::max(moments.w, 0.0) * std::sqrt(variance(moments));

@@ -19,7 +19,7 @@ public:
     void add(double term) {
         std::size_t kept = 0;
         for (std::size_t i = 0; i < size_; ++i) {
-            // Knuth's sum: `sum` and what it lost.
+            // Knuth's sum: the rounded sum and its rounding error.
             const double sum = term + components_[i];
             const double other = sum - term;
             const double lost = (term - (sum - other)) + (components_[i] - other);
@@ -31,7 +31,7 @@ public:
             components_[kept++] = term;
         size_ = kept;
     }
-    /// The largest component outweighs all others.
+    /// The largest component exceeds all others together, so its sign is the sum's.
     [[nodiscard]] int sign() const {
         return size_ == 0 ? 0 : components_[size_ - 1] > 0.0 ? 1 : -1;
     }
@@ -41,7 +41,7 @@ private:
     std::size_t size_ = 0;
 };
 
-/// Products of two floats are exact in double.
+/// Returns the product of two floats, which is exact in double.
 double product(float a, float b) {
     return static_cast<double>(a) * static_cast<double>(b);
 }
@@ -63,8 +63,8 @@ bool coplanar(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const 
     for (int axis = 0; axis < 3; ++axis)
         if (a[axis] == b[axis] && a[axis] == c[axis] && a[axis] == d[axis])
             return true;
-    // In double the differences are off by 2^-53, their triple products by less than 16 times that:
-    // most points are clearly apart.
+    // In double the differences have an error of 2^-53, their triple products less than 16 times as
+    // much. Most points are clearly out of plane.
     const glm::dvec3 ab = glm::dvec3(b) - glm::dvec3(a);
     const glm::dvec3 ac = glm::dvec3(c) - glm::dvec3(a);
     const glm::dvec3 ad = glm::dvec3(d) - glm::dvec3(a);
@@ -77,8 +77,8 @@ bool coplanar(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const 
         1e-14 * volume(glm::abs(ab), glm::abs(ac), glm::abs(ad), 1.0))
         return false;
 
-    // The determinant of the points with a column of ones: the signed triple products of all
-    // threes.
+    // The determinant of the points with a column of ones: the signed triple products of each three
+    // points.
     ExactSum sum;
     const auto add_product = [&](float p, float q, float r, double sign) {
         const double pq = product(p, q);

@@ -1,4 +1,4 @@
-// Signs of determinants of float points, free of rounding.
+// Signs of determinants of float points, without rounding errors.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -6,11 +6,11 @@
 
 namespace relumine::mesh {
 
-/// +1 where a, b, c turn to the left, -1 to the right, 0 where they lie on a line. Exact for all
-/// finite floats.
+/// Returns +1 if a, b, c turn to the left, -1 if they turn to the right, 0 if they lie on a line.
+/// Exact for all finite floats.
 [[nodiscard]] int turn(const glm::vec2& a, const glm::vec2& b, const glm::vec2& c);
 
-/// Whether the four points lie in one plane. Exact for all finite floats.
+/// Returns true if the four points lie in one plane. Exact for all finite floats.
 [[nodiscard]] bool coplanar(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c,
                             const glm::vec3& d);
 

@@ -14,7 +14,7 @@ namespace relumine::mesh {
 
 namespace {
 
-/// An edge as its triangle runs along it.
+/// An edge in the direction of its triangle.
 struct HalfEdge {
     std::uint32_t from = 0;
     std::uint32_t to = 0;
@@ -24,7 +24,7 @@ struct HalfEdge {
     }
 };
 
-/// Sets that grow together.
+/// Disjoint sets that can be joined.
 class Regions {
 public:
     explicit Regions(std::size_t n) : parents_(n) {
@@ -43,14 +43,14 @@ private:
     std::vector<std::uint32_t> parents_;
 };
 
-/// A point's two coordinates other than `axis`: points of one plane keep their order of turns under
-/// that, or all reverse it.
+/// Returns a point's two coordinates other than `axis`. Turns of points in one plane all keep their
+/// direction in this projection, or all reverse it.
 glm::vec2 without(int axis, const glm::vec3& point) {
     return {point[(axis + 1) % 3], point[(axis + 2) % 3]};
 }
 
-/// How a triangle turns, seen along each axis. Triangles of one plane that turn the same way on
-/// every axis lie on the same side up.
+/// Returns how a triangle turns, seen along each axis. Triangles of one plane that turn the same
+/// way on every axis have the same side up.
 std::array<int, 3> turns(const TriangleMesh& mesh, const Triangle& triangle) {
     std::array<int, 3> result{};
     for (int axis = 0; axis < 3; ++axis)
@@ -60,23 +60,8 @@ std::array<int, 3> turns(const TriangleMesh& mesh, const Triangle& triangle) {
     return result;
 }
 
-/// The corners of the convex polygon that half-edges enclose: one loop, that turns one way, once
-/// around. Nothing where they do not.
-///
-/// All triangles of the region turn the same way, so each point off their edges is covered as often
-/// as the outline winds around it: once inside of such a loop, never outside.
-std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mesh,
-                                                         std::vector<HalfEdge> outline,
-                                                         const std::array<int, 3>& orientation) {
-    const auto seen =
-        std::find_if(orientation.begin(), orientation.end(), [](int t) { return t != 0; });
-    if (seen == orientation.end())
-        return std::nullopt;
-    const auto axis = static_cast<int>(seen - orientation.begin());
-    const auto at = [&](std::uint32_t vertex) {
-        return without(axis, mesh.positions[vertex]);
-    };
-
+/// Returns the vertices of half-edges in order if they are one loop. Returns nothing otherwise.
+std::optional<std::vector<std::uint32_t>> loop_of(std::vector<HalfEdge> outline) {
     std::sort(outline.begin(), outline.end(),
               [](const HalfEdge& a, const HalfEdge& b) { return a.from < b.from; });
     const auto leaving = [&](std::uint32_t vertex) {
@@ -97,29 +82,52 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
     } while (vertex != outline.front().from);
     if (loop.size() != outline.size())
         return std::nullopt; // there are holes
+    return loop;
+}
 
-    // Corners turn with the triangles; a vertex between two sides of one line must lie between
+/// Returns the corners of the convex polygon that half-edges enclose. Returns nothing unless they
+/// are one loop that turns one way and goes around once.
+///
+/// All triangles of the region turn the same way. So each point off their edges is covered as often
+/// as the outline winds around it: once inside such a loop, never outside.
+std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mesh,
+                                                         std::vector<HalfEdge> outline,
+                                                         const std::array<int, 3>& orientation) {
+    const auto seen =
+        std::find_if(orientation.begin(), orientation.end(), [](int t) { return t != 0; });
+    if (seen == orientation.end())
+        return std::nullopt;
+    const auto axis = static_cast<int>(seen - orientation.begin());
+    const auto loop = loop_of(std::move(outline));
+    if (!loop)
+        return std::nullopt;
+    const auto at = [&](std::size_t i) {
+        return without(axis, mesh.positions[(*loop)[i % loop->size()]]);
+    };
+
+    // Corners turn like the triangles. A vertex between two sides of one line must lie between
     // their ends.
     std::vector<std::uint32_t> corners;
-    int num_reversals = 0; // of the direction along the first coordinate: two for one time around
+    // Reversals of the direction along the first coordinate. An outline that goes around once has
+    // two.
+    int num_reversals = 0;
     int last_direction = 0;
     int first_direction = 0;
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-        const glm::vec2 before = at(loop[(i + loop.size() - 1) % loop.size()]);
-        const glm::vec2 here = at(loop[i]);
-        const glm::vec2 after = at(loop[(i + 1) % loop.size()]);
+    for (std::size_t i = 0; i < loop->size(); ++i) {
+        const glm::vec2 before = at(i + loop->size() - 1);
+        const glm::vec2 here = at(i);
+        const glm::vec2 after = at(i + 1);
         const int t = turn(before, here, after);
         if (t == -*seen)
             return std::nullopt;
         if (t != 0)
-            corners.push_back(loop[i]);
+            corners.push_back((*loop)[i]);
         else if ((before.x < here.x) != (here.x < after.x) ||
                  (before.y < here.y) != (here.y < after.y) ||
                  (before.x > here.x) != (here.x > after.x) ||
                  (before.y > here.y) != (here.y > after.y))
-            return std::nullopt; // turns back on itself
-        // A side that goes straight up or down counts as going right, or left, by its second
-        // coordinate.
+            return std::nullopt; // the outline turns back on itself
+        // For a side that goes straight up or down, the second coordinate decides.
         const int direction =
             here.x != after.x ? (here.x < after.x ? 1 : -1) : (here.y < after.y ? 1 : -1);
         num_reversals += static_cast<int>(last_direction != 0 && direction != last_direction);
@@ -133,52 +141,65 @@ std::optional<std::vector<std::uint32_t>> convex_outline(const TriangleMesh& mes
     return corners;
 }
 
-} // namespace
-
-std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
-    const std::size_t num_triangles = mesh.num_triangles();
+/// Returns all edges of all triangles. Edges between the same two vertices follow each other.
+std::vector<HalfEdge> edges_of(const TriangleMesh& mesh) {
     std::vector<HalfEdge> edges;
-    edges.reserve(3 * num_triangles);
-    for (std::uint32_t i = 0; i < num_triangles; ++i)
+    edges.reserve(3 * mesh.num_triangles());
+    for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
         for (std::size_t k = 0; k < 3; ++k)
             edges.push_back({mesh.triangles[i][k], mesh.triangles[i][(k + 1) % 3], i});
     std::sort(edges.begin(), edges.end(), [](const HalfEdge& a, const HalfEdge& b) {
         return a.ends() != b.ends() ? a.ends() < b.ends() : a.triangle < b.triangle;
     });
+    return edges;
+}
 
-    // Join the two triangles of an edge that lie in one plane, the same side up. Edges with one or
-    // many triangles stay outlines.
-    Regions regions(num_triangles);
+/// Returns true if the triangles on both sides of an edge lie in one plane with the same side up.
+bool lie_flat(const TriangleMesh& mesh, const HalfEdge& a, const HalfEdge& b) {
+    const auto has_three_corners = [&](const HalfEdge& edge) {
+        const auto& [i, j, k] = mesh.triangles[edge.triangle];
+        return i != j && j != k && k != i;
+    };
+    const auto opposite = [&](const HalfEdge& edge) {
+        const Triangle& t = mesh.triangles[edge.triangle];
+        return mesh.positions[*std::find_if(
+            t.begin(), t.end(), [&](std::uint32_t v) { return v != edge.from && v != edge.to; })];
+    };
+    if (!has_three_corners(a) || !has_three_corners(b) ||
+        !coplanar(mesh.positions[a.from], mesh.positions[a.to], opposite(a), opposite(b)))
+        return false;
+    const std::array<int, 3> orientation = turns(mesh, mesh.triangles[a.triangle]);
+    return orientation != std::array<int, 3>{} && // it has area, and is not folded over
+           orientation == turns(mesh, mesh.triangles[b.triangle]);
+}
+
+/// Joins the two triangles of an edge if they lie flat. Edges with one triangle or with many stay
+/// outlines. Returns whether each edge is inside a region.
+std::vector<bool> join_flat_triangles(const TriangleMesh& mesh, const std::vector<HalfEdge>& edges,
+                                      Regions& regions) {
     std::vector<bool> is_inner(edges.size(), false);
     for (std::size_t begin = 0, end = 0; begin < edges.size(); begin = end) {
         while (end < edges.size() && edges[end].ends() == edges[begin].ends())
             ++end;
         const HalfEdge& a = edges[begin];
-        if (end - begin != 2 || a.from != edges[begin + 1].to)
+        if (end - begin != 2 || a.from != edges[begin + 1].to ||
+            !lie_flat(mesh, a, edges[begin + 1]))
             continue;
-        const HalfEdge& b = edges[begin + 1];
-        const auto opposite = [&](const HalfEdge& edge) {
-            const Triangle& t = mesh.triangles[edge.triangle];
-            return mesh.positions[*std::find_if(t.begin(), t.end(), [&](std::uint32_t v) {
-                return v != edge.from && v != edge.to;
-            })];
-        };
-        const auto has_three_corners = [&](const HalfEdge& edge) {
-            const auto& [i, j, k] = mesh.triangles[edge.triangle];
-            return i != j && j != k && k != i;
-        };
-        if (!has_three_corners(a) || !has_three_corners(b) ||
-            !coplanar(mesh.positions[a.from], mesh.positions[a.to], opposite(a), opposite(b)))
-            continue;
-        const std::array<int, 3> orientation = turns(mesh, mesh.triangles[a.triangle]);
-        if (orientation == std::array<int, 3>{} ||
-            orientation != turns(mesh, mesh.triangles[b.triangle]))
-            continue; // no area, or folded over
-        regions.join(a.triangle, b.triangle);
+        regions.join(a.triangle, edges[begin + 1].triangle);
         is_inner[begin] = is_inner[begin + 1] = true;
     }
+    return is_inner;
+}
 
-    // The outlines of regions of more than two triangles, region by region.
+} // namespace
+
+std::vector<Triangle> with_flat_regions_merged(const TriangleMesh& mesh) {
+    const std::size_t num_triangles = mesh.num_triangles();
+    const std::vector<HalfEdge> edges = edges_of(mesh);
+    Regions regions(num_triangles);
+    const std::vector<bool> is_inner = join_flat_triangles(mesh, edges, regions);
+
+    // The outlines of regions with more than two triangles, region by region.
     std::vector<std::uint32_t> sizes(num_triangles, 0);
     for (std::uint32_t i = 0; i < num_triangles; ++i)
         ++sizes[regions.root(i)];

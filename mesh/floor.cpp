@@ -58,7 +58,7 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     mesh.triangles.reserve(first_triangle + 2 * std::size_t{n - 1} * (n - 1));
     for (std::uint32_t row = 0; row + 1 < n; ++row)
         for (std::uint32_t column = 0; column + 1 < n; ++column) {
-            // a b   +X to the right, +Z down: counter-clockwise seen from above is a c b.
+            // a b   +X to the right, +Z down. Seen from above, a c b is counter-clockwise.
             // c d
             const std::uint32_t a = static_cast<std::uint32_t>(first) + row * n + column;
             const std::uint32_t b = a + 1, c = a + n, d = c + 1;

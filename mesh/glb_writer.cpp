@@ -1,14 +1,15 @@
 #include "mesh/glb_writer.h"
 
 #include <bit>
+#include <cstdint>
 #include <cstring>
 #include <limits>
-#include <sstream>
 #include <stdexcept>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <tiny_gltf.h> // Debian's libtinygltf is compiled: its implementation, and stb's, stay in that library
+#include <nlohmann/json.hpp>
 
 namespace relumine::mesh {
 
@@ -17,52 +18,83 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
 static_assert(sizeof(glm::vec3) == 12 && sizeof(Triangle) == 12, "arrays are written as they are");
 
-/// Appends an array to the model's one buffer, with a view and an accessor of its own. Returns the
-/// accessor's index.
-template<class Value>
-int append(tinygltf::Model& model, std::span<const Value> values, int target, int component_type,
-           int type, std::size_t count) {
-    std::vector<unsigned char>& data = model.buffers[0].data;
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = data.size();
-    view.byteLength = values.size_bytes();
-    view.target = target;
-    data.resize(data.size() + values.size_bytes());
-    std::memcpy(data.data() + view.byteOffset, values.data(), values.size_bytes());
+// Numbers of the format.
+constexpr int Float = 5126, UnsignedInt = 5125;
+constexpr int ArrayBuffer = 34962, ElementArrayBuffer = 34963;
+constexpr int Triangles = 4;
+constexpr std::uint32_t Magic = 0x46546c67, Version = 2;
+constexpr std::uint32_t JsonChunk = 0x4e4f534a, BinaryChunk = 0x004e4942;
 
-    tinygltf::Accessor accessor;
-    accessor.bufferView = static_cast<int>(model.bufferViews.size());
-    accessor.componentType = component_type;
-    accessor.type = type;
-    accessor.count = count;
-    model.bufferViews.push_back(std::move(view));
-    model.accessors.push_back(std::move(accessor));
-    return static_cast<int>(model.accessors.size()) - 1;
-}
+/// How an accessor describes its array.
+struct ArrayKind {
+    int component_type;
+    const char* type;
+    int target;
+};
 
-int append(tinygltf::Model& model, std::span<const glm::vec3> values) {
-    return append(model, values, TINYGLTF_TARGET_ARRAY_BUFFER, TINYGLTF_COMPONENT_TYPE_FLOAT,
-                  TINYGLTF_TYPE_VEC3, values.size());
-}
+/// The arrays of a file, one after the other, with a view and an accessor for each.
+struct Arrays {
+    nlohmann::json views = nlohmann::json::array();
+    nlohmann::json accessors = nlohmann::json::array();
+    std::string bytes;
 
-/// The format asks for the exact bounds of positions.
-void set_bounds(tinygltf::Accessor& accessor, std::span<const glm::vec3> positions) {
+    /// Appends an array. Returns the index of its accessor.
+    template<class Value>
+    std::size_t append(std::span<const Value> values, const ArrayKind& kind, std::size_t count) {
+        nlohmann::json view = {
+            {"buffer", 0}, {"byteLength", values.size_bytes()}, {"target", kind.target}};
+        if (!bytes.empty())
+            view["byteOffset"] = bytes.size();
+        accessors.push_back({{"bufferView", views.size()},
+                             {"componentType", kind.component_type},
+                             {"count", count},
+                             {"type", kind.type}});
+        views.push_back(std::move(view));
+        bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+        return accessors.size() - 1;
+    }
+
+    std::size_t append(std::span<const glm::vec3> values) {
+        return append(values, {Float, "VEC3", ArrayBuffer}, values.size());
+    }
+};
+
+/// Sets the exact bounds of positions, which the format demands.
+void set_bounds(nlohmann::json& accessor, std::span<const glm::vec3> positions) {
     glm::vec3 min = positions[0], max = positions[0];
     for (const glm::vec3& position : positions) {
         min = glm::min(min, position);
         max = glm::max(max, position);
     }
-    accessor.minValues = {min.x, min.y, min.z};
-    accessor.maxValues = {max.x, max.y, max.z};
+    // Doubles give the floats' exact values in JSON.
+    accessor["min"] = {double{min.x}, double{min.y}, double{min.z}};
+    accessor["max"] = {double{max.x}, double{max.y}, double{max.z}};
 }
 
-tinygltf::Material unlit_material() {
-    tinygltf::Material material;
-    material.name = "radiance";
-    material.doubleSided = true;
-    material.extensions["KHR_materials_unlit"] = tinygltf::Value(tinygltf::Value::Object());
-    return material;
+void append_number(std::string& file, std::uint32_t number) {
+    file.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+void append_chunk(std::string& file, std::uint32_t type, const std::string& content) {
+    append_number(file, static_cast<std::uint32_t>(content.size()));
+    append_number(file, type);
+    file += content;
+}
+
+/// Returns the whole file: a header, a chunk of JSON and a chunk of bytes. Chunks are filled up to
+/// multiples of four bytes, JSON with spaces. The bytes are such a multiple already.
+std::string container(std::string json, const std::string& bytes) {
+    constexpr std::size_t HeaderSize = 12, ChunkHeaderSize = 8;
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t size = HeaderSize + 2 * ChunkHeaderSize + json.size() + bytes.size();
+    std::string file;
+    file.reserve(size);
+    append_number(file, Magic);
+    append_number(file, Version);
+    append_number(file, static_cast<std::uint32_t>(size));
+    append_chunk(file, JsonChunk, json);
+    append_chunk(file, BinaryChunk, bytes);
+    return file;
 }
 
 } // namespace
@@ -70,8 +102,8 @@ tinygltf::Material unlit_material() {
 std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     const std::uint64_t num_bytes =
         std::uint64_t{mesh.num_vertices()} * 36 + std::uint64_t{mesh.num_triangles()} * 12;
-    constexpr std::uint64_t MaxBytes =
-        std::numeric_limits<std::uint32_t>::max() - 65536; // room for the JSON part
+    // Leaves room for the JSON part.
+    constexpr std::uint64_t MaxBytes = std::numeric_limits<std::uint32_t>::max() - 65536;
     if (num_bytes > MaxBytes)
         throw std::runtime_error(
             fmt::format("expected at most {} bytes in a .glb file, got {}", MaxBytes, num_bytes));
@@ -82,38 +114,35 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
         if (normal == glm::vec3(0.0f))
             normal.y = 1.0f;
 
-    tinygltf::Model model;
-    model.asset.version = "2.0";
-    model.asset.generator = "Relumine";
-    model.extensionsUsed = {"KHR_materials_unlit"};
-    model.buffers.resize(1);
-    model.buffers[0].data.reserve(num_bytes);
-    model.materials.push_back(unlit_material());
+    Arrays arrays;
+    arrays.bytes.reserve(num_bytes);
+    nlohmann::json attributes;
+    attributes["POSITION"] = arrays.append(mesh.positions);
+    set_bounds(arrays.accessors.back(), mesh.positions);
+    attributes["NORMAL"] = arrays.append(normals);
+    attributes["COLOR_0"] = arrays.append(colors);
+    const std::size_t indices =
+        arrays.append(std::span(mesh.triangles), {UnsignedInt, "SCALAR", ElementArrayBuffer},
+                      3 * mesh.num_triangles());
 
-    tinygltf::Primitive primitive;
-    primitive.mode = TINYGLTF_MODE_TRIANGLES;
-    primitive.material = 0;
-    primitive.attributes["POSITION"] = append(model, mesh.positions);
-    set_bounds(model.accessors.back(), mesh.positions);
-    primitive.attributes["NORMAL"] = append(model, normals);
-    primitive.attributes["COLOR_0"] = append(model, colors);
-    primitive.indices = append(
-        model, std::span(mesh.triangles), TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER,
-        TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT, TINYGLTF_TYPE_SCALAR, 3 * mesh.num_triangles());
-
-    model.meshes.resize(1);
-    model.meshes[0].primitives.push_back(std::move(primitive));
-    model.nodes.resize(1);
-    model.nodes[0].mesh = 0;
-    model.scenes.resize(1);
-    model.scenes[0].nodes = {0};
-    model.defaultScene = 0;
-
-    std::ostringstream stream;
-    if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, true) || !stream)
-        throw std::runtime_error(
-            "expected a glTF model that can be written, got an error of the writer");
-    return std::move(stream).str();
+    using nlohmann::json;
+    const json document = {
+        {"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
+        {"extensionsUsed", json::array({"KHR_materials_unlit"})},
+        {"buffers", json::array({{{"byteLength", arrays.bytes.size()}}})},
+        {"bufferViews", arrays.views},
+        {"accessors", arrays.accessors},
+        {"materials", json::array({{{"name", "radiance"},
+                                    {"doubleSided", true},
+                                    {"extensions", {{"KHR_materials_unlit", json::object()}}}}})},
+        {"meshes", json::array({{{"primitives", json::array({{{"attributes", attributes},
+                                                              {"indices", indices},
+                                                              {"material", 0},
+                                                              {"mode", Triangles}}})}}})},
+        {"nodes", json::array({{{"mesh", 0}}})},
+        {"scenes", json::array({{{"nodes", json::array({0})}}})},
+        {"scene", 0}};
+    return container(document.dump(), arrays.bytes);
 }
 
 } // namespace relumine::mesh

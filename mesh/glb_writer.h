@@ -1,4 +1,4 @@
-// Binary glTF 2.0.
+// Writes binary glTF 2.0.
 #pragma once
 
 #include <span>
@@ -8,10 +8,13 @@
 
 namespace relumine::mesh {
 
-/// The mesh as one .glb file: POSITION, NORMAL, COLOR_0 (linear RGB, float) and 32-bit indices,
-/// with an unlit material. glTF has no zero normals: (0, 1, 0) stands for them. The mesh must have
-/// triangles, `colors` be [num_vertices], all numbers finite. Throws std::runtime_error "expected
-/// X, got Y" for a mesh that is too large for the format (4 GiB).
+/// Returns the mesh as one .glb file: POSITION, NORMAL, COLOR_0 (linear RGB, float) and 32-bit
+/// indices, with an unlit material. glTF has no zero normals; (0, 1, 0) stands for them. The mesh
+/// must have triangles, and all numbers must be finite.
+///
+/// Shape:   `colors` is [num_vertices].
+/// Throws:  std::runtime_error "expected X, got Y" for a mesh that is too large for the format (4
+///          GiB).
 [[nodiscard]] std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors);
 
 } // namespace relumine::mesh

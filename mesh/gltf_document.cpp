@@ -20,7 +20,8 @@ namespace {
     throw std::runtime_error(fmt::format("expected {}, got {}", expected, got));
 }
 
-/// For an error message. Not of arrays and objects: they may be nested as deep as the file is long.
+/// Describes a value for an error message. Arrays and objects are not written out: they may nest as
+/// deep as the file is long.
 std::string described(const Json& value) {
     return value.is_structured()
                ? std::string(value.type_name())
@@ -31,7 +32,7 @@ std::string described(const Json& value) {
     fail(fmt::format("{} as \"{}\"", expected, key), described(got));
 }
 
-/// Null where the object does not have it.
+/// Returns null if the object does not have the key.
 const Json* find(const Json& object, const char* key) {
     if (!object.is_object())
         fail(fmt::format("an object with \"{}\"", key), object.type_name());
@@ -52,7 +53,7 @@ std::uint32_t word(std::span<const std::byte> bytes, std::size_t offset) {
     return value;
 }
 
-/// RFC 4648; '=' ends it.
+/// Decodes RFC 4648; '=' ends the data.
 std::vector<std::byte> base64(std::string_view text) {
     std::vector<std::byte> bytes;
     bytes.reserve(text.size() / 4 * 3);
@@ -81,7 +82,7 @@ std::vector<std::byte> base64(std::string_view text) {
     return bytes;
 }
 
-/// %20 and the like.
+/// Decodes %20 and the like.
 std::string percent_decoded(std::string_view uri) {
     const auto digit = [](char c) {
         return c >= '0' && c <= '9'   ? c - '0'
@@ -192,7 +193,7 @@ std::uint64_t Document::num_bytes() const {
     return result;
 }
 
-/// Header, JSON chunk, binary chunk; what follows is for extensions.
+/// Finds the JSON chunk and the binary chunk behind the header. Further chunks are for extensions.
 void Document::split_glb(std::span<const std::byte> file) {
     if (file.size() < 20)
         fail("a .glb file of 20 bytes or more", fmt::format("{}", file.size()));

@@ -25,9 +25,9 @@ private:
 
     Document& document_;
     Materials result_;
-    /// Image -> texture, or missing
+    /// Texture of each image. Empty: the image is missing.
     std::map<std::uint64_t, std::optional<std::uint32_t>> images_;
-    /// Of the current material
+    /// UV set of the current material.
     std::optional<std::uint64_t> uv_set_;
 };
 
@@ -46,7 +46,7 @@ Texture MaterialReader::decode(const Json& description, std::uint64_t index,
     }
 }
 
-/// The texture that an image became; each is decoded once, and only if a material uses it.
+/// Returns the texture of an image. Each image is decoded once, and only if a material uses it.
 std::optional<std::uint32_t> MaterialReader::image(std::uint64_t index) {
     if (const auto found = images_.find(index); found != images_.end())
         return found->second;
@@ -85,7 +85,7 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
     if (info.empty())
         return std::nullopt;
     const Json& texture = document_.element("textures", whole(info, "index"));
-    if (!texture.contains("source")) // an image of an optional extension alone
+    if (!texture.contains("source")) // only an optional extension has an image
         return std::nullopt;
     const std::optional<std::uint32_t> index = image(whole(texture, "source"));
     if (!index)
@@ -98,8 +98,8 @@ std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* 
     std::uint64_t uv_set = whole(info, "texCoord", 0);
     if (const Json& transform = child(child(info, "extensions"), "KHR_texture_transform");
         !transform.empty()) {
-        // uv' = translation * rotation * scale * uv, as the extension has it: a rotation from v to
-        // u.
+        // The extension defines uv' = translation * rotation * scale * uv, with a rotation from v
+        // to u.
         const std::vector<double> scale = numbers(transform, "scale", {1.0, 1.0});
         const std::vector<double> offset = numbers(transform, "offset", {0.0, 0.0});
         const double angle = number(transform, "rotation", 0.0);
@@ -128,7 +128,7 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     material.base_color = glm::vec3(base[0], base[1], base[2]);
     material.base_color_texture = slot(pbr, "baseColorTexture", true);
     if (child(description, "extensions").contains("KHR_materials_unlit"))
-        return material; // its vertex colours, if any, are radiance
+        return material; // vertex colours of such a material are radiance
     material.model = MaterialModel::MetallicRoughness;
     material.times_vertex_color = true;
     material.metallic = fraction(pbr, "metallicFactor", 1.0f);

@@ -11,18 +11,20 @@
 
 namespace relumine::mesh::gltf {
 
+/// The materials of a file.
 struct Materials {
-    /// The file's, in its order
+    /// Materials in the file's order.
     std::vector<Material> materials;
-    /// [materials], the TEXCOORD that its textures use, if any
+    /// [materials] the number of the TEXCOORD set that the material's textures use. Empty: no
+    /// textures.
     std::vector<std::optional<std::uint64_t>> uv_sets;
     std::vector<Texture> textures;
     std::vector<std::string> missing;
 };
 
-/// Throws std::runtime_error "expected X, got Y". Factors, textures, samplers,
-/// KHR_texture_transform; KHR_materials_unlit is a Lambert material. Alpha, emission, normal maps
-/// and the other extensions are skipped.
+/// Reads factors, textures, samplers and KHR_texture_transform. A KHR_materials_unlit material
+/// becomes Lambert. Alpha, emission, normal maps and the other extensions are skipped.
+/// Throws:  std::runtime_error "expected X, got Y".
 [[nodiscard]] Materials read_materials(Document& document);
 
 } // namespace relumine::mesh::gltf

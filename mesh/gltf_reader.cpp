@@ -1,9 +1,9 @@
-// glTF 2.0: all triangle primitives of the nodes of the default scene, in world space, with their
-// materials.
+// Reads glTF 2.0: all triangle primitives of the nodes of the default scene, in world space, with
+// their materials.
 //
-// A vertex stays a vertex for each node that shows it; points and lines are skipped; skins and
-// morph targets are as the file stores them, at rest (a skinned mesh ignores its node's place, as
-// the format has it).
+// A vertex is repeated for each node that shows it. Points and lines are skipped. Skins and morph
+// targets stay at rest, as the file stores them; as the format demands, a skinned mesh ignores its
+// node's place.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -81,13 +81,14 @@ private:
     std::vector<std::optional<std::vector<Primitive>>> meshes_;
     std::optional<std::uint32_t> default_material_;
     std::map<std::string, std::uint32_t> group_indices_;
-    /// Vertices and triangles that primitives and nodes made of the file's bytes
+    /// Vertices and triangles that primitives and nodes have made so far.
     std::uint64_t num_elements_ = 0;
     PolygonSoup soup_;
     bool has_colors_ = false, has_uvs_ = false;
 };
 
-/// Of the default scene, or the first; of a file without scenes, those that are no one's children.
+/// Returns the roots of the default scene, or of the first one. In a file without scenes, nodes
+/// without parents are the roots.
 std::vector<std::uint64_t> GltfReader::root_nodes() const {
     const auto indices = [](const Json& array) {
         std::vector<std::uint64_t> result;
@@ -133,7 +134,7 @@ std::vector<Triangle> GltfReader::triangles(const Json& description, std::uint64
     if (mode == 4) // triangles
         for (std::size_t i = 0; i < n; i += 3)
             result.push_back({indices[i], indices[i + 1], indices[i + 2]});
-    else if (mode == 5) // strip: every other triangle is turned
+    else if (mode == 5) // strip: every second triangle is turned
         for (std::size_t i = 0; i + 2 < n; ++i)
             result.push_back({indices[i], indices[i + 1 + i % 2], indices[i + 2 - i % 2]});
     else // fan
@@ -189,7 +190,7 @@ std::optional<Primitive> GltfReader::primitive(const Json& description) {
     read("COLOR_0", result.colors);
     if (description.contains("material")) {
         const std::uint64_t material = gltf::whole(description, "material");
-        static_cast<void>(document_.element("materials", material)); // in range
+        static_cast<void>(document_.element("materials", material)); // checks the range
         result.material = static_cast<std::uint32_t>(material);
     } else {
         result.material = default_material();
@@ -219,7 +220,7 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
     return *mesh;
 }
 
-/// Nodes are the file's objects. Those without a name have their mesh's.
+/// Nodes are the file's objects. A node without a name takes its mesh's name.
 std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
     std::string name = gltf::text(node, "name");
     if (name.empty())
@@ -233,8 +234,8 @@ std::uint32_t GltfReader::group(const Json& node, std::uint64_t mesh) {
     return place->second;
 }
 
-/// Nodes repeat meshes, primitives repeat accessors: without a limit, 64 KB of glTF make thousands
-/// of millions of vertices.
+/// Nodes repeat meshes, and primitives repeat accessors. Without a limit, 64 KB of glTF could make
+/// thousands of millions of vertices.
 void GltfReader::count(const Primitive& primitive) {
     constexpr std::uint64_t AlwaysAllowed = std::uint64_t{1} << 20, PerByte = 64;
     const std::uint64_t limit = std::max(AlwaysAllowed, PerByte * document_.num_bytes());
@@ -250,8 +251,8 @@ void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
     const std::size_t first = soup_.positions.size();
     if (first + primitive.positions.size() > std::numeric_limits<std::uint32_t>::max())
         throw std::runtime_error("expected at most 4294967295 vertices, got more");
-    // Normals go with the cofactors, the inverse's transpose but for the determinant, which
-    // singular matrices have, too.
+    // Normals are transformed by the cofactors: the transposed inverse times the determinant.
+    // Singular matrices have cofactors too.
     const glm::dmat3 linear(transform);
     const glm::dmat3 cofactors(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
                                glm::cross(linear[0], linear[1]));
@@ -281,7 +282,7 @@ void GltfReader::append(const Primitive& primitive, const glm::dmat4& transform,
 PolygonSoup GltfReader::read() {
     materials_ = gltf::read_materials(document_);
     meshes_.resize(document_.count("meshes"));
-    // Nodes are trees: a node that is met twice has two parents, or is its own ancestor.
+    // Nodes are trees. A node that is met twice has two parents or is its own ancestor.
     struct Visit {
         std::uint64_t node;
         glm::dmat4 parent;

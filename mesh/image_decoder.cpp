@@ -1,7 +1,7 @@
-// stb_image is compiled here, for three formats. Debian's library has ten: fourteen bytes that
-// begin like a PNM picture end the program there, and what a short file lacks is read as whatever
-// the memory held. Its JPEG decoder writes beyond its tables when a file declares too many Huffman
-// codes; libjpeg does not.
+// stb_image is compiled here for three formats. Debian's library reads ten, and has faults:
+// fourteen bytes that begin like a PNM picture end the program, and missing bytes of a short file
+// are read as whatever the memory held. Its JPEG decoder writes beyond its tables if a file
+// declares too many Huffman codes; libjpeg does not.
 #include "mesh/image_decoder.h"
 
 #include <algorithm>
@@ -31,7 +31,8 @@ namespace {
 
 enum class Format { Png, Jpeg, Bmp, Tga };
 
-/// TGA files say nothing of themselves: what is none of the others.
+/// Returns the format by the file's first bytes. TGA files have no mark, so a file with no other
+/// mark counts as TGA.
 Format format_of(std::span<const std::byte> file) {
     const auto begins_with = [&](std::string_view magic) {
         return file.size() >= magic.size() &&
@@ -43,7 +44,7 @@ Format format_of(std::span<const std::byte> file) {
                                          : Format::Tga;
 }
 
-/// An unsigned number, low byte first; 0 beyond the end.
+/// Returns an unsigned number, low byte first. Bytes beyond the end count as 0.
 std::uint64_t number_at(std::span<const std::byte> file, std::size_t at, std::size_t num_bytes) {
     std::uint64_t value = 0;
     for (std::size_t i = 0; i < num_bytes && at + i < file.size(); ++i)
@@ -51,18 +52,18 @@ std::uint64_t number_at(std::span<const std::byte> file, std::size_t at, std::si
     return value;
 }
 
-/// Bytes that the rows of an image of this size need at least.
+/// Returns the fewest bytes that the rows of an image of this size can take.
 std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::uint64_t width,
                           std::uint64_t height) {
     const std::uint64_t num_pixels = width * height;
     switch (format) {
-    case Format::Png: // deflate packs at most 1032 to 1, of pixels of one bit
+    case Format::Png: // deflate packs at most 1032 to 1, and a pixel has at least one bit
         return num_pixels / 1032 / 8;
-    case Format::Jpeg: // a bit for each block of 64, and chroma may be sampled four times as
-                       // coarsely each way
+    // A block of 64 takes at least a bit, and chroma may be four times as coarse in each direction.
+    case Format::Jpeg:
         return num_pixels / 1024;
-    case Format::Bmp: { // never compressed where stb_image reads it; rows end at multiples of four
-                        // bytes
+    // stb_image reads only uncompressed files. Rows end at multiples of four bytes.
+    case Format::Bmp: {
         const std::uint64_t data = number_at(file, 10, 4);
         const std::uint64_t bits = number_at(file, number_at(file, 14, 4) == 12 ? 24 : 28, 2);
         return data + (width * bits + 31) / 32 * 4 * height;
@@ -71,13 +72,14 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
         const std::uint64_t kind = number_at(file, 2, 1), bits = number_at(file, 16, 1);
         const std::uint64_t num_bytes = num_pixels * ((bits + 7) / 8);
         return (kind & 8) != 0 ? num_pixels / 64
-                               : 18 + num_bytes; // runs of 128 take two bytes or more
+                               : 18 + num_bytes; // a run of 128 pixels takes at least two bytes
     }
     }
     return 0;
 }
 
-/// stb_image allocates for what a chunk declares before it reads it.
+/// Checks the sizes of chunks, because stb_image allocates what a chunk declares before it reads
+/// the chunk.
 void check_png_chunks(std::span<const std::byte> file) {
     constexpr std::size_t Signature = 8, Around = 12; // length, type, checksum
     const auto length_at = [&](std::size_t at) {      // high byte first

@@ -13,10 +13,10 @@ namespace relumine::mesh {
 
 namespace {
 
-constexpr int MaxScans = 100; // programs write ten or so
+constexpr int MaxScans = 100; // programs write about ten
 
-/// libjpeg leaves through longjmp on errors, so the functions that it may leave hold nothing that
-/// wants a destructor.
+/// libjpeg leaves through longjmp on errors. So functions that it may leave hold no object with a
+/// destructor.
 class Decoder {
 public:
     explicit Decoder(std::span<const std::byte> file) {
@@ -26,8 +26,8 @@ public:
             decoder(info).leave();
         };
         errors_.emit_message = [](j_common_ptr info, int level) {
-            // Level -1 means broken data that libjpeg would mend by guessing. Stray bytes between
-            // segments lose nothing.
+            // Level -1 means broken data that libjpeg would repair by guessing. Stray bytes between
+            // segments do no harm.
             if (level < 0 && info->err->msg_code != JWRN_EXTRANEOUS_DATA)
                 decoder(info).leave();
         };
@@ -43,7 +43,7 @@ public:
     Decoder(const Decoder&) = delete;
     Decoder& operator=(const Decoder&) = delete;
 
-    /// The size is known then.
+    /// Reads the header, which has the size.
     bool read_header() {
         if (setjmp(errors_jump_) != 0)
             return false;

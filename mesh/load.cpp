@@ -28,7 +28,7 @@ PolygonSoup read_soup(const std::filesystem::path& path, const std::string& exte
     return read_stl(bytes);
 }
 
-/// In small letters, with the dot.
+/// Returns the extension in small letters, with the dot.
 std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
@@ -51,7 +51,7 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
         throw std::runtime_error(fmt::format(
             "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
             path.string(), extension));
-    // Opening a pipe would wait for someone to write into it.
+    // Opening a pipe would wait for a writer.
     std::error_code error;
     if (const auto status = std::filesystem::status(path, error);
         std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))

@@ -1,4 +1,4 @@
-// Mesh files in: OBJ with MTL, glTF, PLY, OFF, STL.
+// Reads mesh files: OBJ with MTL, glTF, PLY, OFF, STL.
 #pragma once
 
 #include <filesystem>
@@ -7,28 +7,35 @@
 
 namespace relumine::mesh {
 
+/// Where the vertex normals come from.
 enum class NormalSource {
-    /// The file's normals where it has them for every vertex, smooth ones otherwise
+    /// The file's normals if it has one for every vertex, smooth normals otherwise.
     File,
-    /// Always recomputed from the faces
+    /// Normals are always computed from the faces.
     Smooth,
 };
 
-/// Reads a mesh. The format is told by the extension (.obj .gltf .glb .ply .off .stl, any case).
-/// Vertices keep the file's count and order (STL, which has no vertices, is welded exactly);
-/// polygons are triangulated, concave ones included, n corners into n - 2 triangles, degenerate
-/// ones as well. Faces of one or two corners are skipped. Colours come as the file has them, bytes
-/// divided by 255, without alpha; those of faces are skipped. Colours and uvs are left out where
-/// some are not finite. OBJ whose vertices have several uvs, or none, has corner_uvs instead.
-/// Materials, groups and textures come with OBJ and glTF (docs/materials.md). Material libraries
-/// and images that are not there do not stop the load: TriangleMesh::missing has their names. Those
-/// that are there and broken do. Throws std::runtime_error "path: expected X, got Y" when the file
-/// cannot be read, has no face of three corners, an index out of range, a position that is not
-/// finite, or declares more or less than it holds.
+/// Reads a mesh. The extension tells the format (.obj .gltf .glb .ply .off .stl, any case).
+///
+/// Vertices keep the file's count and order. STL has no shared vertices, so equal points are welded
+/// exactly. Polygons are triangulated, also concave and degenerate ones: n corners give n - 2
+/// triangles. Faces of one or two corners are skipped.
+///
+/// Colours of vertices are kept as in the file, without alpha; bytes are divided by 255. Colours of
+/// faces are skipped. Colours and uvs are left out if some are not finite. An OBJ whose vertices
+/// have several uvs, or none, has corner_uvs instead.
+///
+/// Materials, groups and textures come with OBJ and glTF (docs/materials.md). A missing material
+/// library or image does not stop the load; TriangleMesh::missing has its name. A broken one stops
+/// it.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y" if the file cannot be read, has no face of
+///          three corners, has an index out of range or a position that is not finite, or declares
+///          more or less than it holds.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path,
                                 NormalSource normals = NormalSource::File);
 
-/// Whether load() knows the path's extension, in capitals or not.
+/// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);
 
 } // namespace relumine::mesh

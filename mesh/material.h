@@ -1,4 +1,4 @@
-// Materials as mesh files have them.
+// Materials as mesh files define them.
 #pragma once
 
 #include <array>
@@ -12,30 +12,29 @@
 
 namespace relumine::mesh {
 
-/// What lies outside the unit square of a texture.
+/// How a texture continues outside the unit square.
 enum class Wrap : std::uint8_t { Repeat, Clamp, Mirror };
 
-/// A texture in use.
+/// A texture and how a material uses it.
 struct TextureSlot {
-    /// Index into TriangleMesh::textures
+    /// Index into TriangleMesh::textures.
     std::uint32_t texture = 0;
-    /// Bytes are decoded to linear colour before they are filtered
+    /// True: bytes are decoded to linear colour before they are filtered.
     bool is_srgb = false;
-    /// Along u, v
+    /// For u and v.
     std::array<Wrap, 2> wrap{};
-    /// The place in the texture is this times the mesh's uv
+    /// The place in the texture is uv_from_mesh_uv times the mesh's uv, plus uv_offset.
     glm::mat2 uv_from_mesh_uv{1.0f};
-    /// Plus this
     glm::vec2 uv_offset{0.0f};
 
     bool operator==(const TextureSlot&) const = default;
 };
 
-/// What the numbers of a material mean.
+/// The meaning of a material's numbers.
 enum class MaterialModel : std::uint8_t {
-    /// Kd, Ks, Ns of MTL: Lambert where Ks is 0, Blinn-Phong otherwise
+    /// Kd, Ks and Ns of MTL: Lambert if Ks is 0, Blinn-Phong otherwise.
     Phong,
-    /// Of glTF 2.0, or of MTL with Pr or Pm
+    /// The model of glTF 2.0, or of MTL with Pr or Pm.
     MetallicRoughness,
 };
 
@@ -43,21 +42,21 @@ enum class MaterialModel : std::uint8_t {
 struct Material {
     std::string name = {};
     MaterialModel model = MaterialModel::Phong;
-    /// Phong: Kd; 0..1
+    /// In [0, 1]. Phong: Kd.
     glm::vec3 base_color{1.0f};
-    /// 0..1
+    /// In [0, 1].
     float metallic = 0.0f;
-    /// 0..1
+    /// In [0, 1].
     float roughness = 1.0f;
-    /// Phong: Ks, 0..1
+    /// Phong: Ks, in [0, 1].
     glm::vec3 specular{0.0f};
-    /// Phong: Ns, >= 0
+    /// Phong: Ns, >= 0.
     float exponent = 0.0f;
-    /// glTF: COLOR_0 is a factor of the base colour
+    /// True (glTF): COLOR_0 multiplies the base colour.
     bool times_vertex_color = false;
-    /// RGB, a factor of base_color
+    /// Its RGB multiplies base_color.
     std::optional<TextureSlot> base_color_texture = {};
-    /// G, B: factors of roughness, metallic
+    /// Its G multiplies roughness, its B metallic.
     std::optional<TextureSlot> metallic_roughness_texture = {};
 
     bool operator==(const Material&) const = default;

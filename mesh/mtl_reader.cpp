@@ -27,7 +27,7 @@ float number_between(const TextReader& reader, std::string_view word, double min
     return static_cast<float>(value);
 }
 
-/// One value of a line "Kd 0.5" or three of "Kd 0.5 0.5 0.5".
+/// Reads one value of a line "Kd 0.5" or three of "Kd 0.5 0.5 0.5".
 glm::vec3 color(const TextReader& reader) {
     const auto& words = reader.words();
     if (words.size() != 2 && words.size() != 4)
@@ -99,7 +99,8 @@ std::uint32_t MtlLibrary::index_of(const std::string& name) {
     return add(name);
 }
 
-/// map_Kd [options] file name: the name may have blanks, so options end where no known one follows.
+/// Reads map_Kd [options] file name. The name may have blanks, so options end at the first unknown
+/// one.
 std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view> words,
                                                const TextReader& reader,
                                                const std::filesystem::path& folder) {
@@ -107,14 +108,14 @@ std::optional<TextureSlot> MtlLibrary::texture(std::span<const std::string_view>
     glm::vec2 scale(1.0f);
     while (!words.empty() && words[0].starts_with('-')) {
         const std::string_view option = words[0];
-        // How many arguments an option has at most, and at least.
+        // The largest and the smallest number of an option's arguments.
         const bool is_vector = option == "-s" || option == "-o" || option == "-t";
         const bool is_pair = option == "-mm";
         const bool is_single = option == "-clamp" || option == "-blendu" || option == "-blendv" ||
                                option == "-cc" || option == "-boost" || option == "-texres" ||
                                option == "-bm" || option == "-imfchan" || option == "-type";
         if (!is_vector && !is_pair && !is_single)
-            break; // a name that starts so
+            break; // a name that begins with -
         std::size_t num_arguments = is_vector ? 0 : is_pair ? 2 : 1;
         while (is_vector && num_arguments < 3 && num_arguments + 1 < words.size() &&
                is_number(words[num_arguments + 1]))

@@ -12,24 +12,24 @@
 
 namespace relumine::mesh {
 
-/// The file `name` that a mesh file in `folder` refers to: as written, or with / for \. Empty where
-/// there is no such file.
+/// Returns the file `name` that a mesh file in `folder` refers to: as written, or with / for \.
+/// Empty if there is no such file.
 [[nodiscard]] std::filesystem::path find_file(const std::filesystem::path& folder,
                                               const std::string& name);
 
-/// The materials of the libraries of one OBJ file.
+/// The materials of all libraries of one OBJ file.
 class MtlLibrary {
 public:
     explicit MtlLibrary(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-    /// Adds a library: Kd, Ks, Ns, Pr, Pm, map_Kd (with -s, -o and -clamp); the rest is skipped. A
-    /// material with Pr or Pm is MetallicRoughness. A library or an image that is not there goes to
-    /// `missing`. A material that is defined again replaces the first. Throws std::runtime_error
-    /// "name: expected X, got Y".
+    /// Adds a library. It reads Kd, Ks, Ns, Pr, Pm and map_Kd (with -s, -o and -clamp) and skips
+    /// the rest. A material with Pr or Pm is MetallicRoughness. A second definition of a material
+    /// replaces the first. A missing library or image goes to `missing`.
+    /// Throws:  std::runtime_error "name: expected X, got Y".
     void read(const std::string& name);
 
-    /// Index of a material; a name that no library has becomes white and Lambert, a missing one
-    /// when libraries were read.
+    /// Returns the index of a material. A name that no library defines becomes a white Lambert
+    /// material; it counts as missing if libraries were read.
     [[nodiscard]] std::uint32_t index_of(const std::string& name);
 
     std::vector<Material> materials;

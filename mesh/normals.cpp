@@ -17,7 +17,7 @@ std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh) {
         if (twice_area == 0.0)
             continue;
         for (std::size_t i = 0; i < 3; ++i) {
-            // |a x b| is twice the area at every corner, so the angle needs one dot product; atan2
+            // |a x b| is twice the area at every corner, so the angle needs one dot product. atan2
             // is exact near 0 and pi.
             const double angle =
                 std::atan2(twice_area, glm::dot(corners[(i + 1) % 3] - corners[i],

@@ -5,10 +5,13 @@
 
 namespace relumine::mesh {
 
-/// Smooth vertex normals, [num_vertices]: the sum of the adjacent faces' unit normals weighted by
-/// the corner's angle (Thuermer and Wuethrich, "Computing vertex normals from polygonal facets",
-/// 1998), so that the result does not depend on how a polygon was cut into triangles. Zero for a
-/// vertex without a face of positive area. O(num_triangles).
+/// Returns smooth vertex normals: the sum of the unit normals of the adjacent faces, weighted by
+/// the angle of each corner (Thuermer and Wuethrich, "Computing vertex normals from polygonal
+/// facets", 1998). So the result does not depend on how a polygon was cut into triangles. A vertex
+/// without a face of positive area gets zero.
+///
+/// Shape:   [num_vertices].
+/// Cost:    O(num_triangles).
 [[nodiscard]] std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh);
 
 } // namespace relumine::mesh

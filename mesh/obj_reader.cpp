@@ -1,12 +1,13 @@
-// Wavefront OBJ: v (with colours), vt, vn, f, o, g, mtllib and usemtl; everything else in the
-// format (lines, curves) is skipped.
+// Reads Wavefront OBJ: v (with colours), vt, vn, f, o, g, mtllib and usemtl. The rest of the format
+// (lines, curves) is skipped.
 //
-// Our own reader, since no library in Debian reads OBJ without silent changes: OpenMesh drops
-// vertices with an unreadable or non-finite number (later indices then mean other vertices) and
-// faces with a continued line; tinyobjloader reads such numbers as 0, wraps indices at 32 bits,
-// takes a comment behind a face for corners and stores at most 255 corners per face; Assimp makes a
-// vertex of every corner; CGAL refuses lines and points, misreads tabs and knows no continued
-// lines.
+// The project has its own reader, because no library in Debian reads OBJ without silent changes:
+// - OpenMesh drops vertices with an unreadable or non-finite number, so later indices mean other
+//   vertices, and drops faces with a continued line.
+// - tinyobjloader reads such numbers as 0, wraps indices at 32 bits, takes a comment behind a face
+//   for corners, and stores at most 255 corners per face.
+// - Assimp makes a vertex of every corner.
+// - CGAL refuses lines and points, misreads tabs, and does not know continued lines.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -28,8 +29,7 @@ namespace {
 
 constexpr std::uint32_t NoIndex = std::numeric_limits<std::uint32_t>::max();
 
-/// What an OBJ corner refers to, counted from 0; NoIndex where it has no texture coordinate or
-/// normal.
+/// Indices of an OBJ corner, counted from 0. NoIndex: no texture coordinate or no normal.
 struct Corner {
     std::uint32_t position = NoIndex;
     std::uint32_t uv = NoIndex;
@@ -61,20 +61,20 @@ private:
     TextReader reader_;
     std::filesystem::path folder_;
     MtlLibrary library_;
-    /// Distinct, in the order of use
+    /// Distinct names, in the order of use.
     std::vector<std::string> used_materials_;
     std::map<std::string, std::uint32_t> material_indices_, group_indices_;
-    /// Of the faces that follow
+    /// Material and group of the next faces.
     std::uint32_t material_ = NoIndex, group_ = NoIndex;
     std::vector<std::string_view> words_;
     PolygonSoup soup_;
     std::vector<glm::vec2> uvs_;
     std::vector<glm::vec3> normals_;
-    /// Parallel to soup_.corners
+    /// Parallel to soup_.corners.
     std::vector<Corner> corners_;
 };
 
-/// A statement is a line and those that a backslash at the end joins to it.
+/// Reads a statement: a line, and the lines that a backslash at its end joins to it.
 bool ObjReader::next_statement() {
     words_.clear();
     while (reader_.next_line()) {
@@ -89,7 +89,8 @@ bool ObjReader::next_statement() {
 }
 
 void ObjReader::read_vertex() {
-    // x y z, x y z w, x y z r g b or x y z r g b a; the weight w is for curves alone.
+    // The values are x y z, x y z w, x y z r g b or x y z r g b a. The weight w is for curves
+    // alone.
     const std::size_t num_values = words_.size() - 1;
     if (num_values < 3 || num_values == 5 || num_values > 7)
         reader_.fail("3, 4, 6 or 7 numbers of a vertex", fmt::format("{}", num_values));
@@ -108,8 +109,8 @@ void ObjReader::read_uv() {
                       words_.size() > 2 ? reader_.number(words_[2]) : 0.0);
 }
 
-/// Indices count from 1, or backwards from the newest element (-1). Elements that follow later in
-/// the file are allowed.
+/// Returns an index counted from 0. The file counts from 1, or backwards from the newest element
+/// (-1). An index may refer to elements later in the file.
 std::uint32_t ObjReader::index(std::string_view word, std::size_t count) const {
     const std::int64_t written = reader_.integer(word);
     const std::int64_t result =
@@ -120,7 +121,7 @@ std::uint32_t ObjReader::index(std::string_view word, std::size_t count) const {
     return static_cast<std::uint32_t>(result);
 }
 
-/// v, v/t, v//n or v/t/n; v/ and v// occur, too.
+/// Reads v, v/t, v//n or v/t/n. v/ and v// occur too.
 Corner ObjReader::corner(std::string_view word) const {
     const std::size_t slash = std::min(word.find('/'), word.size());
     const std::string_view rest = word.substr(std::min(slash + 1, word.size()));
@@ -150,7 +151,7 @@ std::string ObjReader::rest_of_statement() const {
     return fmt::format("{}", fmt::join(words_.begin() + 1, words_.end(), " "));
 }
 
-/// One name with blanks, or several names: both occur.
+/// Reads one name with blanks, or several names. Both occur.
 void ObjReader::read_libraries() {
     const std::string whole = rest_of_statement();
     if (words_.size() == 2 || !find_file(folder_, whole).empty()) {
@@ -161,7 +162,7 @@ void ObjReader::read_libraries() {
         library_.read(std::string(words_[i]));
 }
 
-/// Objects and groups alike: the newest o or g names the faces that follow.
+/// Begins an object or a group. The newest o or g names the next faces.
 void ObjReader::begin_group() {
     const std::string name = words_.size() > 1 ? rest_of_statement() : std::string("default");
     const auto [place, is_new] =
@@ -171,8 +172,8 @@ void ObjReader::begin_group() {
     group_ = place->second;
 }
 
-/// Files that refer to texture coordinates or normals but have none at all are common and lose
-/// nothing but these.
+/// Many files refer to texture coordinates or normals but have none. Such files are read without
+/// them.
 void ObjReader::check_indices() {
     const auto check = [](const char* what, std::uint32_t index, std::size_t count) {
         if (index != NoIndex && index >= count)
@@ -190,7 +191,7 @@ void ObjReader::check_indices() {
     }
 }
 
-/// A vertex has the sum of its corners' normals; none has one unless all corners do.
+/// A vertex gets the sum of its corners' normals. If a corner has no normal, no vertex gets one.
 void ObjReader::sum_normals() {
     std::vector<glm::vec3> sums(soup_.positions.size(), glm::vec3(0.0f));
     for (const Corner& corner : corners_) {
@@ -203,7 +204,7 @@ void ObjReader::sum_normals() {
     soup_.normals = std::move(sums);
 }
 
-/// The mesh has texture coordinates if every corner has one and those of one vertex agree.
+/// The mesh has uvs if every corner has a texture coordinate and the corners of each vertex agree.
 void ObjReader::gather_uvs() {
     std::vector<std::optional<glm::vec2>> gathered(soup_.positions.size());
     for (const Corner& corner : corners_) {
@@ -219,7 +220,8 @@ void ObjReader::gather_uvs() {
         soup_.uvs.push_back(uv.value_or(glm::vec2(0.0f)));
 }
 
-/// Where the corners of one vertex have several: each corner has its own, (0, 0) where it has none.
+/// Used if the corners of a vertex disagree. Each corner has its own uv; a corner without one gets
+/// (0, 0).
 void ObjReader::gather_corner_uvs() {
     if (!soup_.uvs.empty() || uvs_.empty())
         return;
@@ -228,8 +230,8 @@ void ObjReader::gather_corner_uvs() {
         soup_.corner_uvs.push_back(corner.uv == NoIndex ? glm::vec2(0.0f) : uvs_[corner.uv]);
 }
 
-/// Libraries may follow the faces, so names become materials only now. Faces before the first
-/// usemtl or o have "default".
+/// Turns names into materials at the end, because libraries may follow the faces. Faces before the
+/// first usemtl or o have "default".
 void ObjReader::gather_materials() {
     if (used_materials_.empty()) {
         soup_.face_materials.clear();

@@ -1,12 +1,14 @@
-// Object File Format (Geomview): [ST][C][N]OFF, ASCII. One vertex and one face per line; comments
-// anywhere; faces may end in up to four colour values, which are skipped; colours of vertices have
-// three or four values.
+// Reads the Object File Format (Geomview): [ST][C][N]OFF, ASCII, with one vertex or one face per
+// line. Comments may stand anywhere. Faces may end in up to four colour values, which are skipped.
+// Colours of vertices have three or four values.
 //
-// Our own reader, since OpenMesh refuses comments, misreads polygons followed by colours and counts
-// on the keyword's line, and dies of a header that declares too much; Assimp misreads comments
-// between faces and lets indices out of range pass. CGAL is right about nearly all of these, but
-// lets surplus values and lines pass, and would bring Boost and GMP for little more than the
-// hundred lines below, which share their text reader with the other formats.
+// The project has its own reader for these reasons:
+// - OpenMesh refuses comments, misreads polygons followed by colours and counts on the keyword's
+//   line, and crashes on a header that declares too much.
+// - Assimp misreads comments between faces and accepts indices out of range.
+// - CGAL is right about nearly all of this, but accepts surplus values and lines, and would bring
+//   Boost and GMP for little more than the hundred lines below, which share their text reader with
+//   the other formats.
 #include <fmt/format.h>
 
 #include "mesh/polygon_soup.h"
@@ -16,7 +18,8 @@ namespace relumine::mesh {
 
 namespace {
 
-/// What the keyword says of each vertex beyond its position, in the order of the file.
+/// The data of each vertex besides its position, as the keyword states them, in the order of the
+/// file.
 struct Layout {
     bool has_normal = false;
     bool has_color = false;
@@ -27,7 +30,7 @@ struct Counts {
     std::size_t vertices, faces;
 };
 
-/// Takes `prefix` off the front of `text`.
+/// Removes `prefix` from the front of `text`. Returns false if it is not there.
 bool take(std::string_view& text, std::string_view prefix) {
     const bool found = text.starts_with(prefix);
     if (found)
@@ -52,7 +55,7 @@ private:
     PolygonSoup soup_;
 };
 
-/// Reads the optional keyword into the layout; returns the words that follow it in its line.
+/// Reads the optional keyword into the layout. Returns the words behind it on its line.
 std::vector<std::string_view> OffReader::read_keyword() {
     if (!reader_.next_line())
         reader_.fail("an OFF header", "the end of the file");
@@ -81,7 +84,7 @@ Counts OffReader::read_counts() {
     if (words.size() != 3)
         reader_.fail("the numbers of vertices, faces and edges",
                      fmt::format("{} values", words.size()));
-    // A vertex takes at least six bytes ("0 0 0" and the line's end), a face two.
+    // A vertex takes at least six bytes ("0 0 0" and the line's end), a face at least two.
     const std::int64_t vertices = reader_.integer(words[0]), faces = reader_.integer(words[1]);
     static_cast<void>(reader_.integer(words[2]));
     const auto limit = static_cast<std::int64_t>(num_bytes_);

@@ -46,7 +46,7 @@ void read_property(const TextReader& reader, Header& header) {
     header.elements.back().properties.push_back(property);
 }
 
-/// Finds the line "end_header"; the header's text ends before it, the data begin after it.
+/// Finds the line "end_header". Returns the text before it and the position of the data behind it.
 std::pair<std::string_view, std::size_t> split_header(std::string_view text) {
     constexpr std::string_view EndKeyword = "end_header";
     for (std::size_t at = text.find(EndKeyword); at != std::string_view::npos;
@@ -55,8 +55,8 @@ std::pair<std::string_view, std::size_t> split_header(std::string_view text) {
         if (at == 0 || (text[at - 1] != '\n' && text[at - 1] != '\r') ||
             end == std::string_view::npos || (text[end] != '\n' && text[end] != '\r'))
             continue;
-        // After a lone CR the first byte of the data may happen to be an LF: the first line's end
-        // tells what ends lines.
+        // After a lone CR the first byte of the data may happen to be an LF. The end of the first
+        // line shows how lines end.
         const std::string_view first_end = text.substr(text.find_first_of("\r\n"), 2);
         const bool lone_cr = first_end[0] == '\r' && first_end != "\r\n";
         end += text.substr(end, 2) == "\r\n" && !lone_cr ? 2 : 1;

@@ -1,4 +1,4 @@
-// The header of a PLY file: what its data are.
+// The header of a PLY file: which data follow.
 #pragma once
 
 #include <cstddef>
@@ -9,35 +9,39 @@
 
 namespace relumine::mesh::ply_format {
 
-/// The format's types of numbers.
+/// The number types of the format.
 enum class Type { Int8, Uint8, Int16, Uint16, Int32, Uint32, Float32, Float64 };
 
+/// A property of an element: a number or a list of numbers.
 struct Property {
     std::string_view name;
     Type type = Type::Int8;
-    /// Of a list's length
+    /// Type of a list's length. Empty: the property is no list.
     std::optional<Type> size_type;
 };
 
+/// A kind of element, and how many of it follow.
 struct Element {
     std::string_view name;
     std::uint64_t count = 0;
     std::vector<Property> properties;
 };
 
+/// The whole header.
 struct Header {
     std::string_view format;
     std::vector<Element> elements;
-    /// Where the data begins
+    /// Size of the header: the data begin there.
     std::size_t num_bytes = 0;
 };
 
-/// In bytes, in the binary formats
+/// Returns the size in bytes in the binary formats.
 [[nodiscard]] std::size_t size_of(Type type);
 [[nodiscard]] bool is_float(Type type);
 
-/// Reads the header of a whole file; its names point into `file`. Elements have different names;
-/// their counts may be any. Throws std::runtime_error "expected X, got Y".
+/// Reads the header of a whole file. Names point into `file`. Elements have different names; their
+/// counts are not checked.
+/// Throws:  std::runtime_error "expected X, got Y".
 [[nodiscard]] Header read_header(std::string_view file);
 
 } // namespace relumine::mesh::ply_format

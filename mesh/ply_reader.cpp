@@ -1,10 +1,14 @@
-// Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, any number type
-// for any property, further elements, properties and lists skipped, the elements in any order.
+// Reads the Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, with
+// any number type for any property and elements in any order. Further elements, properties and
+// lists are skipped.
 //
-// Our own reader, since no library in Debian reads all valid files and refuses the others: OpenMesh
-// misreads or refuses lists beside the index list (on vertices, faces or other elements) and 32-bit
-// lengths of lists; Assimp loses track in elements that hold lists and reads truncated files as
-// whole ones; CGAL refuses 16-bit indices. None minds data that the header does not declare.
+// The project has its own reader, because no library in Debian reads all valid files and refuses
+// all others:
+// - OpenMesh misreads or refuses lists beside the index list (on vertices, faces or other elements)
+//   and 32-bit lengths of lists.
+// - Assimp loses track in elements that hold lists, and reads truncated files as whole ones.
+// - CGAL refuses 16-bit indices.
+// - None of them notices data that the header does not declare.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -26,7 +30,7 @@ using ply_format::Header;
 using ply_format::Property;
 using ply_format::Type;
 
-/// Numbers of an ASCII body.
+/// Reads numbers of an ASCII body.
 class AsciiValues {
 public:
     static constexpr bool IsBinary = false;
@@ -43,7 +47,7 @@ private:
     std::size_t num_bytes_;
 };
 
-/// Numbers of a binary body, in the order of bytes `Order`.
+/// Reads numbers of a binary body in the byte order `Order`.
 template<std::endian Order>
 class BinaryValues {
 public:
@@ -94,11 +98,12 @@ private:
     std::string_view rest_;
 };
 
-/// Refuses a header that declares more than the body can hold, before anything is allocated.
+/// Refuses a header that declares more than the body can hold, before memory is allocated.
 void check_sizes(const Header& header, std::size_t num_bytes, bool is_binary) {
     for (const Element& element : header.elements) {
-        std::size_t least = 0; // bytes of one element; an empty list is its size alone, an ASCII
-                               // number a digit and a space
+        // Least size of one element in bytes. An empty list has only its length; an ASCII number is
+        // a digit and a space.
+        std::size_t least = 0;
         for (const Property& property : element.properties)
             least +=
                 is_binary ? ply_format::size_of(property.size_type.value_or(property.type)) : 2;
@@ -109,7 +114,7 @@ void check_sizes(const Header& header, std::size_t num_bytes, bool is_binary) {
     }
 }
 
-/// Takes the length of a list.
+/// Reads the length of a list.
 template<class Values>
 std::uint32_t list_size(const Property& property, Values& values) {
     const double size = values.next(*property.size_type);
@@ -134,7 +139,7 @@ void skip(const Element& element, Values& values) {
             skip(property, values);
 }
 
-/// The numbers of a vertex that are used, and the names they go by.
+/// The numbers of a vertex that are used, and their names in files.
 enum Slot : std::size_t { X, Y, Z, NormalX, NormalY, NormalZ, Red, Green, Blue, U, V, NumSlots };
 constexpr std::array<std::array<std::string_view, 4>, NumSlots> SlotNames = {
     {{"x"},
@@ -157,19 +162,19 @@ std::size_t slot_of(const Property& property) {
     return NumSlots;
 }
 
-/// Bytes and shorts are fractions of their greatest value; other types are the colour itself.
+/// Bytes and shorts are fractions of their largest value. Other types are the colour itself.
 double color_scale(Type type) {
     return type == Type::Uint8 ? 1.0 / 255.0 : type == Type::Uint16 ? 1.0 / 65535.0 : 1.0;
 }
 
 template<class Values>
 void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
-    std::vector<std::size_t> slots; // of each property; NumSlots: skipped
+    std::vector<std::size_t> slots; // slot of each property; NumSlots: skipped
     std::array<bool, NumSlots + 1> has{};
     std::array<double, NumSlots + 1> scale;
     scale.fill(1.0);
     for (const Property& property : element.properties) {
-        // Of several names for the same number ("u" beside "s") the first counts.
+        // If the same number has several names ("u" beside "s"), the first one counts.
         const std::size_t slot = slot_of(property);
         slots.push_back(has[slot] ? NumSlots : slot);
         has[slot] = slot != NumSlots;

@@ -18,7 +18,7 @@ bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Refuses what no mesh may have, whatever the format.
+/// Refuses a soup that no mesh may have, for every format.
 void check(const PolygonSoup& soup) {
     const std::size_t num_vertices = soup.positions.size();
     if (num_vertices == 0)
@@ -34,7 +34,7 @@ void check(const PolygonSoup& soup) {
                 fmt::format("expected vertex indices below {}, got {}", num_vertices, vertex));
 }
 
-/// Cuts the faces; each triangle takes its corners' uvs, its face's material and its group along.
+/// Cuts the faces. A triangle keeps the uvs of its corners, and the material and group of its face.
 void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
     mesh.triangles.reserve(soup.face_ends.size());
     Triangulator triangulator(soup.positions);
@@ -64,7 +64,7 @@ void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
                         soup.positions.size(), soup.face_ends.size()));
 }
 
-/// Makes the normals unit length. False where a vertex of some face has none that is usable.
+/// Makes the normals unit length. Returns false if a vertex of some face has no usable normal.
 bool normalize_normals(TriangleMesh& mesh) {
     std::vector<bool> is_used(mesh.num_vertices(), false);
     for (const Triangle& triangle : mesh.triangles)

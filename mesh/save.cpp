@@ -48,7 +48,7 @@ std::string ply(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     return content;
 }
 
-/// What neither format can hold.
+/// Refuses a mesh that neither format can hold.
 void check(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     if (colors.size() != mesh.num_vertices())
         throw std::runtime_error(

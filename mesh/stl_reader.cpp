@@ -1,9 +1,9 @@
-// STL, ASCII and binary. STL has no vertices, only corners: corners at exactly the same place
-// become one vertex, numbered in the order of the file. Normals of facets are skipped: the corners'
-// order tells them.
+// Reads STL, ASCII and binary. STL has corners but no vertices: corners at exactly the same place
+// become one vertex, numbered in the order of the file. Normals of facets are skipped, because the
+// order of the corners gives them.
 //
-// Our own reader: OpenMesh drops degenerate facets and reads truncated files as shorter ones,
-// Assimp makes a vertex of every corner; for CGAL see off_reader.cpp.
+// The project has its own reader: OpenMesh drops degenerate facets and reads truncated files as
+// shorter ones, and Assimp makes a vertex of every corner. For CGAL see off_reader.cpp.
 #include <bit>
 #include <cctype>
 #include <cstring>
@@ -18,8 +18,8 @@ namespace relumine::mesh {
 
 namespace {
 
-constexpr std::size_t HeaderBytes = 84; // 80 bytes of text, the number of facets
-constexpr std::size_t FacetBytes = 50;  // normal, three corners, two bytes of attributes
+constexpr std::size_t HeaderBytes = 84; // 80 bytes of text and the number of facets
+constexpr std::size_t FacetBytes = 50;  // a normal, three corners and two bytes of attributes
 
 struct PositionHash {
     std::size_t operator()(const glm::vec3& p) const {
@@ -30,11 +30,11 @@ struct PositionHash {
     }
 };
 
-/// Facets in, vertices and triangles out.
+/// Turns facets into vertices and triangles.
 class Welder {
 public:
     void add_corner(const glm::vec3& point) {
-        const glm::vec3 key = point + 0.0f; // -0 equals 0 but has another hash
+        const glm::vec3 key = point + 0.0f; // -0 equals 0 but hashes differently
         const auto [entry, is_new] =
             vertex_at_.try_emplace(key, static_cast<std::uint32_t>(soup_.positions.size()));
         if (is_new)
@@ -105,7 +105,7 @@ glm::vec3 AsciiReader::read_vector() {
     return vector;
 }
 
-/// What follows the word "facet".
+/// Reads the rest of a facet, behind the word "facet".
 void AsciiReader::read_facet() {
     expect("normal");
     static_cast<void>(read_vector());
@@ -121,7 +121,7 @@ void AsciiReader::read_facet() {
 }
 
 PolygonSoup AsciiReader::read() {
-    // Each solid's name takes the rest of its line and may hold any word.
+    // A solid's name takes the rest of its line and may hold any word.
     while (reader_.next_line()) {
         if (!same_keyword(reader_.words()[0], "solid"))
             reader_.fail("'solid'", excerpt(reader_.words()[0]));
@@ -141,7 +141,7 @@ PolygonSoup AsciiReader::read() {
 } // namespace
 
 PolygonSoup read_stl(std::span<const std::byte> bytes) {
-    // Binary files may begin with "solid", too; their size tells them apart.
+    // Binary files may begin with "solid" too. Their size tells them apart.
     const std::uint64_t num_facets =
         bytes.size() < HeaderBytes ? 0 : little_endian(&bytes[HeaderBytes - 4]);
     if (bytes.size() >= HeaderBytes && bytes.size() == HeaderBytes + num_facets * FacetBytes)

@@ -15,7 +15,7 @@ bool is_space(char c) {
     return c == ' ' || c == '\t' || c == '\v' || c == '\f';
 }
 
-/// from_chars does not know the leading plus sign that files may have.
+/// Removes a leading plus sign, which files may have but from_chars does not accept.
 std::string_view without_plus(std::string_view word) {
     return word.size() > 1 && word[0] == '+' && word[1] != '-' ? word.substr(1) : word;
 }

@@ -14,7 +14,7 @@ namespace {
 
 using Channels = std::array<std::uint8_t, 3>;
 
-/// IEC 61966-2-1.
+/// The sRGB curve of IEC 61966-2-1.
 std::array<float, 256> srgb_table() {
     std::array<float, 256> table{};
     for (std::size_t i = 0; i < table.size(); ++i) {
@@ -32,7 +32,7 @@ glm::vec3 decoded(const Channels& texel, bool is_srgb) {
     return glm::vec3(texel[0], texel[1], texel[2]) / 255.0f;
 }
 
-/// The texel that a whole coordinate outside 0..size-1 means.
+/// Returns the texel for an integer coordinate that may lie outside 0..size-1.
 std::uint32_t wrapped(std::int64_t i, std::uint32_t size, Wrap wrap) {
     const std::int64_t n = size;
     if (wrap == Wrap::Clamp)
@@ -42,15 +42,15 @@ std::uint32_t wrapped(std::int64_t i, std::uint32_t size, Wrap wrap) {
     return static_cast<std::uint32_t>(i < n ? i : period - 1 - i);
 }
 
-/// A coordinate's two texels and the weight of the second.
+/// The two texels of a coordinate, and the weight of the second.
 struct Pair {
     std::uint32_t first, second;
     float weight;
 };
 
 Pair neighbours(float coordinate, std::uint32_t size, Wrap wrap) {
-    // In double, and brought near 0 first, where it repeats: large coordinates keep their fraction
-    // as far as float has it.
+    // In double. A repeating coordinate is first brought near 0, so large coordinates keep the
+    // fraction that their float has.
     double x = std::isfinite(coordinate) ? double{coordinate} : 0.0;
     x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * std::floor(0.5 * x);
     x = x * size - 0.5;

@@ -1,4 +1,4 @@
-// Triangle mesh: the plain arrays that every other folder works on.
+// Triangle mesh: the plain arrays that all other folders use.
 #pragma once
 
 #include <array>
@@ -18,34 +18,36 @@ namespace relumine::mesh {
 /// Three indices into TriangleMesh::positions, counter-clockwise seen from outside.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Indexed triangle mesh. Count and order of the vertices are those of the file; unreferenced
-/// vertices, holes and non-manifold edges are kept. World axes: right-handed, +Y up; units are the
-/// file's own.
+/// Indexed triangle mesh. Vertices have the count and the order of the file. Unreferenced vertices,
+/// holes and non-manifold edges are kept.
+///
+/// Axes:    right-handed, +Y up.
+/// Unit:    as in the file.
 struct TriangleMesh {
-    /// [num_vertices]
+    /// [num_vertices].
     std::vector<glm::vec3> positions;
-    /// [num_triangles], every index < num_vertices
+    /// [num_triangles], every index < num_vertices.
     std::vector<Triangle> triangles;
-    /// [num_vertices], unit length, or zero where a vertex has no face with an area
+    /// [num_vertices] of unit length. Zero for a vertex without a face of positive area.
     std::vector<glm::vec3> normals;
-    /// [num_vertices] linear RGB, or empty
+    /// [num_vertices] linear RGB, or empty.
     std::vector<glm::vec3> colors;
-    /// [num_vertices], or empty
+    /// [num_vertices], or empty.
     std::vector<glm::vec2> uvs;
 
-    /// [num_triangles], instead of uvs where a vertex has several (seams); or empty
+    /// [num_triangles], or empty. Used instead of uvs if a vertex has several (seams).
     std::vector<std::array<glm::vec2, 3>> corner_uvs;
-    /// In the file's order, or empty
+    /// In the file's order, or empty.
     std::vector<Material> materials;
-    /// [num_triangles], every one < materials.size(); or empty
+    /// [num_triangles], every index < materials.size(); or empty.
     std::vector<std::uint32_t> triangle_materials;
-    /// Names of the file's objects or groups, distinct; or empty
+    /// Distinct names of the file's objects or groups, or empty.
     std::vector<std::string> groups;
-    /// [num_triangles], every one < groups.size(); or empty
+    /// [num_triangles], every index < groups.size(); or empty.
     std::vector<std::uint32_t> triangle_groups;
-    /// Of the materials
+    /// Textures of the materials.
     std::vector<Texture> textures;
-    /// Material and image files that the file names and that are not there
+    /// Material and image files that the file names but that do not exist.
     std::vector<std::string> missing;
 
     [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
@@ -59,12 +61,12 @@ struct Bounds {
 
     [[nodiscard]] glm::vec3 center() const { return 0.5f * (min + max); }
     [[nodiscard]] glm::vec3 size() const { return max - min; }
-    /// Length of the box's diagonal, 0 for a single point.
+    /// Returns the length of the box's diagonal. 0 for a single point.
     [[nodiscard]] float diagonal() const;
 };
 
-/// Box around the vertices that some triangle uses (stray points do not count); around all where
-/// there is no triangle.
+/// Returns the box around the vertices of the triangles; stray points do not count. A mesh without
+/// triangles gets the box around all vertices.
 [[nodiscard]] Bounds bounds(const TriangleMesh& mesh);
 
 } // namespace relumine::mesh

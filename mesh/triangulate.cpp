@@ -1,7 +1,9 @@
-// Ear clipping. Based on: G. H. Meisters, "Polygons have ears", 1975; the closed-triangle test of
-// reflex corners only, as in Eberly, "Triangulation by ear clipping", 2002. Debian has no library
-// that does it: mapbox's earcut comes for Python alone, and GLU's tessellator adds vertices of its
-// own.
+// Ear clipping.
+// Based on: G. H. Meisters, "Polygons have ears", 1975. Only reflex corners are tested against the
+// closed triangle, as in Eberly, "Triangulation by ear clipping", 2002.
+//
+// Debian has no suitable library: mapbox's earcut comes for Python alone, and GLU's tessellator
+// adds vertices of its own.
 #include "mesh/triangulate.h"
 
 #include <algorithm>
@@ -17,18 +19,18 @@ namespace relumine::mesh {
 
 namespace {
 
-/// Twice the signed area of a, b, c; positive counter-clockwise.
+/// Returns twice the signed area of a, b, c; positive counter-clockwise.
 double turn_of(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
     return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
 } // namespace
 
-/// Drops the axis along which the polygon's Newell normal is longest, so that coordinates stay
-/// exact, and orients the result counter-clockwise. False for a polygon without area.
+/// Drops the axis along which the polygon's Newell normal is longest, so coordinates stay exact.
+/// Orients the result counter-clockwise. Returns false for a polygon without area.
 bool Triangulator::project(std::span<const std::uint32_t> polygon) {
-    // Relative to the first corner: the normal of a small polygon far from the origin would drown
-    // in rounding otherwise.
+    // Coordinates are relative to the first corner. Otherwise the normal of a small polygon far
+    // from the origin would be lost in rounding.
     const glm::dvec3 origin(positions_[polygon[0]]);
     glm::dvec3 normal(0.0);
     for (std::size_t i = 0; i < polygon.size(); ++i)
@@ -63,7 +65,7 @@ void Triangulator::find_reflex_corners() {
     });
 }
 
-/// Cuts clip reflex corners or make them convex, for good.
+/// A cut removes reflex corners or makes them convex. A convex corner never becomes reflex again.
 void Triangulator::drop_reflex_corners_out_of_date() {
     std::erase_if(reflex_, [this](const ReflexCorner& reflex) {
         return corners_[reflex.corner].clipped || turn(reflex.corner) > 0.0;
@@ -83,9 +85,9 @@ bool Triangulator::is_ear(std::uint32_t corner, Ear kind) {
     if (!(area > 0.0))
         return false;
 
-    // An ear holds no other corner; among the corners in the triangle there is a reflex one if
-    // there is any. Corners at the same place as one of the triangle's are ends of doubled edges,
-    // which pass the triangle by.
+    // An ear holds no other corner. If there are corners in the triangle, one of them is reflex. A
+    // corner at the same place as a corner of the triangle is the end of a doubled edge that passes
+    // the triangle by.
     const glm::dvec2 a = corners_[corners_[corner].previous].point;
     const glm::dvec2 b = corners_[corner].point;
     const glm::dvec2 c = corners_[corners_[corner].next].point;
@@ -123,17 +125,17 @@ void Triangulator::cut(std::span<const std::uint32_t> polygon,
         return;
     }
     find_reflex_corners();
-    // Usual polygons need a few tests per corner; the mesh as a whole may spend many more before it
-    // is given up.
+    // Usual polygons need a few tests per corner. The mesh as a whole may spend many more before it
+    // is refused.
     work_left_ += 1000.0 * static_cast<double>(polygon.size());
 
-    // Ears with an area come first: a corner on a straight edge then gets triangles with an area,
-    // too. A cut can only make ears of its two neighbours; looking there first keeps long strips,
-    // with ears at their ends alone, from taking O(n^2).
+    // Ears with an area come first, so a corner on a straight edge gets triangles with an area too.
+    // A cut can make ears only of its two neighbours. Looking there first keeps long strips with
+    // ears at their ends alone from taking O(n^2).
     constexpr std::uint32_t None = std::numeric_limits<std::uint32_t>::max();
     std::size_t num_left = polygon.size();
-    std::size_t num_cuts = 0;    // since out-of-date reflex corners were dropped
-    std::size_t num_refused = 0; // corners in a row that are no ear
+    std::size_t num_cuts = 0;    // cuts since out-of-date reflex corners were dropped
+    std::size_t num_refused = 0; // consecutive corners that are no ear
     std::uint32_t other_neighbour = None;
     Ear kind = Ear::Empty;
     std::uint32_t corner = 1;

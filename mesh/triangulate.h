@@ -1,4 +1,4 @@
-// Polygons into triangles.
+// Cuts polygons into triangles.
 #pragma once
 
 #include <array>
@@ -13,24 +13,25 @@
 
 namespace relumine::mesh {
 
-/// Cuts polygons of a mesh into triangles by ear clipping, in the polygon's own vertices: n - 2
-/// triangles for n corners, which cover the polygon exactly, also a concave one and one whose holes
-/// are joined to its outline by doubled edges. Convex polygons become fans. A polygon that crosses
-/// itself has no triangulation and becomes n - 2 triangles all the same. O(n) for convex polygons,
-/// O(n^2) for concave ones at worst.
+/// Cuts polygons of a mesh into triangles by ear clipping, without new vertices. A polygon of n
+/// corners gives n - 2 triangles that cover it exactly. Concave polygons are allowed, and holes if
+/// doubled edges join them to the outline. Convex polygons become fans. A polygon that crosses
+/// itself has no triangulation, but still gives n - 2 triangles.
+///
+/// Cost:    O(n) for convex polygons, at worst O(n^2) for concave ones.
 class Triangulator {
 public:
     /// `positions` must outlive the triangulator.
     explicit Triangulator(std::span<const glm::vec3> positions) : positions_(positions) {}
 
-    /// Appends the triangles of one polygon of at least three corners, all of them valid indices,
-    /// as places in `polygon`: a corner keeps what belongs to it. Throws std::runtime_error for
-    /// polygons of many thousand corners (self-crossing ones, above all) that would take minutes to
-    /// cut.
+    /// Appends the triangles of one polygon. The polygon has at least three corners, all of them
+    /// valid indices. Triangles hold places in `polygon`, so the data of a corner can be found.
+    /// Throws:  std::runtime_error for a polygon of many thousand corners that would take minutes
+    ///          to cut. Most of these cross themselves.
     void cut(std::span<const std::uint32_t> polygon,
              std::vector<std::array<std::uint32_t, 3>>& triangles);
 
-    /// The same, as indices of vertices.
+    /// Appends the same triangles as indices of vertices.
     void append(std::span<const std::uint32_t> polygon, std::vector<Triangle>& triangles);
 
 private:
@@ -52,11 +53,11 @@ private:
     [[nodiscard]] bool is_ear(std::uint32_t corner, Ear kind);
 
     std::span<const glm::vec3> positions_;
-    /// Of the current polygon, a ring
+    /// The current polygon as a ring.
     std::vector<Corner> corners_;
-    /// Those that are not convex, sorted by point.x; some are out of date
+    /// Corners that are not convex, sorted by point.x. Some entries are out of date.
     std::vector<ReflexCorner> reflex_;
-    /// corner-in-triangle tests, some 2 ns each, before the mesh is given up
+    /// Corner-in-triangle tests that are left before the mesh is refused. One takes about 2 ns.
     double work_left_ = 5e7;
 };
 

@@ -1,5 +1,5 @@
-// Where long work leaves what it has done, so that a later run goes on from there. Knows nothing of
-// files.
+// Where long work leaves its finished part, so that a later run goes on from there. Knows nothing
+// of files.
 #pragma once
 
 #include <cstddef>
@@ -9,12 +9,15 @@
 
 namespace relumine::prt {
 
-/// A store of checkpoints. Work has parts by name; each leaves a growing list of records (what is
-/// finished) and one state (what the rest needs), which every save replaces. Called from one thread
-/// at a time.
+/// A store of checkpoints.
+///
+/// Work has named parts. Each part has a growing list of records (the finished results) and one
+/// state (what the remaining work needs). Every save() replaces the state.
+///
+/// Threads: called from one thread at a time.
 class Checkpoint {
 public:
-    /// What an earlier run left of a part; both empty where it left nothing.
+    /// What an earlier run left of a part. Both are empty where it left nothing.
     struct Saved {
         std::vector<std::vector<std::byte>> records = {};
         std::vector<std::byte> state = {};
@@ -25,18 +28,22 @@ public:
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
 
-    /// To be asked once for each part, before its first save(). `with_state`: records count only as
-    /// far as the state knows of them. Throws std::runtime_error for what is damaged.
+    /// Returns what an earlier run left of a part. Call it once for each part, before the first
+    /// save() of the part. With `with_state`, only the records that the state covers count.
+    ///
+    /// Throws:  std::runtime_error for damaged data.
     [[nodiscard]] virtual Saved load(const std::string& part, bool with_state) = 0;
 
-    /// Whether it is time for the next save(). Cheap.
+    /// Whether the next save() is due.
+    ///
+    /// Cost:    small; ask often.
     [[nodiscard]] virtual bool is_due() = 0;
-    /// Whether so much was done since the last save() that a save() pays before the work stops or
+    /// Whether enough was done since the last save() to pay for one more, before the work stops or
     /// goes on to its next part.
     [[nodiscard]] virtual bool is_worthwhile() = 0;
 
-    /// Adds a record and replaces the part's state (empty: it has none); both or nothing. False
-    /// when that failed: the record must be given again with the next.
+    /// Adds a record and replaces the state of the part; an empty state means none. Does both or
+    /// nothing. Returns false on failure: give the record again with the next call.
     [[nodiscard]] virtual bool save(const std::string& part, std::span<const std::byte> record,
                                     std::span<const std::byte> state) = 0;
 };

@@ -8,8 +8,8 @@
 
 namespace relumine::prt {
 
-/// Gives what was freed in thousands of small blocks back to the system, where it would stay with
-/// the process until its end, unused.
+/// Gives freed memory back to the system. Thousands of small freed blocks would otherwise stay with
+/// the process until its end.
 inline void return_free_memory() {
 #ifdef __GLIBC__
     malloc_trim(0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "prt/precompute_context.h"
 #include "prt/receivers/receiver_order.h"
 #include "prt/tolerance.h"
 
@@ -12,43 +13,45 @@ namespace {
 
 constexpr std::uint64_t MiB = std::uint64_t{1} << 20;
 
-// Measured (docs/performance.md, "Memory"): the program and its libraries; per triangle Embree's
-// tree and the tree of beams with the mesh's indices; per vertex positions, normals and what
-// loading leaves; per receiver two copies of positions and normals in either order, and the order.
+// Measured (docs/performance.md, "Memory"). Per triangle: Embree's tree, the tree of beams and the
+// mesh's indices. Per vertex: positions, normals and the remains of loading. Per receiver: two
+// copies of positions and normals, one in each order, and the order itself.
 constexpr std::uint64_t ProgramBytes = 40 * MiB;
 constexpr std::uint64_t BytesPerTriangle = 150;
 constexpr std::uint64_t BeamBytesPerTriangle = 260;
 constexpr std::uint64_t BytesPerVertex = 48;
 constexpr std::uint64_t BytesPerReceiver = 80;
 
-/// The joined counts have a third word beside each two of the columns, and a file is written from a
-/// copy, compressed beside it.
+/// The joined counts have a third word for every two words of the columns. A file is written from a
+/// copy, with the compressed copy beside it.
 constexpr double JoinedPerColumn = 1.3;
 constexpr double SavedPerColumn = 2.6;
 
-/// Highlights: surfaces and directions to the eye, twice; blocks beside the lobe that they are
-/// joined to; its sections beside it.
+/// Highlights: surfaces and directions to the eye, twice. Blocks are in memory beside the lobe that
+/// they are joined to, and beside its sections.
 constexpr std::uint64_t GlossyBytesPerReceiver = 120;
 constexpr double JoinedPerGlossyByte = 2.2;
 constexpr double SavedPerGlossyByte = 3.4;
 
-/// Planes of all directions are never needed together.
+/// The largest level needs this part of all directions; the planes of all levels are never needed
+/// together.
 constexpr double DirectionsPerCluster = 4.1;
 constexpr double LargestLevel = 0.55;
 
-/// Receivers of the trial: blocks of neighbours, whose counts are stored together. Few large groups
-/// would be dearer to trust than to trace: neighbours err alike.
+/// Receivers of the trial: blocks of neighbours, whose counts are stored together. Samples are many
+/// small groups: neighbouring receivers have similar errors, so a few large groups would say
+/// little.
 constexpr std::size_t MaxTrialBlocks = 256;
 
-/// An RMS over few receivers scatters, and a cell is split when one of nine is too large: a trial
-/// finds more clusters than the whole. Of the scenes measured 1.6 to 1.8 times as many.
+/// A trial finds more clusters than the whole: an RMS over few receivers scatters, and a cell is
+/// split when one of nine is too large. The measured scenes had 1.6 to 1.8 times as many.
 constexpr double TrialExcess = 1.65;
 
-/// Every n-th group of neighbours.
+/// Takes every n-th group of neighbours.
 Receivers trial_receivers(const Receivers& receivers) {
     const std::vector<std::uint32_t> order = spatial_order(receivers);
     const std::size_t num_blocks = (order.size() + BlockSize - 1) / BlockSize;
-    // No more than an eighth of the work.
+    // At most an eighth of the work.
     const std::size_t num_wanted = std::clamp<std::size_t>(num_blocks / 8, 1, MaxTrialBlocks);
     Receivers trial;
     for (std::size_t i = 0; i < num_wanted; ++i) {
@@ -133,16 +136,16 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     trial_options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
     trial_options.checkpoint = nullptr;
     trial_options.on_progress = {};
-    trial_options.column_scale =
-        static_cast<double>(receivers.size()) / static_cast<double>(trial.size());
-    // A limit that is not one cannot be scaled.
+    const PrecomputeContext context{.column_scale = static_cast<double>(receivers.size()) /
+                                                    static_cast<double>(trial.size())};
+    // No limit is the largest number, which must not overflow when scaled.
     const double most =
         static_cast<double>(max_column_bytes(sizes, options.plane_bytes, max_bytes));
     trial_options.max_column_bytes = static_cast<std::uint64_t>(std::min(TrialExcess * most, 1e18));
     PrecomputeStatistics statistics;
     MemoryEstimate estimate;
     try {
-        static_cast<void>(precompute(trial, blockers, trial_options, &statistics));
+        static_cast<void>(precompute(trial, blockers, trial_options, context, &statistics));
     } catch (const TooManyClusters& error) {
         estimate.is_at_least = true;
         statistics.num_clusters = error.num_clusters;

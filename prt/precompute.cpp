@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include "prt/clusters/clustering.h"
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/precompute_context.h"
 
 namespace relumine::prt {
 
@@ -43,17 +45,24 @@ TooManyClusters::TooManyClusters(std::uint64_t clusters, std::uint64_t bytes)
       num_clusters(clusters), column_bytes(bytes) {}
 
 Transfer precompute(const Receivers& receivers, const Blockers& blockers,
-                    const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
+                    const PrecomputeOptions& options, const PrecomputeContext& context,
+                    PrecomputeStatistics* statistics) {
     check(receivers, options);
     const auto start = std::chrono::steady_clock::now();
     PrecomputeStatistics local;
-    Transfer transfer = Clustering(receivers, blockers, options).run(local);
+    Transfer transfer = Clustering(receivers, blockers, options, context).run(local);
     local.num_clusters = transfer.num_clusters();
     local.num_samples = local.num_directions * receivers.size();
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (statistics != nullptr)
         *statistics = local;
     return transfer;
+}
+
+Transfer precompute(const Receivers& receivers, const Blockers& blockers,
+                    const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
+    return precompute(receivers, blockers, options, {.more_follows = has_highlights(receivers)},
+                      statistics);
 }
 
 } // namespace relumine::prt

@@ -16,78 +16,78 @@
 namespace relumine::prt {
 
 struct PrecomputeOptions {
-    /// A cell is a cluster when the RMS over the receivers of T_C - T_l is below this for all
-    /// samples l, 1/sr, albedo 1:
-    /// ||T_C - T_l|| / sqrt(N) < tolerance. The default is the paper's epsilon of 5e-5 for its
-    /// Bunny of 73,196 vertices. 0 splits everything down to single texels. Differs from [JN, Eq.
-    /// 11], which divides by N, so that big meshes get worse; `epsilon` is that form.
+    /// The limit below which a cell becomes a cluster, 1/sr, albedo 1: the RMS over the receivers
+    /// of T_C - T_l, ||T_C - T_l|| / sqrt(N), for all samples l. The default is the paper's epsilon
+    /// of 5e-5 for its Bunny of 73,196 vertices. 0 splits everything down to single texels.
+    ///
+    /// Differs from [JN, Eq. 11], which divides by N and so gets worse for big meshes. `epsilon` is
+    /// the paper's form.
     float tolerance = 0.0135f;
-    /// [JN, Eq. 11]: ||T_C - T_l|| / N < epsilon; overrides tolerance
+    /// The paper's form [JN, Eq. 11]: ||T_C - T_l|| / N < epsilon. Overrides tolerance.
     std::optional<float> epsilon = {};
-    /// Every cell is split at least this often: nine samples can miss a thin blocker
+    /// Every cell is split at least this often: nine samples can miss a thin blocker.
     std::uint32_t min_level = 3;
-    /// R, 1..16384: cells stop at single texels of a 6 x R x R environment
+    /// R, 1..16384: cells stop at single texels of a 6 x R x R environment.
     std::uint32_t face_resolution = 1024;
-    /// Lift of the rays' origins along the normal, in the mesh's unit; see automatic_bias()
+    /// Lift of the rays' origins along the normal, in the mesh's unit; see automatic_bias().
     float bias = 0.0f;
-    /// Planes of visibility that may live at once, one bit per receiver and direction. With less,
-    /// directions on borders between batches of cells are traced more than once; the result is the
-    /// same. About 250 planes live in any case.
+    /// Limit on the planes of visibility in memory, one bit per receiver and direction. About 250
+    /// planes are in memory in any case. With a lower limit, directions on borders between batches
+    /// of cells are traced more than once. The result is the same.
     std::uint64_t plane_bytes = std::uint64_t{512} << 20;
-    /// Columns of clusters that may be in memory, the largest part of it next to the planes;
-    /// joining and writing them takes as much again. Beyond it TooManyClusters is thrown.
+    /// Limit on the columns of clusters in memory. They are the largest part of it beside the
+    /// planes, and joining and writing them takes as much again. Beyond the limit TooManyClusters
+    /// is thrown.
     std::uint64_t max_column_bytes = std::numeric_limits<std::uint64_t>::max();
-    /// Of a trial: columns count as those of so many times the receivers
-    double column_scale = 1.0;
-    /// Where the work is left now and then, and taken up
+    /// Stores the work now and then, and gives back the work of an earlier run; may be null. Where
+    /// the receivers have highlights, a last checkpoint is left for precompute_glossy(), which
+    /// follows.
     Checkpoint* checkpoint = nullptr;
-    /// Other work follows: leave a last checkpoint of this
-    bool more_follows = false;
-    /// For tests: work between two looks at the checkpoint
-    std::optional<std::uint64_t> samples_per_step = {};
-    /// Polled a few times a second or more often
+    /// Polled a few times a second or more often.
     std::stop_token stop = {};
-    /// Estimated fraction in [0, 1], never falling; one call at a time
+    /// Receives an estimate of the fraction done, in [0, 1], which never falls; one call at a time.
     std::function<void(double)> on_progress = {};
 };
 
 struct PrecomputeStatistics {
     std::uint64_t num_clusters = 0;
-    /// Sample directions traced; each once unless plane_bytes were few
+    /// Sample directions traced. Each counts once unless plane_bytes were too few.
     std::uint64_t num_directions = 0;
-    /// (receiver, direction) pairs decided: receivers times directions
+    /// (receiver, direction) pairs decided: receivers times directions.
     std::uint64_t num_samples = 0;
-    /// Those above the receiver's horizon, which were traced
+    /// Samples above the receiver's horizon, which were traced.
     std::uint64_t num_rays = 0;
-    /// Of all clusters' columns before they were joined
+    /// Bytes of all clusters' columns before they were joined.
     std::uint64_t column_bytes = 0;
     std::uint32_t deepest_level = 0;
     double seconds = 0.0;
-    /// Of these
+    /// The part of `seconds` for checkpoints.
     double seconds_checkpoints = 0.0;
 };
 
-/// Thrown by precompute() when its stop token asks.
+/// Thrown by precompute() when its stop token asks for it.
 struct Cancelled : std::exception {
     [[nodiscard]] const char* what() const noexcept override { return "cancelled"; }
 };
 
-/// Thrown by precompute() when the clusters take more than max_column_bytes, or must in the end; a
-/// checkpoint is left.
+/// Thrown by precompute() when the clusters take more than max_column_bytes, or would in the end.
+/// It leaves a checkpoint.
 struct TooManyClusters : std::runtime_error {
     TooManyClusters(std::uint64_t clusters, std::uint64_t bytes);
-    /// At least
+    /// A lower bound.
     std::uint64_t num_clusters;
-    /// Theirs, at least
+    /// A lower bound on these clusters' bytes.
     std::uint64_t column_bytes;
 };
 
 /// Clusters all directions of the sphere by their light transfer to the receivers [JN, Section 4].
-/// Each sample direction is traced once for each receiver, where plane_bytes allow. Parallel over
-/// receivers (TBB); the result is the same bit by bit for any number of threads, and whether or not
-/// it was taken up from a checkpoint. Memory: the result twice, and plane_bytes. Throws
-/// std::invalid_argument for options out of range or no receivers, Cancelled when stopped,
-/// TooManyClusters.
+/// Each sample direction is traced once for each receiver, where plane_bytes allow it.
+///
+/// Memory:  twice the result, and plane_bytes.
+/// Threads: parallel over receivers (TBB). The result is the same bit by bit for any number of
+///          threads, with or without a checkpoint taken up.
+/// Throws:  std::invalid_argument for options out of range or no receivers; Cancelled when stopped;
+///          TooManyClusters.
 [[nodiscard]] Transfer precompute(const Receivers& receivers, const Blockers& blockers,
                                   const PrecomputeOptions& options = {},
                                   PrecomputeStatistics* statistics = nullptr);

@@ -1,4 +1,4 @@
-// How far long work is, and whether it is to stop.
+// How far long work is, and whether it must stop.
 #pragma once
 
 #include <functional>
@@ -8,22 +8,27 @@
 
 namespace relumine::prt {
 
-/// Turns parts of stages into one fraction that never falls. All calls but start_stage() may come
-/// from any thread.
+/// Turns the progress of stages into one fraction that never falls.
+///
+/// Threads: any thread may call any function but start_stage().
 class Progress {
 public:
     /// Either argument may be empty.
     Progress(std::stop_token stop, std::function<void(double)> on_progress)
         : stop_(std::move(stop)), on_progress_(std::move(on_progress)) {}
 
-    /// The next stage takes the scale from `begin` to `end`.
+    /// Begins the next stage, which takes the scale from `begin` to `end`.
     void start_stage(double begin, double end) {
         begin_ = begin;
         end_ = end;
     }
-    /// `part` of the stage is done. Ends the work by an exception when asked to.
+    /// Says that the fraction `part` of the stage is done.
+    ///
+    /// Throws:  Cancelled when the work must stop.
     void report(double part);
-    /// Throws Cancelled when the work is to stop.
+    /// Checks the stop token.
+    ///
+    /// Throws:  Cancelled when the work must stop.
     void poll() const;
 
 private:

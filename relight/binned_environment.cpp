@@ -25,9 +25,9 @@ bool is_good(const glm::vec3& texel) {
     return good(texel.r) && good(texel.g) && good(texel.b);
 }
 
-/// Whether all values are surely good. As whole numbers, floats from 0 up are in their own order,
-/// and NaN and what is below zero are larger than all of them: one comparison that compilers turn
-/// into vectors. (-0 is good, but not surely.)
+/// Whether all values are surely good. As whole numbers, floats from 0 up keep their order, and NaN
+/// and negative values are larger than all of them. So one comparison suffices, which compilers
+/// turn into vectors. (-0 is good, but not surely.)
 bool are_surely_good(std::span<const glm::vec3> texels) {
     const auto surely = [](float value) {
         return std::bit_cast<std::uint32_t>(value) <= std::bit_cast<std::uint32_t>(MaxRadiance);

@@ -14,42 +14,49 @@
 
 namespace relumine::relight {
 
-/// The brightest texel that sums over a whole sphere of it stay finite for, in float, with room to
-/// spare.
+/// The limit on a texel's radiance. Sums over a whole sphere of such texels stay finite in float,
+/// with room to spare.
 inline constexpr float MaxRadiance = 1e30f;
 
-/// Throws std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
-/// Parallel; at the speed of memory.
+/// Checks radiance.
+///
+/// Cost:    parallel, at the speed of memory.
+/// Throws:  std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
 void require_radiance(std::span<const glm::vec3> texels);
 
-/// All that relighting needs of an environment.
+/// Everything that relighting needs of an environment.
 struct BinnedEnvironment {
     cubemap::CubeMap map;
-    /// Of the map's resolution
+    /// For the map's resolution.
     std::shared_ptr<const LightBinning> binning;
-    /// [num_clusters] all light of each cluster
+    /// [num_clusters] all light of each cluster.
     std::vector<VectorIrradiance> sums;
-    /// [num_clusters] length of its luminance
+    /// [num_clusters] power of each cluster: the length of its luminance vector.
     std::vector<double> powers;
-    /// None where they are not traced
+    /// Empty where sharp lights are not traced.
     std::vector<SharpLight> sharp_lights;
     double seconds_bin = 0.0;
-    /// Finding the sharp lights
+    /// Time for finding the sharp lights.
     double seconds_sharp = 0.0;
 };
 
-/// Bins environments for one scene, apart from the Relighter: the next frame of a sequence may be
-/// binned on another thread while this one is relit.
+/// Bins environments for one scene, apart from the Relighter. So another thread can bin the next
+/// frame of a sequence while the current one is relit.
 class EnvironmentBinner {
 public:
-    /// The transfer must outlive it. `sharp_tolerance`: ShadowRays::tolerance where sharp lights
-    /// are traced, 0 where not.
+    /// The transfer must outlive the binner. `sharp_tolerance` is ShadowRays::tolerance where sharp
+    /// lights are traced, otherwise 0.
     EnvironmentBinner(const prt::Transfer& transfer, float sharp_tolerance)
         : transfer_(transfer), sharp_tolerance_(sharp_tolerance) {}
+    /// Refuses a temporary transfer.
+    EnvironmentBinner(const prt::Transfer&& transfer, float sharp_tolerance) = delete;
 
-    /// O(6 R^2); parallel inside, the same bits for any number of threads. One thread at a time.
-    /// Throws std::invalid_argument for a map without texels or a radiance that require_radiance()
-    /// refuses.
+    /// Bins an environment.
+    ///
+    /// Cost:    O(6 R^2); parallel inside.
+    /// Threads: one call at a time. The same bits for any number of threads inside.
+    /// Throws:  std::invalid_argument for a map without texels, or a radiance that
+    ///          require_radiance() refuses.
     [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap map);
 
 private:

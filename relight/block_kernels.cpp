@@ -32,7 +32,7 @@ struct Normals {
           y(hn::LoadU(Floats(), normals.axes[1].data() + lane)),
           z(hn::LoadU(Floats(), normals.axes[2].data() + lane)) {}
 
-    /// max(n.e, 0)
+    /// Returns max(n.e, 0).
     [[nodiscard]] FloatVec cosine(const float* e) const {
         const Floats d;
         const auto along_z = hn::Mul(z, hn::Set(d, e[2]));
@@ -57,7 +57,7 @@ struct Sum {
     // functions around it.
     Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
 
-    /// c max(n.E, 0)
+    /// Adds c max(n.E, 0).
     void add_clamped(FloatVec count, const Normals& n, const float* e) {
         add(count, n.cosine(e), n.cosine(e + 3), n.cosine(e + 6));
     }
@@ -75,7 +75,7 @@ struct Sum {
     }
 };
 
-/// c E added up over clusters, per channel and axis, where no receiver needs the clamp.
+/// The sum of c E over clusters, per channel and axis, where no receiver needs the clamp.
 struct VectorSum {
     FloatVec red_x, red_y, red_z, green_x, green_y, green_z, blue_x, blue_y, blue_z;
 
@@ -96,7 +96,7 @@ struct VectorSum {
         blue_z = hn::MulAdd(count, hn::Set(d, e[8]), blue_z);
     }
 
-    /// n . this
+    /// Returns n . sum.
     [[nodiscard]] Sum on(const Normals& n) const {
         Sum sum;
         sum.red = hn::MulAdd(n.x, red_x, hn::MulAdd(n.y, red_y, hn::Mul(n.z, red_z)));
@@ -110,15 +110,14 @@ std::size_t first_float(std::uint64_t bits) {
     return static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride;
 }
 
-/// The mixed clusters of a block and word. `counts` and `vectors` begin at the word's first entry
-/// and cluster.
+/// The mixed clusters of a block and word. `counts` begins at the word's first entry.
 struct MixedWord {
     std::uint64_t clusters;
     const std::uint8_t* counts;
     const BlockNormals& normals;
 };
 
-/// Sums c max(n.E, 0) over the word's clusters.
+/// Sums c max(n.E, 0) over the word's clusters. `vectors` begins at the word's first cluster.
 void sum_clamped(const MixedWord& word, const float* vectors, WordSum& result) {
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
         const Normals n(word.normals, lane);
@@ -131,7 +130,7 @@ void sum_clamped(const MixedWord& word, const float* vectors, WordSum& result) {
     }
 }
 
-/// The same where the clamp can be left out.
+/// Sums c n.E over the word's clusters, where the clamp can be left out.
 void sum_unclamped(const MixedWord& word, const float* vectors, WordSum& result) {
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
         VectorSum sum;
@@ -143,7 +142,7 @@ void sum_unclamped(const MixedWord& word, const float* vectors, WordSum& result)
     }
 }
 
-/// sum_clamped() with two sets of vectors at once, which differ in `changed` clusters only.
+/// Does sum_clamped() with two sets of vectors at once. They differ in `changed` clusters only.
 void sum_clamped_twice(const MixedWord& word, std::uint64_t changed, const float* before,
                        const float* after, WordSum& result_before, WordSum& result_after) {
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
@@ -180,7 +179,7 @@ void add_difference(const WordSum& before, const WordSum& after, BlockLight& lig
                 static_cast<double>(after[channel][i]) - static_cast<double>(before[channel][i]);
 }
 
-/// Adds the clusters of the set bits, one difference of prefix sums for each run of them; `prefix`
+/// Adds the clusters of the set bits: one difference of prefix sums for each run of them. `prefix`
 /// begins at the word's first cluster.
 void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
     const hn::CappedTag<double, ClusterLights::Stride - 1> d;
@@ -217,7 +216,7 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light,
             const auto n_dot_e =
                 hn::MulAdd(nx, hn::Set(d, e[0]), hn::MulAdd(ny, hn::Set(d, e[1]), along_z));
             const auto mixed = hn::LoadU(d, light.mixed[channel].data() + lane);
-            // A whole cluster counts 16. Sums of nothing may round to a hair below zero.
+            // A whole cluster counts 16. A sum of nothing may round to a hair below zero.
             auto sum =
                 hn::Max(hn::Zero(d), hn::MulAdd(hn::Set(d, static_cast<double>(prt::FullCount)),
                                                 n_dot_e, mixed));
@@ -228,7 +227,7 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light,
     }
 }
 
-/// Calls visit(block, word) for the set bits; `word` is that of the tile's first block.
+/// Calls visit(block, word) for the set bits. `word` belongs to the tile's first block.
 template<class Visit>
 void for_blocks(std::uint64_t bits, std::size_t begin, std::size_t word, const Visit& visit) {
     for (; bits != 0; bits &= bits - 1) {
@@ -268,7 +267,7 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
     }
 }
 
-/// By how much the vectors of some clusters of a word changed together.
+/// The change of some clusters' vectors, summed over these clusters of a word.
 class VectorDifference {
 public:
     VectorDifference(std::uint64_t clusters, const float* before, const float* after) {
@@ -300,8 +299,8 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
         const std::size_t first_word = counts.word(begin, change.word);
         const float* before = all_before + std::size_t{change.word} * 64 * ClusterLights::Stride;
         const float* after = all_after + std::size_t{change.word} * 64 * ClusterLights::Stride;
-        // Most blocks that see any of the changed clusters whole see all of them: neighbours in the
-        // sky.
+        // Most blocks that see one changed cluster whole see all of them, because these are
+        // neighbours in the sky.
         const VectorDifference all(change.clusters, before, after);
         for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
             const std::uint64_t seen = counts.visible[word] & change.clusters;

@@ -22,9 +22,9 @@ namespace relumine::relight {
 /// numbers.
 struct ClusterLights {
     static constexpr std::size_t Stride = 9;
-    /// [num_clusters * 9] red x y z, green x y z, blue x y z
+    /// [num_clusters * 9] red x y z, green x y z, blue x y z.
     std::vector<float> vectors;
-    /// [(num_clusters + 1) * 9] sums of `vectors` over the clusters before each
+    /// [(num_clusters + 1) * 9] sums of `vectors` over the clusters before each one.
     std::vector<double> prefix;
 
     explicit ClusterLights(std::size_t num_clusters);
@@ -33,22 +33,24 @@ struct ClusterLights {
     void sum_prefix();
 };
 
-/// What a block of 16 receivers has received, in two parts: clusters that all 16 see whole add up
-/// to one vector; those they see in part add up per receiver. The sums are of float sums over 64
-/// clusters each, taken in double. An update takes such a float sum away and adds the new one, so
-/// nothing remains of a light that is gone, not even its rounding.
+/// The light that a block of 16 receivers has received, in two parts. Clusters that all 16 see
+/// whole add up to one vector. Clusters that they see in part add up per receiver.
+///
+/// The sums consist of float sums over 64 clusters each, added in double. An update subtracts such
+/// a float sum and adds the new one. So nothing remains of a light that is gone, not even its
+/// rounding.
 struct alignas(64) BlockLight {
-    /// Vector irradiance over 16 pi
+    /// Vector irradiance over 16 pi.
     std::array<double, ClusterLights::Stride> visible{};
-    /// Radiance [channel][receiver]
+    /// Radiance [channel][receiver].
     std::array<std::array<double, prt::BlockSize>, 3> mixed{};
 };
 
 /// Changed clusters among the 64 that share a word of VisibleCounts.
 struct ChangedWord {
-    /// Cluster / 64
+    /// Index of the cluster / 64.
     std::uint32_t word = 0;
-    /// Bit cluster % 64
+    /// Bit cluster % 64 is set for each changed cluster.
     std::uint64_t clusters = 0;
 };
 
@@ -61,34 +63,34 @@ struct alignas(64) BlockRadiance {
     }
 };
 
-/// Radiance that a block's receivers have beside that of the clusters, for albedo 1,
+/// Radiance of a block's receivers that does not come from clusters, for albedo 1,
 /// [channel][receiver].
 struct alignas(64) TracedRadiance {
     std::array<std::array<double, prt::BlockSize>, 3> channels{};
 };
 
-/// Both parts of a block's light put together, never below zero, and `traced` (null: nothing)
-/// added.
+/// Sums both parts of a block's light, never below zero, and adds `traced` (null: nothing).
 void block_radiance(const BlockNormals& normals, const BlockLight& light,
                     const TracedRadiance* traced, BlockRadiance& radiance);
 
-/// What a scene's blocks are lit by and with; sums of a tile's blocks need no more.
+/// The scene's data for lighting blocks. Sums of a tile's blocks need nothing else.
 struct BlockScene {
     const prt::VisibleCounts& counts;
-    /// tile_words()
+    /// From tile_words().
     std::span<const TileWord> words;
     /// [num_blocks]
     std::span<const BlockNormals> normals;
 };
 
 /// Lights the blocks of a tile from all clusters [JN, Eq. 8]: sum over C of c/16 max(n.E_C, 0)/pi.
-/// `light` is that of all blocks.
+///
+/// Shape:   light holds all blocks of the scene.
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                 std::span<BlockLight> light);
 
-/// Adds what the changed clusters make of the tile's light [JN, Eq. 15]. `before` and `after` are
-/// ClusterLights::vectors of all clusters; they differ in no other cluster. Returns the blocks that
-/// see any of them, bit b for the tile's block b.
+/// Adds the effect of changed clusters to the light of a tile [JN, Eq. 15]. `before` and `after`
+/// are ClusterLights::vectors of all clusters; they differ in no other cluster. Returns the blocks
+/// that see a changed cluster: bit b for the tile's block b.
 std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
                           std::span<const ChangedWord> changes, std::span<const float> before,
                           std::span<const float> after, std::span<BlockLight> light);

@@ -17,7 +17,9 @@ struct alignas(64) BlockNormals {
     std::array<std::array<float, prt::BlockSize>, 3> axes{};
 };
 
-/// [ceil(normals.size() / 16)]
+/// Returns the normals in blocks.
+///
+/// Shape:   [ceil(normals.size() / 16)].
 [[nodiscard]] inline std::vector<BlockNormals> block_normals(std::span<const glm::vec3> normals) {
     std::vector<BlockNormals> blocks((normals.size() + prt::BlockSize - 1) / prt::BlockSize);
     for (std::size_t i = 0; i < normals.size(); ++i)

@@ -13,13 +13,12 @@ namespace relumine::relight {
 
 namespace {
 
-/// Range of texels along one axis that an interval meets, and which of them it covers whole.
+/// Ranges of texels along one axis for an interval.
 struct TexelRange {
-    /// Those it meets
+    /// Texels that the interval meets.
     std::uint32_t begin, end;
-    std::uint32_t whole_begin,
-        /// Those inside; empty (begin == end) for an interval within one texel
-        whole_end;
+    /// Texels inside the interval; empty (begin == end) for an interval within one texel.
+    std::uint32_t whole_begin, whole_end;
 };
 
 TexelRange texel_range(double low, double high) {
@@ -45,7 +44,7 @@ struct FaceSums {
     }
 };
 
-/// From the coordinates (u, v, 1) of a face to the world, one colour channel.
+/// Turns coordinates (u, v, 1) of a face to the world, for one colour channel.
 glm::dvec3 to_world(cubemap::Face face, double u, double v, double one) {
     // cube_point is linear in (2s - 1, 2t - 1, 1) for a fixed face.
     const glm::dvec3 centre = cubemap::cube_point(face, 0.5, 0.5);
@@ -106,7 +105,8 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
                               std::sqrt(u * u + v * v + 1.0);
         sums.add(glm::dvec3(environment.at(cell.face, x, y)) * weight, u, v);
     };
-    // The texels around a rectangle of whole ones: all of them where there is none.
+    // Parts of texels lie around a rectangle of whole ones. Without whole ones, all texels are
+    // parts.
     const bool any_whole =
         columns.whole_begin < columns.whole_end && rows.whole_begin < rows.whole_end;
     for (std::uint32_t y = rows.begin; y < rows.end; ++y) {

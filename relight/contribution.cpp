@@ -5,12 +5,14 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "relight/block_kernels.h"
+#include "relight/light_packets.h"
+
 namespace relumine::relight {
 
 namespace {
 
-/// Texels whose centres lie in a cell; where there is none, the texel that the cell's centre lies
-/// in.
+/// Texels whose centres lie in a cell. Where there is none, the texel that holds the cell's centre.
 struct TexelSpan {
     std::uint32_t x0, y0, x1, y1;
 };
@@ -42,8 +44,8 @@ public:
           taken_(environment.texels.size()),
           solid_angles_(cubemap::texel_solid_angles(environment.resolution)) {}
 
-    /// Adds `radiance`, which came from the cell, to its texels that are not taken yet, by their
-    /// radiance.
+    /// Adds `radiance`, which came from the cell, to its texels that are not taken yet, in
+    /// proportion to their radiance. With `take`, the texels are taken afterwards.
     void spread(const prt::Cell& cell, const glm::dvec3& radiance, bool take) {
         if (radiance == glm::dvec3(0.0))
             return;
@@ -74,7 +76,8 @@ public:
 private:
     template<class Visit>
     void for_each(cubemap::Face face, const TexelSpan& span, const Visit& visit) const {
-        // When sharp lights took all texels of the cluster, what is left of it goes to all.
+        // If sharp lights took all texels of the cluster, the rest of its light goes to all of
+        // them.
         for (const bool all : {false, true}) {
             bool any = false;
             for (std::uint32_t y = span.y0; y < span.y1; ++y)

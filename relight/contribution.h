@@ -1,4 +1,4 @@
-// Who lights this? The transpose of relighting.
+// Which light reaches a receiver? The transpose of relighting.
 #pragma once
 
 #include <cstdint>
@@ -12,17 +12,23 @@
 
 namespace relumine::relight {
 
-/// The environment weighted by how much of it reaches the receivers: each texel's radiance times
-/// the transfer of its cluster (or, for a sharp light, its own shadow ray), averaged over the
-/// receivers. Unit: radiance per sr; the integral over the sphere, cubemap::total_power(), is the
-/// mean of their radiance(). Throws std::invalid_argument for no receivers or an index out of
-/// range. O(clusters times receivers + 6 R^2).
+/// Returns the environment weighted by how much of it reaches the receivers: each texel's radiance
+/// times the transfer of its cluster, averaged over the receivers. A sharp light has its own shadow
+/// ray in place of the cluster's transfer. The integral over the sphere, cubemap::total_power(), is
+/// the mean of the receivers' radiance().
+///
+/// Unit:    radiance per sr.
+/// Cost:    O(clusters times receivers + 6 R^2).
+/// Throws:  std::invalid_argument for no receivers, or an index out of range.
 [[nodiscard]] cubemap::CubeMap contribution_map(const Relighter& relighter,
                                                 std::span<const std::uint32_t> receivers);
 
-/// The other way round: what a part of the environment gives to each receiver, [num_receivers] in
-/// their own order, albedo 1. `weights`: the part, 0 to 1 for each texel, [6 * R * R] of the
-/// relighter's environment.
+/// Returns the radiance that a part of the environment gives to each receiver, as
+/// Relighter::radiance().
+///
+/// Shape:   [num_receivers] in the receivers' own order. weights is [6 * R * R] in the relighter's
+///          environment: the part of each texel, 0 to 1.
+/// Throws:  std::invalid_argument for another number of weights.
 [[nodiscard]] std::vector<glm::vec3> radiance_from(const Relighter& relighter,
                                                    std::span<const float> weights);
 

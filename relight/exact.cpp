@@ -13,6 +13,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "lights/split_mix64.h"
 #include "prt/glossy/brdf.h"
 #include "prt/precompute.h"
 
@@ -20,16 +21,16 @@ namespace relumine::relight {
 
 namespace {
 
-// A packet is a 4 x 4 tile of texels; 64 receivers of one task share the work of setting it up.
+// A packet is a 4 x 4 tile of texels. The 64 receivers of one task share the work of setting it up.
 constexpr std::uint32_t TileSize = 4;
 constexpr std::size_t ReceiversPerTask = 64;
 static_assert(std::size_t{TileSize} * TileSize == prt::PacketSize);
 
 struct Tile {
     prt::DirectionPacket packet;
-    /// L dw
+    /// L dw.
     std::array<glm::dvec3, prt::PacketSize> power{};
-    /// Lanes with any light
+    /// Lanes with any light.
     std::uint32_t lit = 0;
 };
 
@@ -54,7 +55,7 @@ Tile tile_at(const cubemap::CubeMap& environment, std::span<const double> solid_
     return tile;
 }
 
-/// Light that one receiver sends back, colours put in last.
+/// Computes the light that one receiver sends back. Colours are put in last.
 class ExactReceiver {
 public:
     ExactReceiver(const prt::Receivers& receivers, std::uint32_t index, float bias)
@@ -95,7 +96,7 @@ public:
 private:
     glm::vec3 normal_;
     glm::vec3 origin_;
-    /// Below every horizon: no highlight
+    /// Zero is below every horizon: no highlight.
     glm::vec3 to_eye_{0.0f};
     prt::Surface surface_;
 };
@@ -179,15 +180,10 @@ std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::
         count = num_receivers;
     std::vector<std::uint32_t> places(num_receivers);
     std::iota(places.begin(), places.end(), 0u);
-    // Fisher and Yates' shuffle of the first `count` places, by SplitMix64 (Steele, Lea, Flood
-    // 2014): the same on every system.
-    for (std::size_t i = 0; i < count; ++i) {
-        std::uint64_t z = (seed += 0x9e3779b97f4a7c15);
-        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9;
-        z = (z ^ z >> 27) * 0x94d049bb133111eb;
-        z ^= z >> 31;
-        std::swap(places[i], places[i + z % (num_receivers - i)]);
-    }
+    // Fisher and Yates' shuffle of the first `count` places.
+    lights::SplitMix64 random(seed);
+    for (std::size_t i = 0; i < count; ++i)
+        std::swap(places[i], places[i + random.below(num_receivers - i)]);
     places.resize(count);
     std::sort(places.begin(), places.end());
     std::transform(places.begin(), places.end(), places.begin(),

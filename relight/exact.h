@@ -1,5 +1,5 @@
-// Exact integration: every light of the environment, every shadow ray. Slow and right; what the
-// fast path is held to.
+// Exact integration: every light of the environment, every shadow ray. Slow and right; the
+// reference for the fast path.
 #pragma once
 
 #include <cstddef>
@@ -19,46 +19,52 @@
 namespace relumine::relight {
 
 struct ExactOptions {
-    /// Lift of the rays' origins, as in prt::PrecomputeOptions
+    /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;
-    /// Polled a few times a second; prt::Cancelled is thrown
+    /// Polled a few times a second. A stop ends the work with prt::Cancelled.
     std::stop_token stop = {};
-    /// Fraction in [0, 1]; one call at a time
+    /// Receives the fraction done, in [0, 1]; one call at a time.
     std::function<void(double)> on_progress = {};
 };
 
-/// Outgoing radiance for albedo 1 of the chosen receivers [receiver_indices.size()]:
-/// B = 1/pi sum over all 6 R^2 texels of L_j dw_j V(w_j) max(n.w_j, 0), lights at texel centres,
-/// sums in double [JN, Eq. 1]. Black texels and those below the horizon cast no ray. Parallel over
-/// receivers; the order of each sum is fixed. Throws std::invalid_argument for an index or a size
-/// that does not fit the receivers, and for an environment without texels; Cancelled.
+/// Returns the outgoing radiance of the chosen receivers: B = 1/pi sum over all 6 R^2 texels of L_j
+/// dw_j V(w_j) max(n.w_j, 0), lights at texel centres, sums in double [JN, Eq. 1]. Albedo is 1
+/// where receivers have no surfaces; otherwise the lobes and colours of their surfaces count.
+///
+/// Shape:   [receiver_indices.size()].
+/// Cost:    a ray per receiver and texel that is not black and above the horizon.
+/// Threads: parallel over receivers; the order of each sum is fixed.
+/// Throws:  std::invalid_argument for an index or a size that does not fit the receivers, and for
+///          an environment without texels; prt::Cancelled when stopped.
 [[nodiscard]] std::vector<glm::dvec3>
 exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
                const prt::Blockers& blockers, const cubemap::CubeMap& environment,
                const ExactOptions& options = {});
 
-/// `count` receivers chosen at random without repetition (all of them for 0 or more than there
-/// are), the same for the same seed. Neighbours in space stand together, so that their rays are
-/// traced together.
+/// Returns `count` receivers chosen at random without repetition; all of them for 0, or for more
+/// than there are. The same seed gives the same receivers. Neighbours in space stand together, so
+/// that their rays are traced together.
 [[nodiscard]] std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer,
                                                           std::size_t count, std::uint64_t seed);
 
-/// How far relit radiance is from exact radiance.
+/// The difference between relit and exact radiance.
 struct ErrorReport {
-    /// ||B - B_exact|| / ||B_exact|| over receivers and RGB; 0 where both are black
+    /// ||B - B_exact|| / ||B_exact|| over receivers and RGB; 0 where both are black.
     double relative_l2 = 0.0;
-    /// Mean |B - B_exact| over receivers and RGB, over mean_radiance
+    /// Mean |B - B_exact| over receivers and RGB, over mean_radiance.
     double mean_abs = 0.0;
-    /// Largest |B - B_exact|, over mean_radiance
+    /// Largest |B - B_exact|, over mean_radiance.
     double max_abs = 0.0;
-    /// Mean of B_exact over receivers and RGB
+    /// Mean of B_exact over receivers and RGB.
     double mean_radiance = 0.0;
-    /// Where max_abs is
+    /// The receiver with max_abs.
     std::uint32_t worst_receiver = 0;
 };
 
-/// exact: [receiver_indices.size()] from exact_radiance(); relit: [num_receivers]. Throws
-/// std::invalid_argument for sizes or indices that do not fit.
+/// Compares relit with exact radiance.
+///
+/// Shape:   exact is [receiver_indices.size()] from exact_radiance(); relit is [num_receivers].
+/// Throws:  std::invalid_argument for sizes or indices that do not fit.
 [[nodiscard]] ErrorReport compare(std::span<const std::uint32_t> receiver_indices,
                                   std::span<const glm::dvec3> exact,
                                   std::span<const glm::vec3> relit);

@@ -61,12 +61,12 @@ void require_equal_counts(std::size_t frames, std::size_t reference) {
             fmt::format("expected {} frames as in the reference, got {}", reference, frames));
 }
 
-/// The frames of files, one after the other; one file is in memory.
+/// The frames of files, one after the other. One file is in memory.
 class FileFrames {
 public:
     explicit FileFrames(std::span<const std::filesystem::path> paths) : paths_(paths) {}
 
-    /// Values of the next frame; valid until the next call. None at the end.
+    /// Returns the values of the next frame, valid until the next call; empty at the end.
     std::span<const glm::vec3> next() {
         while (frame_ == num_frames_) {
             if (file_ == paths_.size()) {
@@ -86,7 +86,7 @@ public:
         return std::span(array_.values).subspan(size * frame_++, size);
     }
     [[nodiscard]] bool at_end() const { return at_end_; }
-    /// Of the file that the last frame was in.
+    /// Returns the name of the last frame's file.
     [[nodiscard]] std::string name() const {
         return file_ > 0 ? paths_[file_ - 1].string() : "no files";
     }
@@ -94,10 +94,10 @@ public:
 private:
     std::span<const std::filesystem::path> paths_;
     VectorArray array_;
-    /// To read next
+    /// File to read next.
     std::size_t file_ = 0;
     std::size_t frame_ = 0;
-    /// In array_
+    /// Frames in array_.
     std::size_t num_frames_ = 0;
     bool at_end_ = false;
 };

@@ -11,11 +11,11 @@
 
 namespace relumine::relight {
 
-/// Radiance of a block's receivers through each lobe, colours not put in.
+/// Radiance of a block's receivers through each lobe, without colours.
 using GlossyLight = std::array<BlockRadiance, prt::NumGlossyLobes>;
 
 /// Lights one block through one lobe [JN, Eq. 8]: sum over its cells of light times transfer.
-/// `light` as LightPyramid::light().
+/// `light` is LightPyramid::light().
 void light_block(const prt::LobeCuts& cuts, std::size_t block, std::span<const float> light,
                  BlockRadiance& radiance);
 

@@ -20,26 +20,26 @@ namespace relumine::relight {
 namespace {
 
 /// Receivers whose radiance one task copies: about 10 microseconds, ten times the cost of starting
-/// it.
+/// a task.
 constexpr std::size_t CopyGrain = 8192;
 
-/// The tiles of 16 x 16 texels in which two maps of one resolution differ; NaN differs from
+/// Appends the tiles of 16 x 16 texels in which two maps of one resolution differ. NaN differs from
 /// everything.
 void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap& after,
                           std::vector<cubemap::TexelRectangle>& tiles) {
-    constexpr std::uint32_t TileSize = 16;
+    constexpr std::uint32_t EditTileSize = 16;
     const std::uint32_t r = before.resolution;
-    const std::uint32_t rows = (r + TileSize - 1) / TileSize;
+    const std::uint32_t rows = (r + EditTileSize - 1) / EditTileSize;
     std::vector<std::vector<cubemap::TexelRectangle>> of_row(cubemap::NumFaces * std::size_t{rows});
     tbb::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t i) {
         const cubemap::Face face = cubemap::AllFaces[i / rows];
-        const auto y = static_cast<std::uint32_t>(i % rows) * TileSize;
-        for (std::uint32_t x = 0; x < r; x += TileSize) {
+        const auto y = static_cast<std::uint32_t>(i % rows) * EditTileSize;
+        for (std::uint32_t x = 0; x < r; x += EditTileSize) {
             const cubemap::TexelRectangle tile{.face = face,
                                                .x0 = x,
                                                .y0 = y,
-                                               .x1 = std::min(x + TileSize, r),
-                                               .y1 = std::min(y + TileSize, r)};
+                                               .x1 = std::min(x + EditTileSize, r),
+                                               .y1 = std::min(y + EditTileSize, r)};
             bool equal = true;
             for (std::uint32_t row = tile.y0; equal && row < tile.y1; ++row) {
                 const glm::vec3* of_before = &before.at(face, x, row);
@@ -62,7 +62,7 @@ void require_radiance_in(const cubemap::CubeMap& map,
                 {&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
 }
 
-/// Adds what of a rectangle is in none of the list yet.
+/// Adds the parts of a rectangle that no rectangle of the list covers.
 void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t first,
                       std::vector<cubemap::TexelRectangle>& list) {
     for (std::size_t i = first; i < list.size(); ++i) {
@@ -70,7 +70,7 @@ void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t firs
         if (there.face != rectangle.face || there.x0 >= rectangle.x1 || there.x1 <= rectangle.x0 ||
             there.y0 >= rectangle.y1 || there.y1 <= rectangle.y0)
             continue;
-        // Above and below as wide as it is, left and right between.
+        // Parts above and below have the full width; parts on the left and right lie between them.
         cubemap::TexelRectangle above = rectangle, below = rectangle, left = rectangle,
                                 right = rectangle;
         above.y1 = left.y0 = right.y0 = std::max(rectangle.y0, there.y0);
@@ -85,8 +85,8 @@ void append_uncovered(const cubemap::TexelRectangle& rectangle, std::size_t firs
     list.push_back(rectangle);
 }
 
-/// Where two strokes differ of which one goes on where the other ends, as when one is painted: the
-/// new piece, a little wider.
+/// Returns the piece by which one stroke continues another, made a little wider; nothing for other
+/// pairs of layers. A stroke that is being painted grows by such pieces.
 std::optional<cubemap::LightLayer>
 added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uint32_t resolution) {
     const auto* from = std::get_if<cubemap::Stroke>(&a.region);
@@ -98,9 +98,9 @@ added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uin
         std::swap(from, to);
     if (!std::equal(from->points.begin(), from->points.end(), to->points.begin()))
         return std::nullopt;
-    // A texel at the rim of both is fitted to the distance at its corners, so a piece counts that
-    // comes near them without covering them: up to three times the chord from a texel's centre to
-    // its corner, one of which touched_texels() adds.
+    // A texel at the rim of both strokes is fitted to the distance at its corners. So a piece also
+    // changes texels near it that it does not cover. They lie within three times the chord from a
+    // texel's centre to its corner; touched_texels() adds one of the three.
     constexpr double Radian = 180.0 / std::numbers::pi;
     const double margin = 2.0 * 1.5 / resolution;
     const double chord = 2.0 * std::sin(0.5 * to->radius_degrees / Radian) + margin;
@@ -116,7 +116,7 @@ added_piece(const cubemap::LightLayer& a, const cubemap::LightLayer& b, std::uin
     return piece;
 }
 
-/// The report of a relighting of everything.
+/// Returns the report of relighting everything.
 UpdateReport report_of(const RelightTimes& times, const prt::Transfer& transfer) {
     return {.num_clusters = transfer.num_clusters(),
             .num_receivers = transfer.num_receivers(),
@@ -152,7 +152,7 @@ UpdateReport LightEditor::update_base(cubemap::CubeMap base) {
         return report_of(set_base(std::move(base)), relighter_.transfer());
     dirty_.clear();
     append_changed_tiles(*base_, base, dirty_);
-    require_radiance_in(base, dirty_); // the rest equals what was good
+    require_radiance_in(base, dirty_); // the rest was checked before
     const UpdateReport report = update_dirty(base, turned_layers_);
     base_ = std::make_shared<const cubemap::CubeMap>(std::move(base));
     return report;
@@ -221,9 +221,9 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         std::swap(turned_layers_, next_layers_);
         return {};
     }
-    // Layers at the same place in both lists that are equal change nothing; all others dirty what
-    // they cover, before and after. A layer that moved within the list is compared with its new
-    // neighbour, and so dirtied.
+    // Equal layers at the same place in both lists change nothing. Every other layer dirties the
+    // texels that it covers, before and after. A layer that moved within the list is compared with
+    // its new neighbour, and so dirtied.
     const auto add = [&](const cubemap::LightLayer& layer) {
         for (const cubemap::TexelRectangle& touched :
              cubemap::touched_texels(layer, base_->resolution))
@@ -247,8 +247,8 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
         if (i < next_layers_.size() && !same_place)
             add(next_layers_[i]);
     }
-    // Rectangles that do not grow by it were made one; what of others overlaps is done once all the
-    // same.
+    // Rectangles that could be joined without growing were joined. Where others overlap, each texel
+    // still counts once.
     for (const cubemap::TexelRectangle& touched : touched_)
         append_uncovered(touched, 0, dirty_);
     const UpdateReport report = update_dirty(turned_base(), next_layers_);
@@ -282,7 +282,7 @@ void LightEditor::mark() {
         ++at_;
         forget_oldest();
     }
-    // A mark is a state to come back to bit by bit, however one came there.
+    // A mark's radiance must be the same bit by bit, whichever edits led to it.
     if (base_) {
         relighter_.resum();
         publish();
@@ -293,7 +293,7 @@ void LightEditor::forget_oldest() {
     const auto bytes_of = [](const cubemap::CubeMap& map) {
         return map.texels.size() * sizeof(map.texels.front());
     };
-    // From the newest mark back: how many fit?
+    // Count from the newest mark back: how many fit?
     std::set<const cubemap::CubeMap*> bases = {base_.get()};
     std::size_t bytes = 0;
     std::size_t first = history_.size();

@@ -15,7 +15,7 @@ namespace relumine::relight {
 namespace {
 
 /// Receivers of one task: with a handful of lights about 50 microseconds of work.
-constexpr std::size_t ReceiversPerTask = 64;
+constexpr std::size_t ReceiversPerPart = 64;
 
 } // namespace
 
@@ -42,7 +42,7 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
                              glm::length(irradiance.blue)};
 }
 
-/// Which of the packet's lights reach the receiver.
+/// Returns the lanes whose light reaches the receiver.
 std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position,
                                     const glm::vec3& normal, const ShadowRays& rays) {
     const std::uint32_t used = (1u << packet.directions.num_directions) - 1;
@@ -67,7 +67,7 @@ void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
                                std::span<prt::Lobes<glm::dvec3>> sums) const {
     std::fill(sums.begin(), sums.end(), prt::Lobes<glm::dvec3>());
     for (const Packet& packet : packets_) {
-        // By light, as the lobes are evaluated for a block at a time.
+        // Transposed to lights, as the lobes are evaluated for a block at a time.
         std::array<std::uint32_t, prt::PacketSize> reached{};
         for (std::size_t i = 0; i < sums.size(); ++i)
             for (std::uint32_t lights = visible(packet, positions[i], normals[i], rays);
@@ -110,7 +110,7 @@ std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lig
         throw std::invalid_argument("expected indices of receivers");
     const LightPackets packets(lights);
     std::vector<glm::dvec3> radiance(receiver_indices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerTask),
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerPart),
                       [&](const auto& some) {
                           for (std::size_t i = some.begin(); i < some.end(); ++i) {
                               const std::uint32_t receiver = receiver_indices[i];

@@ -11,24 +11,12 @@
 #include "lights/light_list.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/lobe_kernel.h"
-#include "prt/receivers/receivers.h"
 #include "prt/visibility/blockers.h"
 #include "relight/cluster_lights.h"
+#include "relight/shadow_rays.h"
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
-
-/// What tracing lights one by one takes. Without blockers no light is traced.
-struct ShadowRays {
-    /// Must outlive its user
-    const prt::Blockers* blockers = nullptr;
-    /// [num_receivers] in the receivers' own order; must outlive its user
-    std::span<const glm::vec3> positions = {};
-    /// Lift of the rays' origins, as in prt::PrecomputeOptions
-    float bias = 0.0f;
-    /// Of the precompute, RMS form, 1/sr
-    float tolerance = 0.0135f;
-};
 
 /// Lights ready to be traced. Fastest when neighbours in the list lie close together.
 class LightPackets {
@@ -36,13 +24,15 @@ public:
     explicit LightPackets(std::span<const SharpLight> lights);
     explicit LightPackets(std::span<const lights::DistantLight> lights);
 
-    /// Radiance (albedo 1) that a receiver gets: one shadow ray for each light above its horizon.
+    /// Returns the radiance (albedo 1) of a receiver: one shadow ray for each light above its
+    /// horizon.
     [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
                                       const ShadowRays& rays) const;
 
-    /// The same for a block of up to 16 receivers with highlights, colours not put in: radiance
-    /// through each lobe. A light is a point. `positions`, `normals` and `sums` have one element
-    /// per receiver.
+    /// Computes the radiance through each lobe, without colours, of a block of up to 16 receivers
+    /// with highlights. A light is a point.
+    ///
+    /// Shape:   positions, normals and sums have one element per receiver.
     void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
                      std::span<const glm::vec3> normals, const ShadowRays& rays,
                      std::span<prt::Lobes<glm::dvec3>> sums) const;
@@ -53,7 +43,7 @@ private:
     struct Packet {
         prt::DirectionPacket directions;
         std::array<VectorIrradiance, prt::PacketSize> irradiance{};
-        /// Length of each channel's vector
+        /// Length of each channel's vector.
         std::array<glm::dvec3, prt::PacketSize> strength{};
     };
     static std::uint32_t visible(const Packet& packet, const glm::vec3& position,
@@ -61,21 +51,7 @@ private:
     std::vector<Packet> packets_;
 };
 
-/// A distant light's irradiance as a vector.
+/// Returns a distant light's irradiance as a vector.
 [[nodiscard]] VectorIrradiance vector_irradiance(const lights::DistantLight& light);
-
-/// Outgoing radiance for albedo 1 of the chosen receivers [receiver_indices.size()] under the
-/// lights: 1/pi sum of E_i V(w_i) max(n.w_i, 0). `rays.positions` are the receivers' own. Parallel;
-/// the order of each sum is fixed. O(receivers x lights) shadow rays. Throws std::invalid_argument
-/// for shadow rays without blockers or with another number of positions, and for an index out of
-/// range.
-[[nodiscard]] std::vector<glm::dvec3>
-radiance_under(std::span<const lights::DistantLight> lights, std::span<const glm::vec3> normals,
-               std::span<const std::uint32_t> receiver_indices, const ShadowRays& rays);
-
-/// The same for all receivers, [normals.size()].
-[[nodiscard]] std::vector<glm::vec3> radiance_under(std::span<const lights::DistantLight> lights,
-                                                    std::span<const glm::vec3> normals,
-                                                    const ShadowRays& rays);
 
 } // namespace relumine::relight

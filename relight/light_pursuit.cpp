@@ -14,11 +14,10 @@ namespace relumine::relight {
 
 namespace {
 
-// A column is a combination of others when less than this part of it is new: well above float
-// rounding.
+// A column with a smaller new part than this is a combination of others. Well above float rounding.
 constexpr float LeastNewPart = 1e-4f;
 
-// An exchange that lowers the error by less is rounding, and could go on for ever.
+// A smaller gain of an exchange is rounding, and exchanging for it could go on for ever.
 constexpr double LeastGain = 1e-9;
 
 /// Candidates of one task of sums over lights: tens of microseconds, and they stay in the cache.
@@ -150,7 +149,7 @@ void LightPursuit::fit() {
     const std::size_t n = chosen_.size();
     std::vector<double> gram(n * n);
     for (std::size_t l = 0; l < n; ++l)
-        for (std::size_t k = 0; k < n; ++k) // products_[l] of k and of k of l are the same sum
+        for (std::size_t k = 0; k < n; ++k) // products_[l] of k and products_[k] of l are equal
             gram[l * n + k] = static_cast<double>(products_[l][chosen_[k].candidate]);
     tbb::parallel_for(0, 3, [&](int channel) {
         std::vector<double> targets(n);
@@ -184,7 +183,7 @@ void LightPursuit::correlate() {
 
 double LightPursuit::gain(std::size_t candidate) const {
     if (!(new_norms_[candidate] > LeastNewPart * norms_[candidate]))
-        return 0.0; // a combination of those that are there
+        return 0.0; // a combination of the chosen columns
     double useful = 0.0;
     for (const std::vector<float>& correlations : correlations_) {
         const auto common = static_cast<double>(std::max(correlations[candidate], 0.0f));

@@ -16,7 +16,7 @@ constexpr std::size_t NumChannels = 3;
 /// Rows of deepest cells of one task.
 constexpr std::size_t RowsPerTask = 8;
 
-/// Sum of L dw over k x k texels.
+/// Returns the sum of L dw over k x k texels.
 glm::dvec3 sum_of_texels(const cubemap::CubeMap& environment, std::span<const double> solid_angles,
                          const prt::Cell& cell, std::uint32_t k) {
     const std::uint32_t r = environment.resolution;
@@ -102,7 +102,7 @@ void LightPyramid::set_deepest(const cubemap::CubeMap& environment, const LightB
                 light = glm::dvec3(environment.at(cell.face, cell.x / (n / r), cell.y / (n / r))) *
                         solid_angles_[std::size_t{cell.y} * n + cell.x];
             } else {
-                // So small a cell's vector is as long as its light is strong.
+                // The vector of so small a cell is as long as its light is strong.
                 const VectorIrradiance sum = binning.sum(environment, cell);
                 light = {glm::length(sum.red), glm::length(sum.green), glm::length(sum.blue)};
             }
@@ -119,8 +119,8 @@ void LightPyramid::set_deepest(const cubemap::CubeMap& environment, const LightB
         });
 }
 
-/// A sharp light is all light of its cell: that of the deepest cells in it, or a part of the one
-/// that holds it.
+/// Removes a sharp light, which is the whole light of its cell: the light of all deepest cells in
+/// it, or a part of the deepest cell that holds it.
 void LightPyramid::remove(const SharpLight& sharp) {
     float* deepest =
         light_.data() + std::size_t{prt::num_cells_above(deepest_level_)} * NumChannels;

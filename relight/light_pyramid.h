@@ -13,23 +13,30 @@
 
 namespace relumine::relight {
 
-/// Sum of L_j dw_j over the texels j of each cell, RGB, unit of radiance times sr.
+/// Sum of L_j dw_j over the texels j of each cell, RGB.
+///
+/// Unit:    radiance times sr.
 class LightPyramid {
 public:
-    /// Cells down to `deepest_level`. Memory: 12 bytes a cell, 8 * 4^level cells.
+    /// Covers cells down to `deepest_level`.
+    ///
+    /// Memory:  12 bytes per cell, about 8 * 4^level cells.
     explicit LightPyramid(std::uint32_t deepest_level);
 
-    /// Sums a whole environment but for the lights in `without`, which are lit in another way.
-    /// `binning` is of the environment's resolution; any resolution will do, texels on borders of
-    /// cells are shared by area. O(6 R^2 + cells); parallel, the same bits for any number of
-    /// threads.
+    /// Sums a whole environment without the lights in `without`, which are lit in another way.
+    /// `binning` has the environment's resolution. Any resolution works: texels on borders of cells
+    /// are shared by area.
+    ///
+    /// Cost:    O(6 R^2 + cells).
+    /// Threads: parallel; the same bits for any number of threads.
     void set(const cubemap::CubeMap& environment, const LightBinning& binning,
              std::span<const SharpLight> without);
 
-    /// Distant lights in place of an environment, each in the deepest cell that holds it.
+    /// Takes distant lights in place of an environment. Each light goes into the deepest cell that
+    /// holds it.
     void set_lights(std::span<const lights::DistantLight> lights);
 
-    /// [num_cells * 3] by prt::cell_index(), red, green, blue.
+    /// [num_cells * 3] by prt::cell_index(): red, green, blue.
     [[nodiscard]] std::span<const float> light() const { return light_; }
 
 private:
@@ -38,9 +45,9 @@ private:
     void sum_levels();
 
     std::uint32_t deepest_level_;
-    /// That solid_angles_ are of
+    /// The resolution of solid_angles_.
     std::uint32_t resolution_ = 0;
-    /// [n * n] of the finer of texels and cells
+    /// [n * n], n = the finer of texels and cells along a face's edge.
     std::vector<double> solid_angles_;
     std::vector<float> light_;
 };

@@ -1,5 +1,5 @@
 // Based on: Lawson, Hanson, "Solving Least Squares Problems", 1974, chapter 23 (algorithm NNLS), in
-// terms of A^T A and A^T b.
+//           terms of A^T A and A^T b.
 #include "relight/non_negative_fit.h"
 
 #include <algorithm>
@@ -11,11 +11,11 @@ namespace relumine::relight {
 
 namespace {
 
-// Added to the diagonal, relative to it: columns that repeat each other share the weight in place
-// of a division by zero.
+// Added to the diagonal, relative to it. So columns that repeat each other share the weight, and no
+// division by zero occurs.
 constexpr double Ridge = 1e-9;
 
-// A slope is zero below this part of its target: rounding of sums of a few thousand products.
+// A slope below this part of its target is zero: rounding of sums of a few thousand products.
 constexpr double FlatSlope = 1e-9;
 
 class Fit {
@@ -31,14 +31,15 @@ public:
 
     void solve() {
         fit_positive();
-        // Each round lowers the error, so no set of positive unknowns comes twice; the bound is for
+        // Each round lowers the error, so no set of positive unknowns comes twice. The bound is for
         // rounding.
         for (std::size_t round = 0; round < 3 * x_.size() && add_steepest(); ++round)
             fit_positive();
     }
 
 private:
-    /// The minimum over the positive unknowns; those that would be negative become zero on the way.
+    /// Finds the minimum over the positive unknowns. An unknown that would be negative becomes zero
+    /// on the way.
     void fit_positive() {
         while (!positive_.empty()) {
             const Eigen::VectorXd wanted = unconstrained();
@@ -68,7 +69,7 @@ private:
         return gram.llt().solve(target);
     }
 
-    /// Those that the last step brought to zero.
+    /// Drops the unknowns that the last step brought to zero.
     void drop_zeros(const Eigen::VectorXd& wanted) {
         std::vector<Eigen::Index> kept;
         for (Eigen::Index k = 0; k < wanted.size(); ++k) {
@@ -81,8 +82,8 @@ private:
         positive_ = std::move(kept);
     }
 
-    /// Makes the zero unknown positive along which the error falls fastest; false where it falls
-    /// along none.
+    /// Makes positive the zero unknown along which the error falls fastest. Returns false where it
+    /// falls along none.
     bool add_steepest() {
         Eigen::Index steepest = -1;
         double best = 0.0;
@@ -111,7 +112,7 @@ private:
     Eigen::Map<const Eigen::MatrixXd> gram_;
     Eigen::Map<const Eigen::VectorXd> target_;
     std::span<double> x_;
-    /// ascending
+    /// Ascending.
     std::vector<Eigen::Index> positive_;
 };
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -15,16 +16,23 @@
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
+#include "relight/block_kernels.h"
+#include "relight/cluster_lights.h"
+#include "relight/glossy_kernels.h"
+#include "relight/light_packets.h"
+#include "relight/light_pyramid.h"
+#include "relight/traced_light.h"
+
 namespace relumine::relight {
 
 namespace {
 
-/// How far from 1 the length of a light's direction may be, as in files of lights.
+/// Tolerance for the length of a light's direction, as in files of lights.
 constexpr double UnitTolerance = 1e-3;
 
-/// Whether summing all clusters is less work than updating these, ascending: an update sums each
-/// word of 64 clusters that holds any of them twice. The weights, over the time of the full sum,
-/// are measured: `./dev bench frames`.
+/// Whether summing all clusters is less work than updating the changed ones, which ascend. An
+/// update sums each word of 64 clusters that holds a changed one twice. The weights are relative to
+/// the time of the full sum, and measured: `./dev bench frames`.
 bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t num_clusters) {
     constexpr double CostOfWords = 0.84, CostOfClusters = 2.3;
     constexpr std::size_t ClustersPerWord = 64;
@@ -43,13 +51,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The sum of all squares, over channels and axes.
+/// Returns the sum of all squares, over channels and axes.
 double squared_norm(const VectorIrradiance& sum) {
     return glm::dot(sum.red, sum.red) + glm::dot(sum.green, sum.green) +
            glm::dot(sum.blue, sum.blue);
 }
 
-/// Whether a cluster's light changed by more than `bound` of what it becomes.
+/// Whether a cluster's light changed by more than `bound` of its new light.
 bool differs(const VectorIrradiance& before, const VectorIrradiance& after, double bound) {
     if (bound == 0.0)
         return before != after;
@@ -65,7 +73,73 @@ void sort_unique(std::vector<std::uint32_t>& values) {
 
 } // namespace
 
-Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
+/// The parts of a Relighter.
+class Relighter::Impl {
+public:
+    Impl(const prt::Transfer& transfer, const ShadowRays& rays);
+
+    RelightTimes set_environment(cubemap::CubeMap environment);
+    UpdateReport set_frame(BinnedEnvironment frame, double bound);
+    RelightTimes set_lights(std::span<const lights::DistantLight> lights);
+    UpdateReport update_region(const TexelRectangle& rectangle,
+                               std::span<const glm::vec3> radiance);
+    UpdateReport update_regions(std::span<const TexelRectangle> rectangles,
+                                const std::function<void(cubemap::CubeMap&)>& edit);
+    void resum();
+
+    [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
+    [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
+    [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
+    [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
+    [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
+
+private:
+    void check(const TexelRectangle& rectangle) const;
+    void set_cluster_lights(std::span<const std::uint32_t> clusters);
+    void take(BinnedEnvironment binned);
+    bool update_sharp_lights();
+    bool replace_sharp_lights(std::vector<SharpLight> lights);
+    std::size_t update_changed(bool sharp_changed);
+    void set_pyramid();
+    void light_glossy(std::size_t block);
+    void write_radiance(std::size_t block);
+    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse) const;
+
+    const prt::Transfer& transfer_;
+    ShadowRays rays_;
+    /// [num_clusters] all light of each cluster.
+    std::vector<VectorIrradiance> sums_;
+    /// [num_clusters] power of each cluster: the length of its luminance vector.
+    std::vector<double> powers_;
+    std::vector<SharpLight> sharp_lights_;
+    /// The light of sharp_lights_.
+    TracedLight traced_;
+    /// Set where the transfer has a glossy part.
+    std::optional<LightPyramid> pyramid_;
+    /// [num_blocks]; empty without a glossy part.
+    std::vector<GlossyLight> glossy_;
+    /// [num_blocks]
+    std::vector<BlockNormals> normals_;
+    /// From tile_words().
+    std::vector<TileWord> words_;
+    /// [num_blocks]
+    std::vector<BlockLight> light_;
+    ClusterLights lights_;
+    /// ClusterLights::vectors that light_ consists of.
+    std::vector<float> lit_by_;
+    EnvironmentBinner binner_;
+    /// For environment_.
+    std::shared_ptr<const LightBinning> binning_;
+    cubemap::CubeMap environment_;
+    std::vector<glm::vec3> radiance_;
+    /// Scratch: clusters whose light changes.
+    std::vector<std::uint32_t> changed_;
+    /// Scratch: changed_ as the kernels read it.
+    std::vector<ChangedWord> changed_words_;
+};
+
+Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
     : transfer_(transfer), rays_(rays), sums_(transfer.num_clusters()),
       powers_(transfer.num_clusters()), traced_(transfer, rays),
       normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
@@ -85,7 +159,7 @@ Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
     }
 }
 
-RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
+RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
     BinnedEnvironment binned = binner_.bin(std::move(environment));
     RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
@@ -103,8 +177,8 @@ RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
     return times;
 }
 
-/// All of an environment, and nothing of the one before.
-void Relighter::take(BinnedEnvironment binned) {
+/// Takes everything of an environment and drops the one before.
+void Relighter::Impl::take(BinnedEnvironment binned) {
     environment_ = std::move(binned.map);
     binning_ = std::move(binned.binning);
     sums_ = std::move(binned.sums);
@@ -112,7 +186,7 @@ void Relighter::take(BinnedEnvironment binned) {
     sharp_lights_ = std::move(binned.sharp_lights);
 }
 
-UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
+UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
     const auto start = std::chrono::steady_clock::now();
     if (frame.sums.size() != sums_.size() || frame.powers.size() != sums_.size() || !frame.binning)
         throw std::invalid_argument("expected an environment binned for this scene");
@@ -155,7 +229,7 @@ UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
     return report;
 }
 
-RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights) {
+RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> lights) {
     for (const lights::DistantLight& light : lights) {
         const glm::vec3 irradiance(light.irradiance);
         require_radiance({&irradiance, 1});
@@ -199,7 +273,7 @@ RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights)
     return times;
 }
 
-void Relighter::resum() {
+void Relighter::Impl::resum() {
     changed_.resize(sums_.size());
     std::iota(changed_.begin(), changed_.end(), 0u);
     set_cluster_lights(changed_);
@@ -216,9 +290,9 @@ void Relighter::resum() {
     lit_by_ = lights_.vectors;
 }
 
-/// The clusters' light is all light of their cells less the sharp lights in them. `clusters`
+/// Sets the light of clusters: all light of their cells minus the sharp lights in them. `clusters`
 /// ascend.
-void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
+void Relighter::Impl::set_cluster_lights(std::span<const std::uint32_t> clusters) {
     auto sharp = sharp_lights_.begin();
     for (const std::uint32_t cluster : clusters) {
         VectorIrradiance rest = sums_[cluster];
@@ -231,7 +305,7 @@ void Relighter::set_cluster_lights(std::span<const std::uint32_t> clusters) {
     }
 }
 
-void Relighter::check(const TexelRectangle& rectangle) const {
+void Relighter::Impl::check(const TexelRectangle& rectangle) const {
     const std::uint32_t r = environment_.resolution;
     if (r == 0)
         throw std::invalid_argument("expected an environment before its first update");
@@ -241,8 +315,8 @@ void Relighter::check(const TexelRectangle& rectangle) const {
             fmt::format("expected a rectangle inside the {0} x {0} face", r));
 }
 
-UpdateReport Relighter::update_region(const TexelRectangle& rectangle,
-                                      std::span<const glm::vec3> radiance) {
+UpdateReport Relighter::Impl::update_region(const TexelRectangle& rectangle,
+                                            std::span<const glm::vec3> radiance) {
     check(rectangle);
     const std::size_t width = rectangle.x1 - rectangle.x0;
     if (radiance.size() != width * (rectangle.y1 - rectangle.y0))
@@ -256,15 +330,15 @@ UpdateReport Relighter::update_region(const TexelRectangle& rectangle,
     });
 }
 
-UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangles,
-                                       const std::function<void(cubemap::CubeMap&)>& edit) {
+UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rectangles,
+                                             const std::function<void(cubemap::CubeMap&)>& edit) {
     const auto start = std::chrono::steady_clock::now();
     for (const TexelRectangle& rectangle : rectangles)
         check(rectangle);
     edit(environment_);
 
-    // The clusters that the rectangles meet get their light summed anew, not by differences:
-    // nothing can drift.
+    // The light of clusters under the rectangles is summed anew, not by differences. So nothing can
+    // drift.
     changed_.clear();
     const auto r = static_cast<double>(environment_.resolution);
     for (const TexelRectangle& rectangle : rectangles)
@@ -290,9 +364,9 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
             .seconds = seconds_since(start)};
 }
 
-/// Updates what the clusters in `changed_`, ascending, contribute, their sums_ being new. Returns
-/// how many receivers see any of them.
-std::size_t Relighter::update_changed(bool sharp_changed) {
+/// Updates the radiance for the clusters in `changed_`, which ascend and whose sums_ are new.
+/// Returns the number of receivers that see any of them.
+std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
     set_cluster_lights(changed_);
     changed_words_.clear();
     for (const std::uint32_t cluster : changed_) {
@@ -326,16 +400,16 @@ std::size_t Relighter::update_changed(bool sharp_changed) {
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
-/// Which lights are sharp depends on the whole map.
-bool Relighter::update_sharp_lights() {
+/// Finds the sharp lights again: which lights are sharp depends on the whole map.
+bool Relighter::Impl::update_sharp_lights() {
     return replace_sharp_lights(find_sharp_lights(environment_, *binning_,
                                                   transfer_.quadtree.leaves(), powers_,
                                                   rays_.tolerance, transfer_.glossy.has_value()));
 }
 
-/// Adds the clusters of sharp lights that came or went to `changed_` and traces anew when there are
-/// any; returns whether there are.
-bool Relighter::replace_sharp_lights(std::vector<SharpLight> lights) {
+/// Replaces the sharp lights and traces them where any came or went. Adds their clusters to
+/// `changed_`. Returns whether there were any.
+bool Relighter::Impl::replace_sharp_lights(std::vector<SharpLight> lights) {
     if (lights == sharp_lights_)
         return false;
     for (const std::vector<SharpLight>* set : {&lights, &sharp_lights_})
@@ -347,20 +421,21 @@ bool Relighter::replace_sharp_lights(std::vector<SharpLight> lights) {
     return true;
 }
 
-void Relighter::set_pyramid() {
+void Relighter::Impl::set_pyramid() {
     if (pyramid_)
         pyramid_->set(environment_, *binning_, sharp_lights_);
 }
 
-void Relighter::light_glossy(std::size_t block) {
+void Relighter::Impl::light_glossy(std::size_t block) {
     if (!pyramid_)
         return;
     for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
         light_block(transfer_.glossy->lobes[lobe], block, pyramid_->light(), glossy_[block][lobe]);
 }
 
-/// What a receiver with a surface sends on; `diffuse` is its radiance for albedo 1.
-glm::vec3 Relighter::through_surface(std::size_t place, const glm::vec3& diffuse) const {
+/// Returns the radiance that a receiver with a surface sends on. `diffuse` is its radiance for
+/// albedo 1.
+glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& diffuse) const {
     prt::Lobes<glm::vec3> lobes = traced_.highlights(place);
     lobes.diffuse = diffuse;
     if (!glossy_.empty()) {
@@ -375,7 +450,7 @@ glm::vec3 Relighter::through_surface(std::size_t place, const glm::vec3& diffuse
     return prt::reflect(transfer_.surfaces[place], lobes);
 }
 
-void Relighter::write_radiance(std::size_t block) {
+void Relighter::Impl::write_radiance(std::size_t block) {
     BlockRadiance sums;
     block_radiance(normals_[block], light_[block], traced_.diffuse(block), sums);
     const std::size_t begin = block * prt::BlockSize;
@@ -383,6 +458,57 @@ void Relighter::write_radiance(std::size_t block) {
     for (std::size_t i = 0; i < size; ++i)
         radiance_[transfer_.order[begin + i]] =
             transfer_.surfaces.empty() ? sums.of(i) : through_surface(begin + i, sums.of(i));
+}
+
+Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
+    : impl_(std::make_unique<Impl>(transfer, rays)) {}
+Relighter::~Relighter() = default;
+Relighter::Relighter(Relighter&&) noexcept = default;
+Relighter& Relighter::operator=(Relighter&&) noexcept = default;
+
+RelightTimes Relighter::set_environment(cubemap::CubeMap environment) {
+    return impl_->set_environment(std::move(environment));
+}
+
+UpdateReport Relighter::set_frame(BinnedEnvironment frame, double bound) {
+    return impl_->set_frame(std::move(frame), bound);
+}
+
+RelightTimes Relighter::set_lights(std::span<const lights::DistantLight> lights) {
+    return impl_->set_lights(lights);
+}
+
+UpdateReport Relighter::update_region(const TexelRectangle& rectangle,
+                                      std::span<const glm::vec3> radiance) {
+    return impl_->update_region(rectangle, radiance);
+}
+
+UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangles,
+                                       const std::function<void(cubemap::CubeMap&)>& edit) {
+    return impl_->update_regions(rectangles, edit);
+}
+
+void Relighter::resum() {
+    impl_->resum();
+}
+
+std::span<const glm::vec3> Relighter::radiance() const {
+    return impl_->radiance();
+}
+const cubemap::CubeMap& Relighter::environment() const {
+    return impl_->environment();
+}
+const prt::Transfer& Relighter::transfer() const {
+    return impl_->transfer();
+}
+const ClusterLights& Relighter::cluster_lights() const {
+    return impl_->cluster_lights();
+}
+std::span<const SharpLight> Relighter::sharp_lights() const {
+    return impl_->sharp_lights();
+}
+const ShadowRays& Relighter::shadow_rays() const {
+    return impl_->shadow_rays();
 }
 
 std::vector<glm::vec3> relight(const prt::Transfer& transfer, const cubemap::CubeMap& environment,

@@ -1,5 +1,5 @@
 // Based on: W. Madow, "On the Theory of Systematic Sampling, II", 1949, sampling with probability
-// proportional to size; the estimate is Horvitz and Thompson's, 1952.
+//           proportional to size. The estimate is Horvitz and Thompson's, 1952.
 #include "relight/scaled_receivers.h"
 
 #include <algorithm>
@@ -12,12 +12,12 @@ namespace relumine::relight {
 
 namespace {
 
-// The expected errors are those of other lights, so that some receivers are chosen whatever is
-// expected: a scale stays below 1/sqrt(this part).
+// The expected errors belong to other lights. So some receivers are chosen whatever is expected; a
+// scale stays below 1/sqrt(this part).
 constexpr double EvenPart = 0.3;
 
-// Neighbours on each side that an expected error is averaged over: shadows of other lights lie near
-// by, not at the same place.
+// An expected error is averaged over so many neighbours on each side: shadows of other lights lie
+// near by, not at the same place.
 constexpr std::size_t Neighbours = 3;
 
 std::vector<double> averaged(std::span<const double> values) {
@@ -32,7 +32,8 @@ std::vector<double> averaged(std::span<const double> values) {
     return result;
 }
 
-/// Factor k such that the sum of min(k share, 1) is `count`; fewer shares than that are above 0.
+/// Returns the factor k for which the sum of min(k share, 1) is `count`. More shares than that
+/// must be above 0.
 double scale_to(std::span<const double> shares, double count) {
     std::vector<double> descending(shares.begin(), shares.end());
     std::sort(descending.rbegin(), descending.rend());
@@ -72,7 +73,7 @@ ScaledReceivers choose_receivers(const prt::Transfer& transfer, std::span<const 
     for (const std::size_t place : lit)
         shares.push_back(even + (sum > 0.0 ? (1.0 - EvenPart) * smooth[place] / sum : 0.0));
     const double factor = scale_to(shares, static_cast<double>(count));
-    double next = 0.5; // one is taken wherever the running sum passes a whole number and a half
+    double next = 0.5; // a receiver is taken where the running sum passes n + 0.5
     double before = 0.0;
     for (std::size_t i = 0; i < num_lit; ++i) {
         const double probability = std::min(factor * shares[i], 1.0);

@@ -11,27 +11,27 @@ namespace relumine::relight {
 
 namespace {
 
-// A sharp light may make this error, relative to the mean radiance, before it is traced. Four such
-// lights in one map stay within 0.5 %, the size of what clusters make of the measured environments.
+// The error, relative to the mean radiance, beyond which a light is traced. Four such lights in one
+// map stay within 0.5 %, the error of clusters on the measured environments.
 constexpr double AllowedError = 0.0025;
 
-// Levels between a cluster and the cells that are looked at: a sixteenth of its area. What fills
-// less is "small".
+// Levels between a cluster and its candidate cells, which have a sixteenth of its area. A light
+// that fills less is "small".
 constexpr std::uint32_t LevelsBelowCluster = 2;
 
-// Spread evenly, such a cell has a sixteenth of its cluster's power; with twice that the light is
-// not even.
+// With even light a candidate has a sixteenth of its cluster's power. With twice as much the light
+// is not even.
 constexpr double SharpShare = 0.125;
 
-// A light of this part of its sharp cell's power is not cut further, so a cell becomes a hundred
+// A light of this part of its sharp cell's power is not cut further. So a cell becomes a hundred
 // lights at most.
 constexpr double FinestShare = 1.0 / 64.0;
 
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
 
-/// Four sums side by side: each addition waits for the one before it, and this runs with every
-/// edit.
+/// Keeps four sums side by side: each addition waits for the one before it, and this function runs
+/// with every edit.
 double sum_of(std::span<const double> values) {
     std::array<double, 4> sums{};
     std::size_t i = 0;
@@ -52,8 +52,8 @@ public:
           texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))),
           lights_(lights) {}
 
-    /// Finds the sharp cells of a cluster of this power: none unless one of them stands out, or
-    /// those that do not are wanted, too.
+    /// Finds the sharp cells of a cluster of this power. Without `even_too`, one of them must stand
+    /// out.
     void look_into(std::uint32_t cluster, double cluster_power, const prt::Cell& cell) {
         candidates_.clear();
         collect(cell, LevelsBelowCluster);
@@ -72,7 +72,7 @@ private:
         double power = 0.0;
     };
 
-    /// The cells so many levels below, or texels, that have power enough.
+    /// Collects the cells with enough power so many levels below; texels are not split.
     void collect(const prt::Cell& cell, std::uint32_t levels_left) {
         const double power = glm::length(binning_.sum(environment_, cell).luminance());
         if (power < min_power_)
@@ -84,7 +84,7 @@ private:
                 collect(cell.child(i), levels_left - 1);
     }
 
-    /// Quarters a sharp cell where its power is, dark parts stay in one piece.
+    /// Quarters a sharp cell where its power is. Dark parts stay in one piece.
     void cut(std::uint32_t cluster, double sharp_power, const prt::Cell& cell) {
         const VectorIrradiance sum = binning_.sum(environment_, cell);
         const glm::dvec3 luminance = sum.luminance();
@@ -104,7 +104,7 @@ private:
     const LightBinning& binning_;
     double min_power_;
     bool even_too_;
-    /// Where a cell is no larger than a texel
+    /// The level where a cell is no larger than a texel.
     std::uint32_t texel_level_;
     std::vector<Candidate> candidates_;
     std::vector<SharpLight>& lights_;

@@ -1,8 +1,9 @@
-// Lights too small and bright for their cluster, the sun above all: found when the environment is
-// known and lit by shadow rays of their own. A cluster knows how much of its cell a receiver sees,
-// not which part; that is enough for light spread over the cell (whatever it is, the precompute's
-// tolerance bounds the error), but half a degree of sun in a cell of three degrees would get
-// shadows three degrees soft.
+// Lights that are too small and bright for their cluster, the sun above all. They are found when
+// the environment is known, and lit by shadow rays of their own.
+//
+// A cluster knows how much of its cell a receiver sees, not which part. For light spread over the
+// cell this is enough: the precompute's tolerance bounds the error, whatever the light is. But half
+// a degree of sun in a cell of three degrees would get shadows three degrees soft.
 #pragma once
 
 #include <cstdint>
@@ -17,26 +18,32 @@
 
 namespace relumine::relight {
 
-/// One such light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel) where the
+/// A sharp light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel) where the
 /// power is.
 struct SharpLight {
     std::uint32_t cluster = 0;
     prt::Cell cell = {};
-    /// unit
+    /// Unit length.
     glm::dvec3 direction{0.0, 0.0, 1.0};
-    /// Taken out of the cluster's own
+    /// Taken out of the cluster's own irradiance.
     VectorIrradiance irradiance;
     bool operator==(const SharpLight&) const = default;
 };
 
-/// The sharp lights of an environment, clusters ascending. A cell two levels below its cluster is
-/// sharp when it holds so much of the map's power P that the error a point light may make in the
-/// cluster, tolerance times its power, exceeds 0.25 % of the mean radiance P / (4 pi), and it or a
-/// sister more than an eighth of the cluster's power. There are a few dozen at most: large sources
-/// have no such cells. `powers`: the length of each cluster's full vector irradiance, in luminance,
-/// [clusters.size()]. Deterministic. O(clusters + texels of the brightest clusters). With `glossy`
-/// receivers bright cells are sharp even where their cluster is lit evenly, as highlights may be
-/// smaller than any cluster.
+/// Returns the sharp lights of an environment, clusters ascending. There are a few dozen at most:
+/// large sources have no sharp cells. Deterministic.
+///
+/// Cells two levels below a cluster are candidates. A candidate is sharp when it holds enough of
+/// the map's power P: a point light of its power may make an error of tolerance times its power in
+/// the cluster, and this error exceeds 0.25 % of the mean radiance P / (4 pi).
+///
+/// Also, the candidate or a sister must hold more than an eighth of the cluster's power. With
+/// `glossy` receivers this condition is dropped: highlights may be smaller than any cluster, so
+/// bright cells are sharp even where the cluster's light is even.
+///
+/// Shape:   powers is [clusters.size()]: the length of each cluster's full vector irradiance, in
+///          luminance.
+/// Cost:    O(clusters + texels of the brightest clusters).
 [[nodiscard]] std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                                         const LightBinning& binning,
                                                         std::span<const prt::Cell> clusters,

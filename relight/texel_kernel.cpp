@@ -18,8 +18,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t MaxLanes = 16;
 constexpr std::size_t RowsPerRun = 64;
 
-/// Columns side by side, as many as lanes of D: their texels' colours fill three vectors as they
-/// lie in memory, and each weight is spread over the lanes of its texel.
+/// As many columns side by side as D has lanes. Their texels' colours fill three vectors as they
+/// lie in memory. Each weight is spread over the three lanes of its texel.
 template<class D>
 class Columns {
     using Vec = hn::Vec<D>;
@@ -66,7 +66,7 @@ private:
         sum_y = hn::MulAdd(weighted, y, sum_y);
     }
 
-    /// The weights of the texels in the given third.
+    /// Returns the weights for the given third of the columns' colours.
     Vec spread(Vec weights, std::size_t third) const {
         const D d;
         return hn::TableLookupLanes(

@@ -19,7 +19,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// Corners of a cell: x, y, z of four directions.
 constexpr std::size_t CornerFloats = 12;
 
-/// Whether every receiver with a count has all four corners above its horizon, and so all of the
+/// Whether every receiver with a count has all four corners above its horizon, and so the whole
 /// cell.
 bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals,
                      const float* corners) {
@@ -44,8 +44,8 @@ bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals,
     return true;
 }
 
-/// sees_only_above() for all clusters in `mixed`; `counts` and `corners` begin at the word's first
-/// entry and cluster.
+/// Whether sees_only_above() holds for all clusters in `mixed`. `counts` and `corners` begin at the
+/// word's first entry and cluster.
 bool needs_no_clamp(std::uint64_t mixed, const std::uint8_t* counts, const BlockNormals& normals,
                     const float* corners) {
     for (; mixed != 0; mixed &= mixed - 1, counts += prt::BlockSize) {

@@ -1,5 +1,4 @@
-// Light that reaches the receivers from sharp lights, which are traced and not looked up in
-// clusters.
+// Light that reaches the receivers from sharp lights. They are traced, not looked up in clusters.
 #pragma once
 
 #include <array>
@@ -17,22 +16,23 @@
 
 namespace relumine::relight {
 
-/// Keeps, per receiver, what the sharp lights make of its radiance. Without blockers there is
-/// nothing to trace with and nothing is kept.
+/// Keeps the part of each receiver's radiance that comes from sharp lights. Without blockers
+/// nothing is traced and nothing is kept.
 class TracedLight {
 public:
-    /// Throws std::invalid_argument unless there is a position per receiver, or no blockers. The
-    /// transfer must outlive this.
+    /// The transfer must outlive this object.
+    ///
+    /// Throws:  std::invalid_argument unless there is a position per receiver, or no blockers.
     TracedLight(const prt::Transfer& transfer, const ShadowRays& rays);
 
-    /// Traces them all anew: a shadow ray per light and receiver that faces it; parallel.
+    /// Traces all lights anew: a shadow ray per light and receiver that faces it; parallel.
     void trace(std::span<const SharpLight> lights);
 
-    /// Radiance for albedo 1 of a block, or null where nothing is traced.
+    /// Returns a block's radiance for albedo 1, or null where nothing is traced.
     [[nodiscard]] const TracedRadiance* diffuse(std::size_t block) const {
         return diffuse_.empty() ? nullptr : &diffuse_[block];
     }
-    /// Radiance through the lobes of a receiver but the diffuse one, which is left 0.
+    /// Returns a receiver's radiance through all lobes but the diffuse one, which stays 0.
     [[nodiscard]] prt::Lobes<glm::vec3> highlights(std::size_t place) const {
         return highlights_.empty() ? prt::Lobes<glm::vec3>() : highlights_[place];
     }
@@ -43,9 +43,9 @@ private:
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
-    /// [num_blocks], or none
+    /// [num_blocks]; empty where nothing is traced.
     std::vector<TracedRadiance> diffuse_;
-    /// [num_receivers] by place, or none
+    /// [num_receivers] by place; empty without traced highlights.
     std::vector<prt::Lobes<glm::vec3>> highlights_;
 };
 

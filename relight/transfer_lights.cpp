@@ -27,18 +27,19 @@ namespace {
 // them, 500 MB with 16,000 receivers.
 constexpr std::uint32_t CandidateLevel = 5;
 
-// A cell with a larger share of the power is cut further, so that a sun or a lamp can be given
-// several lights.
+// A cell with a larger share of the power is cut further, so that a sun or a lamp can get several
+// lights.
 constexpr double LargestShare = 1.0 / 1024.0;
-// Steps in degrees by which a light may move from its candidate's direction: those are 2.8 degrees
-// apart. Twice, as the others have moved, too.
+// Steps in degrees by which a light may move from its candidate's direction; candidates are 2.8
+// degrees apart. Each step has two passes, as the other lights move, too.
 constexpr std::array RefiningSteps = {1.4, 0.8, 0.4, 0.2, 1.0, 0.5, 0.25};
 constexpr int RefiningPasses = 2;
-// Lights fitted to the receivers they were chosen with light those better than others: as many more
-// take part in the steps.
+// Chosen lights fit the receivers they were chosen with better than other receivers. So twice as
+// many take part in the steps.
 constexpr std::size_t RefiningFactor = 2;
 
-// Exchanging costs lights^2 x candidates; beyond this many lights it takes longer than it gives.
+// Exchanging costs lights^2 x candidates. With more lights than this it takes longer than it is
+// worth.
 constexpr std::size_t MaxExchanged = 128;
 constexpr int ExchangePasses = 2;
 
@@ -73,13 +74,13 @@ private:
 
     const cubemap::CubeMap& environment_;
     LightBinning binning_;
-    /// Where a cell is no larger than a texel
+    /// The level where a cell is no larger than a texel.
     std::uint32_t texel_level_;
     double most_power_ = 0.0;
     std::vector<glm::dvec3> directions_;
 };
 
-/// A direction and eight around it, so many degrees to the sides and corners.
+/// Appends a direction and eight around it, so many degrees to the sides and corners.
 void append_around(const glm::dvec3& direction, double degrees,
                    std::vector<glm::dvec3>& directions) {
     const glm::dvec3 other =
@@ -95,7 +96,7 @@ void append_around(const glm::dvec3& direction, double degrees,
                                                     static_cast<double>(y) * up));
 }
 
-/// Some receivers and what they shall get, scaled alike.
+/// Some receivers and the radiance they should get, both scaled.
 struct Wanted {
     Wanted(const Relighter& relighter, std::span<const double> expected_errors, std::size_t count)
         : receivers(choose_receivers(relighter.transfer(), expected_errors, count)) {
@@ -109,8 +110,8 @@ struct Wanted {
     std::vector<glm::vec3> radiance;
 };
 
-/// By place, how large a part of the squared error of lights that do not know the scene is there:
-/// at the borders of shadows and where there are many.
+/// Returns, by place, the part of the squared error of lights that do not know the scene. It is
+/// large at the borders of shadows, and where there are many.
 std::vector<double> errors_of_cuts(const Relighter& relighter, std::size_t count) {
     const cubemap::EnvironmentImage image = lights::lat_long_of(relighter.environment());
     std::vector<double> errors(relighter.transfer().num_receivers());
@@ -131,7 +132,7 @@ std::vector<lights::DistantLight> list_of(std::span<const LightPursuit::Light> l
     return list;
 }
 
-/// Lights in these directions.
+/// Returns the lights in these directions, fitted to the wanted radiance.
 std::vector<lights::DistantLight>
 fitted(const Relighter& relighter, std::span<const glm::dvec3> directions, const Wanted& wanted) {
     const TransferMatrix matrix(relighter, directions, wanted.receivers);
@@ -142,8 +143,7 @@ fitted(const Relighter& relighter, std::span<const glm::dvec3> directions, const
     return list_of(pursuit.lights(), directions);
 }
 
-/// Lights in these directions once each has moved by a step, where it pays; and the directions with
-/// them.
+/// Moves each direction by a step where it pays. Returns the lights in the new directions.
 std::vector<lights::DistantLight> moved(const Relighter& relighter,
                                         std::vector<glm::dvec3>& directions, double step,
                                         const Wanted& wanted) {
@@ -197,8 +197,8 @@ std::vector<lights::DistantLight> transfer_lights(const Relighter& relighter, st
             poll(0.5);
         chosen.assign(pursuit.lights().begin(), pursuit.lights().end());
     }
-    // More receivers, as there are far fewer directions now, and more of them where this list is
-    // wrong.
+    // There are far fewer directions now, so more receivers take part; most of the added ones are
+    // where this list is wrong.
     add_squared_errors(relighter, list_of(chosen, candidates), errors);
     const Wanted all_over(relighter, errors, RefiningFactor * options.num_receivers);
     std::vector<glm::dvec3> directions;

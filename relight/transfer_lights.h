@@ -1,4 +1,4 @@
-// A few distant lights chosen for one scene: those that light its receivers most like the whole
+// A few distant lights chosen for one scene: they light its receivers nearly as the whole
 // environment does.
 #pragma once
 
@@ -13,29 +13,35 @@
 namespace relumine::relight {
 
 struct TransferLightOptions {
-    /// That the lights are chosen with; they are moved with twice as many
+    /// Receivers that the lights are chosen with. The lights are moved with twice as many.
     std::size_t num_receivers = 16000;
-    /// Polled after each light; prt::Cancelled is thrown
+    /// Polled after each light. A stop ends the work with prt::Cancelled.
     std::stop_token stop = {};
-    /// Fraction in [0, 1]
+    /// Receives the fraction done, in [0, 1].
     std::function<void(double)> on_progress = {};
 };
 
 /// Chooses `count` lights for the scene of a relighter that has an environment and shadow rays.
+/// Returns fewer lights where more would not help. Deterministic for any number of threads.
 ///
-/// With t_j(x) = V(x, w_j) max(n.w_j, 0)/pi the transfer from a direction w_j to the chosen
-/// receivers, traced, it minimises over directions and irradiances E_j >= 0 the squared error of
-/// sum E_j t_j against the relighter's radiance: orthogonal least squares (Chen, Billings and Luo
-/// 1989) takes one direction after the other, always the one that lowers the error most once all
-/// irradiances have been fitted anew (Lawson and Hanson 1974); then single lights are exchanged,
-/// and moved by small steps, where it pays. Where there is much light, directions are looked for
-/// more densely. Most of the squared error is at few receivers, at shadows' borders and in creases,
-/// so those that the lists of median cut and variance minimisation light badly are chosen more
-/// often and count less (relight/scaled_receivers.h): lights fitted to evenly chosen ones fit them,
-/// and not the others. The lights' total power is whatever fits the scene: light that no receiver
-/// sees is left out. Fewer lights come back where more would not help. Deterministic, for any
-/// number of threads. Time and memory: docs/light-lists.md. Throws std::invalid_argument without
-/// environment or shadow rays, or for count 0.
+/// t_j(x) = V(x, w_j) max(n.w_j, 0)/pi is the traced transfer from a direction w_j to the chosen
+/// receivers. The squared error of sum E_j t_j against the relighter's radiance is minimised over
+/// directions and irradiances E_j >= 0.
+///
+/// Orthogonal least squares (Chen, Billings and Luo 1989) takes one direction after the other: the
+/// one that lowers the error most once all irradiances are fitted anew (Lawson and Hanson 1974).
+/// Then single lights are exchanged, and moved by small steps, where it pays.
+///
+/// Candidate directions are denser where there is much light. Most of the squared error is at few
+/// receivers, at borders of shadows and in creases. So receivers that median cut and variance
+/// minimisation light badly are chosen more often and count less (relight/scaled_receivers.h).
+/// Lights fitted to evenly chosen receivers would fit only those.
+///
+/// The lights' total power is whatever fits the scene: light that no receiver sees is left out.
+///
+/// Cost:    docs/light-lists.md has time and memory.
+/// Throws:  std::invalid_argument without environment or shadow rays, or for count 0;
+///          prt::Cancelled when stopped.
 [[nodiscard]] std::vector<lights::DistantLight>
 transfer_lights(const Relighter& relighter, std::size_t count,
                 const TransferLightOptions& options = {});

@@ -56,7 +56,7 @@ std::vector<float> TransferMatrix::products(std::span<const float> vector) const
 }
 
 float TransferMatrix::dot(std::span<const float> a, std::span<const float> b) {
-    // Sixteen partial sums, which the compiler keeps in vector registers; the same order always.
+    // Sixteen partial sums, which the compiler keeps in vector registers; always in the same order.
     std::array<float, 16> sums{};
     std::size_t i = 0;
     for (; i + sums.size() <= a.size(); i += sums.size())

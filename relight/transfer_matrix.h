@@ -12,12 +12,15 @@
 
 namespace relumine::relight {
 
-/// t_j(x) = V(x, w_j) max(n.w_j, 0)/pi of directions w_j to receivers, traced, each receiver's
-/// times a scale of its own, [directions][receivers], 1/sr. 4 bytes per element.
+/// t_j(x) = V(x, w_j) max(n.w_j, 0)/pi from directions w_j to receivers, traced, times each
+/// receiver's scale.
+///
+/// Shape:   [directions][receivers], 4 bytes per element.
+/// Unit:    1/sr.
 class TransferMatrix {
 public:
-    /// `receivers` of the relighter's scene, which needs shadow rays. Fastest when neighbouring
-    /// directions lie close together.
+    /// `receivers` belong to the relighter's scene. The relighter needs shadow rays. Fastest when
+    /// neighbouring directions lie close together.
     TransferMatrix(const Relighter& relighter, std::span<const glm::dvec3> directions,
                    const ScaledReceivers& receivers);
 
@@ -27,8 +30,8 @@ public:
         return {elements_.data() + direction * num_receivers_, num_receivers_};
     }
 
-    /// Products of all columns with a vector over the receivers. Bitwise the same for any number of
-    /// threads.
+    /// Returns the products of all columns with a vector over the receivers. Bitwise the same for
+    /// any number of threads.
     [[nodiscard]] std::vector<float> products(std::span<const float> vector) const;
 
     [[nodiscard]] static float dot(std::span<const float> a, std::span<const float> b);

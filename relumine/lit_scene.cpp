@@ -8,7 +8,7 @@
 
 #include "cubemap/layers/layer_composite.h"
 #include "relight/contribution.h"
-#include "relight/light_packets.h"
+#include "relight/shadow_rays.h"
 
 namespace relumine {
 

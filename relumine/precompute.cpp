@@ -84,7 +84,6 @@ private:
         poll();
         const bool has_highlights = prt::has_highlights(scene_.receivers);
         open_checkpoint(has_highlights);
-        clustering_.more_follows = has_highlights;
         keep_settings();
         cluster(rays, sizes);
         if (has_highlights)

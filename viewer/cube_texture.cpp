@@ -31,8 +31,8 @@ void CubeTexture::upload(const cubemap::CubeMap& map,
     glBindTexture(GL_TEXTURE_CUBE_MAP, texture_.id());
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     if (map.resolution != resolution_) {
-        // Nine bits and a shared exponent: four bytes a texel, no overflow at a sun, enough for a
-        // screen.
+        // Nine bits and a shared exponent: four bytes per texel, no overflow at a sun, exact enough
+        // for a screen.
         for (const cubemap::Face face : cubemap::AllFaces)
             glTexImage2D(Slots[static_cast<std::size_t>(face)], 0, GL_RGB9_E5, r, r, 0, GL_RGB,
                          GL_FLOAT, &map.at(face, 0, 0));

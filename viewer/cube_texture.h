@@ -11,12 +11,12 @@
 
 namespace relumine::viewer {
 
-/// OpenGL's cube maps are seen from outside, ours from inside: faces go to the slot of their mirror
-/// image in z, and shaders look up (x, y, -z). cube_lookup_source() does so.
+/// A cube texture. OpenGL's cube maps are seen from outside, ours from inside. So each face goes to
+/// the slot of its mirror image in z, and shaders look up (x, y, -z), as cube_lookup_source() does.
 class CubeTexture {
 public:
     CubeTexture();
-    /// All of it where the resolution is new, else the rectangles.
+    /// Uploads the rectangles, or the whole map where the resolution is new.
     void upload(const cubemap::CubeMap& map, std::span<const cubemap::TexelRectangle> rectangles);
     [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
     void bind(GLenum unit) const;
@@ -26,7 +26,7 @@ private:
     std::uint32_t resolution_ = 0;
 };
 
-/// `vec3 looked_up(samplerCube cube, vec3 direction)`.
+/// Returns GLSL for `vec3 looked_up(samplerCube cube, vec3 direction)`.
 [[nodiscard]] std::string cube_lookup_source();
 
 } // namespace relumine::viewer

@@ -13,7 +13,7 @@ namespace relumine::viewer {
 
 namespace {
 
-/// How near to a rim it is held, in pixels.
+/// Pixels within which the pointer holds a rim.
 constexpr double RimReach = 7.0;
 
 ImVec2 im(const glm::dvec2& pixel) {
@@ -21,7 +21,7 @@ ImVec2 im(const glm::dvec2& pixel) {
 }
 
 void picture_tools(ViewState& state) {
-    // What the words leave of the row.
+    // The slider takes the room that the words leave.
     const float slider_width =
         std::clamp(0.5f * (ImGui::GetContentRegionAvail().x - 400.0f), 56.0f, 140.0f);
     ImGui::AlignTextToFramePadding();
@@ -102,7 +102,7 @@ void edit_tools(ViewState& state) {
     else
         lasso_tools(state);
 }
-/// A line over the picture, once for each copy of the picture that is seen.
+/// Draws a line over the picture, once for each visible copy of the picture.
 void draw_line(const ViewState& state, const PixelRectangle& place,
                const std::vector<glm::dvec3>& line, ImU32 color, float thickness) {
     const std::vector<glm::dvec2> uv = unrolled(line);
@@ -115,7 +115,7 @@ void draw_line(const ViewState& state, const PixelRectangle& place,
         points.clear();
         for (const glm::dvec2& at : uv) {
             const ImVec2 pixel = im(state.lat_long.pixel_at(place, at + glm::dvec2(turn, 0.0)));
-            // Points that all but coincide would give the line spikes.
+            // Points that nearly coincide would give the line spikes.
             if (points.empty() ||
                 std::hypot(pixel.x - points.back().x, pixel.y - points.back().y) > 1.0f)
                 points.push_back(pixel);
@@ -146,7 +146,7 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
     }
 }
 
-/// The outline that is being drawn, closed.
+/// Draws the current outline, closed.
 void draw_lasso(const ViewState& state, const PixelRectangle& place) {
     std::vector<glm::dvec3> line(state.desk.lasso().begin(), state.desk.lasso().end());
     if (line.size() < 2)

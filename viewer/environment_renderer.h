@@ -1,5 +1,5 @@
-// Draws the environment as a lat-long, with the clusters' borders and what lights a receiver laid
-// over it.
+// Draws the environment as a lat-long. The clusters' borders, and the light that reaches a
+// receiver, can lie over it.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -16,10 +16,10 @@ namespace relumine::viewer {
 class EnvironmentRenderer {
 public:
     explicit EnvironmentRenderer(const prt::Quadtree& quadtree);
-    /// What lights the chosen receiver (relight::contribution_map()); the hottest colour is its
-    /// brightest two-hundredth.
+    /// Takes the light that reaches the chosen receiver (relight::contribution_map()). The hottest
+    /// colour stands for its brightest two-hundredth.
     void upload_heat(const cubemap::CubeMap& contribution);
-    /// Into the current viewport, which is `viewport`.
+    /// Draws into the current viewport, which must be `viewport`.
     void draw(const LatLongView& view, const PixelRectangle& viewport,
               const CubeTexture& environment, const EnvironmentLook& look) const;
 

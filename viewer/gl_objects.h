@@ -11,7 +11,7 @@
 
 namespace relumine::viewer {
 
-/// A handle with its own way of being made and freed.
+/// A handle whose traits make and free it.
 template<typename Traits>
 class GlObject {
 public:
@@ -48,16 +48,18 @@ using GlBuffer = GlObject<BufferTraits>;
 using GlVertexArray = GlObject<VertexArrayTraits>;
 using GlTexture = GlObject<TextureTraits>;
 
-/// A vertex and a fragment shader, with `#version 330 core` put before.
+/// A vertex and a fragment shader. `#version 330 core` is put before each source.
 class GlProgram {
 public:
-    /// Throws std::runtime_error with the compiler's words.
+    /// Compiles and links the shaders.
+    ///
+    /// Throws:  std::runtime_error with the compiler's words.
     GlProgram(const std::string& vertex_source, const std::string& fragment_source);
     ~GlProgram();
     GlProgram(const GlProgram&) = delete;
     GlProgram& operator=(const GlProgram&) = delete;
 
-    /// Makes it current; the setters work on the current program.
+    /// Makes the program current. The setters work on the current program.
     void use() const { glUseProgram(id_); }
     void set(const char* name, int value) const;
     void set(const char* name, float value) const;
@@ -69,8 +71,8 @@ private:
     GLuint id_ = 0;
 };
 
-/// `vec3 shown(vec3 radiance)`: exposure and the sRGB curve, as relight::save_picture() writes a
-/// PNG; with its uniform `exposure`.
+/// Returns GLSL for `vec3 shown(vec3 radiance)`: exposure and the sRGB curve, as
+/// relight::save_picture() writes a PNG. The source declares the uniform `exposure`.
 [[nodiscard]] std::string shown_source();
 
 } // namespace relumine::viewer

@@ -12,8 +12,7 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// The picture stays inside: no more than its own height is ever seen, if it is higher than the
-/// view.
+/// Keeps the view inside the picture. A view higher than the picture is centred.
 double clamped_v(double v, double half_height) {
     return half_height >= 0.5 ? 0.5 : std::clamp(v, half_height, 1.0 - half_height);
 }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr const char* Degrees = "%.1f\xc2\xb0";
 
-/// A layer of a kind where the environment's view looks, as bright as the scene's exposure asks
+/// Returns a new layer where the environment's view looks, as bright as the scene's exposure asks
 /// for.
 cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap::Region region,
                               cubemap::Effect effect) {
@@ -38,7 +38,7 @@ void hint(const char* text) {
         ImGui::SetTooltip("%s", text);
 }
 
-/// On the same line if a button with this label fits there.
+/// Stays on the same line if a button with this label fits there.
 void next(const char* label) {
     const ImGuiStyle& style = ImGui::GetStyle();
     const float width = ImGui::CalcTextSize(label).x + 2.0f * style.FramePadding.x;
@@ -108,7 +108,7 @@ const char* kind(const cubemap::LightLayer& layer) {
                                                                : Lights[layer.region.index()];
 }
 
-/// Changes while an item is held, and a step of undo when it is let go.
+/// Edits a layer while an item is held. Letting go makes a step of undo.
 class Form {
 public:
     Form(ViewState& state, std::size_t index)
@@ -155,7 +155,8 @@ private:
     bool finished_ = false;
 };
 
-/// One row of the list. Returns what to do to the list as a whole, once it is drawn.
+/// Draws one row of the list. Returns the change to the whole list, to be made once the list is
+/// drawn.
 std::function<void()> layer_row(ViewState& state, std::size_t index) {
     std::function<void()> later;
     const cubemap::LightLayer layer = state.desk.layers()[index];
@@ -217,7 +218,8 @@ void region_fields(Form& form) {
     }
 }
 
-/// Any region may give light or change what is there; a picture is laid over that or added to it.
+/// Offers the effects: any region may give light or change the light below; a picture is laid over
+/// that light or added to it.
 void effect_choice(Form& form) {
     cubemap::Effect& effect = form.layer().effect;
     int chosen = 0;
@@ -263,7 +265,7 @@ void layer_fields(ViewState& state, std::size_t index) {
     form.apply();
 }
 
-/// What layer_fields() draws, in rows.
+/// Returns the number of rows that layer_fields() draws.
 int num_field_rows(const ViewState& state) {
     if (!state.desk.selected())
         return 0;

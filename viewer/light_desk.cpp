@@ -36,7 +36,7 @@ void LightDesk::note_all_texels() {
 }
 
 std::vector<cubemap::TexelRectangle> LightDesk::take_changed_texels() {
-    // Many edits between two frames: all of it is less work than all of them.
+    // After many edits between two frames the whole map is less work than all rectangles.
     constexpr std::size_t ManyRectangles = 200;
     if (changed_texels_.size() > ManyRectangles)
         note_all_texels();

@@ -1,5 +1,5 @@
-// What the window edits: layers over an environment, what is selected and dragged, and what each
-// edit cost. Without a window.
+// The state that the window edits: layers over an environment, the selection, the drag, and the
+// cost of each edit. Works without a window.
 #pragma once
 
 #include <cstddef>
@@ -21,18 +21,18 @@
 
 namespace relumine::viewer {
 
-/// What the last edit did.
+/// The effect of the last edit.
 struct EditCost {
     relight::UpdateReport report;
-    /// Compositing, relighting and publishing together
+    /// Compositing, relighting and publishing together.
     double seconds = 0.0;
 };
 
-/// Directions are as seen: after the rotation.
+/// Edits the layers of a LightEditor. Directions are as seen, after the rotation.
 class LightDesk {
 public:
-    /// The editor must outlive the desk, and be edited through it alone. Its present state becomes
-    /// the one before all steps of undo. `base_path`: the file of its base.
+    /// The editor must outlive the desk, and only the desk may edit it. The editor's present state
+    /// becomes the state before all steps of undo. `base_path` is the file of its base.
     explicit LightDesk(relight::LightEditor& editor, std::filesystem::path base_path = {});
 
     [[nodiscard]] const relight::LightEditor& editor() const { return editor_; }
@@ -42,32 +42,33 @@ public:
     [[nodiscard]] std::optional<std::size_t> selected() const { return selected_; }
     void select(std::optional<std::size_t> index) { selected_ = index; }
 
-    // Each of these is one edit and one step of undo.
+    // Each of these functions makes one edit and one step of undo.
 
-    /// On top; its name gets a number if there is one of that name. Selects it and returns its
-    /// index.
+    /// Adds a layer on top, selects it and returns its index. The name gets a number if a layer has
+    /// the same name.
     std::size_t add(cubemap::LightLayer layer);
     void remove(std::size_t index);
-    /// Up to where another layer is now.
+    /// Moves a layer to the place of another one.
     void reorder(std::size_t from, std::size_t to);
-    /// All of them.
+    /// Replaces all layers.
     void replace(std::vector<cubemap::LightLayer> layers);
     void undo();
     void redo();
 
-    // Edits in progress, as while a slider moves: not a step of undo before finish().
+    // Edits in progress, for example while a slider moves. They become a step of undo with
+    // finish().
 
     void change(std::size_t index, const cubemap::LightLayer& layer);
     void set_rotation(double degrees);
-    /// `path`: of its file, empty where there is none.
+    /// `path` is the base's file; empty where there is none.
     void set_base(cubemap::CubeMap base, const std::filesystem::path& path = {});
     void finish();
 
-    /// The file of the present base, after an undo too; empty where there is none.
+    /// The file of the present base, also after an undo; empty where there is none.
     [[nodiscard]] std::filesystem::path base_path() const;
 
-    /// The layer under a direction: the selected one first, then from the top; those that are off
-    /// only if selected. Nothing: None.
+    /// The layer under a direction: the selected one first, then from the top. A layer that is off
+    /// counts only if selected. Grip::None means no layer.
     struct Held {
         std::size_t index = 0;
         Grip grip = Grip::None;
@@ -81,17 +82,19 @@ public:
     [[nodiscard]] bool is_dragging() const { return drag_.has_value(); }
 
     /// Begins a stroke on top of the layers, extends it, and ends it. Points closer than a quarter
-    /// of the radius are left out.
+    /// of the radius to the last one are left out.
     void begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3& direction);
     void stroke_to(const glm::dvec3& direction);
     void end_stroke();
     [[nodiscard]] bool is_painting() const { return painting_; }
 
-    /// Draws an outline, at first without any effect; the end adds `layer` on top, its lasso with
-    /// these points, as one step of undo, and selects it. False, with nothing added, when there are
-    /// too few points. Throws std::invalid_argument for an outline that no lasso can have.
+    /// Draws an outline, at first without any effect. end_lasso() adds `layer` on top, its lasso
+    /// with these points, as one step of undo, and selects it. It returns false, and adds nothing,
+    /// for too few points.
+    ///
+    /// Throws:  std::invalid_argument for an outline that no lasso can have.
     void begin_lasso(const glm::dvec3& direction);
-    /// Points closer to the last than this are left out.
+    /// Points closer than `spacing_degrees` to the last one are left out.
     void lasso_to(const glm::dvec3& direction, double spacing_degrees);
     bool end_lasso(cubemap::LightLayer layer);
     /// The outline so far, as seen; empty when none is drawn.
@@ -103,7 +106,7 @@ public:
 
     /// Counts changes of the radiance.
     [[nodiscard]] std::uint64_t version() const { return version_; }
-    /// The environment's texels that changed since the last call.
+    /// Returns the environment's texels that changed since the last call.
     [[nodiscard]] std::vector<cubemap::TexelRectangle> take_changed_texels();
 
 private:
@@ -128,7 +131,7 @@ private:
     std::optional<Drag> drag_;
     bool painting_ = false;
     std::vector<glm::dvec3> lasso_;
-    /// The files of bases that the history may come back to.
+    /// The files of bases that the history may return to.
     std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, std::filesystem::path>>
         base_paths_;
     EditCost last_cost_;

@@ -6,15 +6,15 @@ namespace relumine::viewer {
 struct SceneLook {
     float exposure_ev = 0.0f;
     bool wireframe = false;
-    /// The environment behind the mesh
+    /// Shows the environment behind the mesh.
     bool background = true;
 };
 
 struct EnvironmentLook {
     float exposure_ev = 0.0f;
-    /// The clusters' borders
+    /// Shows the clusters' borders.
     bool quadtree = false;
-    /// What lights the chosen receiver
+    /// Shows the light that reaches the chosen receiver.
     bool heat = false;
 };
 

@@ -13,7 +13,7 @@ namespace relumine::viewer {
 namespace {
 
 constexpr float QuarterTurn = 0.5f * std::numbers::pi_v<float>;
-/// Straight above, up has no meaning any more; this much short of it, it still has.
+/// Straight above, "up" has no meaning; this much short of it, "up" still has one.
 constexpr float MaxPitch = QuarterTurn - 0.01f;
 
 float radians(float degrees) {

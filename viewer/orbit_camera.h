@@ -1,4 +1,4 @@
-// The camera of the scene's view: turns about a point. Without a window.
+// The camera of the scene's view, which turns about a point. Works without a window.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -10,20 +10,21 @@
 
 namespace relumine::viewer {
 
-/// Angles in radians; yaw 0 looks along -Z from +Z, a quarter turn looks from +X.
+/// A camera by angles in radians. Yaw 0 looks along -Z from +Z; a quarter turn looks from +X.
 struct OrbitCamera {
     glm::vec3 target{0.0f};
     float distance = 1.0f;
     float yaw = 0.0f;
-    /// Above the horizon, within a quarter turn
+    /// Above the horizon, within a quarter turn.
     float pitch = 0.0f;
     float fov_degrees = 35.0f;
 
-    /// Drags by pixels: to the right turns the scene to the right, down shows more of its top.
+    /// Turns by a drag in pixels: to the right turns the scene to the right, down shows more of its
+    /// top.
     void orbit(const glm::vec2& pixels);
-    /// Drags by pixels: the target's plane follows the pointer.
+    /// Shifts by a drag in pixels: the target's plane follows the pointer.
     void pan(const glm::vec2& pixels, const PixelRectangle& viewport);
-    /// Wheel steps: towards the target for positive ones.
+    /// Zooms by wheel steps; positive ones go towards the target.
     void zoom(float steps);
 
     [[nodiscard]] glm::vec3 eye() const;
@@ -31,7 +32,7 @@ struct OrbitCamera {
 
 struct Ray {
     glm::vec3 origin{0.0f};
-    /// unit
+    /// Unit length.
     glm::vec3 direction{0.0f, 0.0f, -1.0f};
 };
 
@@ -42,13 +43,14 @@ struct CameraFrame {
     glm::vec3 forward{0.0f, 0.0f, -1.0f};
 };
 
-/// The camera that sees the same as another: right way up, target at the same place.
+/// Returns the camera with the same view as another: right way up, target at the same place.
 [[nodiscard]] OrbitCamera orbit_camera(const relight::Camera& camera);
 [[nodiscard]] CameraFrame frame(const OrbitCamera& camera, const PixelRectangle& viewport);
-/// World to OpenGL's clip space; `reach` is how far from the target the scene goes.
+/// Returns the matrix from world to OpenGL's clip space. `reach` is how far the scene extends from
+/// the target.
 [[nodiscard]] glm::mat4 clip_from_world(const OrbitCamera& camera, const PixelRectangle& viewport,
                                         float reach);
-/// Through a pixel's position, in the window's coordinates.
+/// Returns the ray through a pixel's position, in the window's coordinates.
 [[nodiscard]] Ray ray_through(const OrbitCamera& camera, const PixelRectangle& viewport,
                               const glm::vec2& pixel);
 

@@ -1,10 +1,10 @@
-// Where the parts of the window lie. Depends on the window's size alone, so that a script knows its
-// pixels.
+// Where the parts of the window lie. The layout depends on the window's size alone, so a script
+// knows its pixels.
 #pragma once
 
 namespace relumine::viewer {
 
-/// Pixels of the window, from its top left corner.
+/// A rectangle of the window in pixels, from the top left corner.
 struct PixelRectangle {
     int x = 0;
     int y = 0;
@@ -17,13 +17,13 @@ struct PixelRectangle {
     }
 };
 
-/// Left the scene under its tools; right the environment under its own, the layers below; a line of
-/// figures at the bottom.
+/// The scene is on the left, under its tools. The environment is on the right, under its own tools,
+/// with the layers below. A line of figures is at the bottom.
 struct PanelLayout {
     PixelRectangle scene_tools;
     PixelRectangle scene;
     PixelRectangle environment_tools;
-    /// Twice as wide as high
+    /// Twice as wide as high.
     PixelRectangle environment;
     PixelRectangle layers;
     PixelRectangle status;

@@ -1,6 +1,6 @@
-// The window's panels, drawn with Dear ImGui between its NewFrame() and Render(). The two pictures
-// are drawn before, with OpenGL; here are the tools, the outlines over the pictures and what the
-// pointer does there.
+// The window's panels, drawn with Dear ImGui between its NewFrame() and Render(). OpenGL has drawn
+// the two pictures before. The panels are the tools, the outlines over the pictures, and the
+// pointer's effects there.
 #pragma once
 
 #include "viewer/panel_layout.h"
@@ -12,11 +12,11 @@ void scene_panel(ViewState& state, const PanelLayout& layout);
 void environment_panel(ViewState& state, const PanelLayout& layout);
 void layer_panel(ViewState& state, const PanelLayout& layout);
 void status_panel(const ViewState& state, const PanelLayout& layout);
-/// Asks what a dropped picture is to be, as long as there is one.
+/// Asks how to use a dropped picture, as long as there is one.
 void drop_dialogue(ViewState& state);
 
-/// A panel without a frame of its own at a place; end with ImGui::End(). `over_picture`: nothing
-/// behind it.
+/// Begins a panel without a frame of its own at a place; end it with ImGui::End(). With
+/// `over_picture`, nothing is drawn behind it.
 void begin_panel(const char* name, const PixelRectangle& place, bool over_picture = false);
 
 } // namespace relumine::viewer

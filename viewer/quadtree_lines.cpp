@@ -24,12 +24,12 @@ std::vector<glm::vec2> quadtree_lines(const prt::Quadtree& quadtree) {
         }
     };
     for (const prt::Cell& cell : quadtree.leaves()) {
-        // A whole face needs 32 pieces to look round, a cell of a 32nd of it one.
+        // A whole face needs 32 pieces to look round. A cell of 1/32 of the face's width needs one.
         const int num_pieces = std::max(1, 32 >> std::min<int>(cell.level, 5));
         const double size = cell.size();
         const glm::dvec2 corner(cell.x * size, cell.y * size);
-        // Left and top of every cell; right and bottom only at the face's edge, elsewhere a
-        // neighbour draws them.
+        // Every cell draws its left and top. Right and bottom are drawn only at the face's edge;
+        // elsewhere a neighbour draws them.
         append_line(cell.face, corner, corner + glm::dvec2(size, 0.0), num_pieces);
         append_line(cell.face, corner, corner + glm::dvec2(0.0, size), num_pieces);
         const std::uint32_t last = (1u << cell.level) - 1u;

@@ -9,9 +9,9 @@
 
 namespace relumine::viewer {
 
-/// Ends of line segments, two by two, in lat-long coordinates (see lat_long()); u may reach beyond
-/// 0 and 1, where a line crosses the seam. A border that two cells share appears once, or in the
-/// pieces of the smaller cells.
+/// Returns the ends of line segments, two by two, in lat-long coordinates (see lat_long()). u may
+/// reach beyond 0 and 1 where a line crosses the seam. A border that two cells share appears once,
+/// or in the pieces of the smaller cells.
 [[nodiscard]] std::vector<glm::vec2> quadtree_lines(const prt::Quadtree& quadtree);
 
 } // namespace relumine::viewer

@@ -17,15 +17,13 @@ namespace relumine::viewer {
 
 namespace {
 
-constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
-
-/// The rotation that takes one direction to another on the shortest way.
+/// Returns the rotation that takes one direction to another on the shortest way.
 glm::dmat3 rotation_between(const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 a = glm::normalize(from);
     const glm::dvec3 b = glm::normalize(to);
     const glm::dvec3 axis = glm::cross(a, b);
     const double cosine = glm::dot(a, b);
-    if (cosine < -0.999999) // opposite: any way round, a pointer does not jump so far
+    if (cosine < -0.999999) // opposite: no shortest way, and a pointer does not jump so far
         return glm::dmat3(1.0);
     // Rodrigues' formula: R = c I + [axis]x + axis axis^T / (1 + c); columns.
     const double k = 1.0 / (1.0 + cosine);
@@ -49,8 +47,8 @@ struct Move {
     }
 };
 
-/// Degrees from a direction to the nearest point of a line; exact at its points, a chord's error
-/// between them.
+/// Returns the degrees from a direction to the nearest point of a line. Exact at its points, a
+/// chord's error between them.
 double distance_to(std::span<const glm::dvec3> line, const glm::dvec3& direction) {
     const glm::dvec3 w = glm::normalize(direction);
     double best = std::numeric_limits<double>::infinity();
@@ -78,7 +76,7 @@ struct Resize {
         const glm::dvec3 after = to / std::max(glm::dot(to, frame.normal), 1e-3);
         const auto resize = [](double& size_degrees, double at_from, double at_to) {
             const double half = std::tan(0.5 * size_degrees * RadiansPerDegree);
-            // Held beside its middle: a corner holds two sides, the middle of a side only that.
+            // A corner holds two sides; the middle of a side holds only that side.
             if (std::abs(at_from) < 0.7 * half)
                 return;
             const double new_half = half + std::abs(at_to) - std::abs(at_from);
@@ -94,8 +92,8 @@ struct Resize {
             widest = std::max(widest, angle_between(center, point));
         const double wanted =
             angle_between(center, to) / std::max(angle_between(center, from), 1e-3);
-        // The mean moves when points spread: a good way short of the 89.9 degrees that a lasso may
-        // have.
+        // The mean moves when points spread. So the limit is well short of the 89.9 degrees that a
+        // lasso may have.
         const double scale = std::clamp(wanted, 0.01, std::max(1.0, 60.0 / std::max(widest, 1e-3)));
         for (glm::dvec3& point : lasso.points) {
             const double angle = angle_between(center, point) * RadiansPerDegree;
@@ -112,7 +110,7 @@ struct Resize {
     }
 };
 
-/// With hard edges, so that all of it can be held.
+/// Returns the region with hard edges, so that all of it can be held.
 cubemap::Region hard(cubemap::Region region) {
     if (auto* lasso = std::get_if<cubemap::Lasso>(&region))
         lasso->softness_degrees = 0.0;

@@ -13,7 +13,6 @@ namespace relumine::viewer {
 namespace {
 
 constexpr double Pi = std::numbers::pi;
-constexpr double RadiansPerDegree = Pi / 180.0;
 /// Points of a circle, a side or an arc: enough for a smooth line on a screen.
 constexpr int CirclePoints = 96;
 constexpr int SidePoints = 16;
@@ -36,7 +35,8 @@ void append_circle(std::vector<glm::dvec3>& line, const glm::dvec3& center, cons
     }
 }
 
-/// Both sides of a stroke's line and round ends: its border wherever it does not cross itself.
+/// Returns both sides of a stroke's line and round ends. This is its border wherever it does not
+/// cross itself.
 std::vector<glm::dvec3> stroke_outline(const cubemap::Stroke& stroke) {
     std::vector<glm::dvec3> points;
     for (const glm::dvec3& point : stroke.points) {
@@ -50,8 +50,7 @@ std::vector<glm::dvec3> stroke_outline(const cubemap::Stroke& stroke) {
                       CirclePoints);
         return line;
     }
-    // To the right of the way that the line takes at a point, as seen from the centre of the
-    // sphere.
+    // The direction to the right of the line at a point, as seen from the centre of the sphere.
     const auto side = [&](std::size_t i) {
         const glm::dvec3& before = points[i > 0 ? i - 1 : i];
         const glm::dvec3& after = points[i + 1 < points.size() ? i + 1 : i];
@@ -130,8 +129,8 @@ struct Middle {
 
 BoxFrame box_frame(const cubemap::Rectangle& box) {
     const glm::dvec3 normal = glm::normalize(box.direction);
-    // Upright: +Y up on the tangent plane; straight above its top points to +Z, straight below to
-    // -Z.
+    // Upright means +Y up on the tangent plane. Straight above, the top points to +Z; straight
+    // below, to -Z.
     glm::dvec3 up = glm::dvec3(0, 1, 0) - normal * normal.y;
     up = glm::length(up) > 1e-9 ? glm::normalize(up)
                                 : glm::dvec3(0.0, 0.0, normal.y > 0.0 ? 1.0 : -1.0);

@@ -56,7 +56,7 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
         click_mesh(state, place, pointer());
 }
 
-/// A ring at the chosen receiver.
+/// Draws a ring at the chosen receiver.
 void draw_receiver(const ViewState& state, const PixelRectangle& place) {
     if (!state.receiver)
         return;

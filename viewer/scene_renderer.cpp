@@ -28,7 +28,7 @@ void main() {
 }
 )";
 
-/// One triangle over all of the viewport.
+/// One triangle over the whole viewport.
 constexpr const char* BackgroundVertexSource = R"(
 uniform vec3 right, up, forward;
 out vec3 direction;
@@ -78,7 +78,7 @@ SceneRenderer::SceneRenderer(const mesh::TriangleMesh& mesh)
 }
 
 void SceneRenderer::upload_radiance(std::span<const glm::vec3> radiance) {
-    // New storage each time: the driver need not wait until the old one has been drawn.
+    // New storage each time: the driver need not wait until the old radiance has been drawn.
     fill<glm::vec3>(GL_ARRAY_BUFFER, radiance_, radiance, GL_STREAM_DRAW);
 }
 

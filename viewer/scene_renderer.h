@@ -17,9 +17,9 @@ namespace relumine::viewer {
 class SceneRenderer {
 public:
     explicit SceneRenderer(const mesh::TriangleMesh& mesh);
-    /// [num_vertices]
+    /// `radiance` is [num_vertices].
     void upload_radiance(std::span<const glm::vec3> radiance);
-    /// Into the current viewport, of which `viewport` tells the shape. Clears its depth.
+    /// Draws into the current viewport, whose shape must be `viewport`. Clears its depth.
     void draw(const OrbitCamera& camera, const PixelRectangle& viewport,
               const CubeTexture& environment, const SceneLook& look) const;
 

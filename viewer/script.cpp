@@ -18,8 +18,8 @@ namespace relumine::viewer {
 
 namespace {
 
-/// What follows the command's word: t a word or "words in quotes", v X,Y,Z, n a number; ? before
-/// what may be missing.
+/// A command's word and its arguments: t is a word or "words in quotes", v is X,Y,Z, n is a number;
+/// ? stands before optional arguments.
 struct Form {
     std::string_view name;
     Action action;
@@ -57,7 +57,7 @@ constexpr std::array Forms = {
     Form{"quit", Action::Quit, "", "quit"},
 };
 
-/// The words of a line, up to a #; nothing for quotes without an end.
+/// Returns the words of a line, up to a #; nothing for quotes without an end.
 std::optional<std::vector<std::string>> words_of(std::string_view line) {
     std::vector<std::string> words;
     std::size_t at = 0;
@@ -100,7 +100,7 @@ bool append_vector(std::string_view text, std::vector<double>& numbers) {
     return numbers[n - 3] != 0.0 || numbers[n - 2] != 0.0 || numbers[n - 1] != 0.0;
 }
 
-/// False when the words do not fit the form.
+/// Reads the arguments. Returns false when the words do not fit the form.
 bool read_arguments(const Form& form, const std::vector<std::string>& words,
                     ScriptCommand& command) {
     std::size_t next = 1;

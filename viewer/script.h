@@ -1,4 +1,4 @@
-// Scripts that drive the window without a person. The language: docs/viewer.md.
+// Scripts that drive the window without a person. docs/viewer.md describes the language.
 #pragma once
 
 #include <cstddef>
@@ -41,18 +41,20 @@ enum class Action {
 /// One line of a script.
 struct ScriptCommand {
     Action action = Action::Wait;
-    /// A layer's name or a path
+    /// A layer's name or a path.
     std::string text = {};
-    /// In the order of the line; X,Y,Z is three
+    /// In the order of the line; X,Y,Z counts as three.
     std::vector<double> numbers = {};
-    /// Counted from 1
+    /// Counted from 1.
     std::size_t line = 0;
 };
 
-/// How many frames a command takes: a drag is spread over frames, each of them one event.
+/// Returns how many frames a command takes. A drag is spread over frames, one event each.
 [[nodiscard]] std::size_t num_frames(const ScriptCommand& command);
 
-/// Throws std::runtime_error "source:line: expected X, got Y".
+/// Reads the lines of a script; `source` is for messages.
+///
+/// Throws:  std::runtime_error "source:line: expected X, got Y".
 [[nodiscard]] std::vector<ScriptCommand> parse_script(std::string_view text,
                                                       const std::string& source);
 [[nodiscard]] std::vector<ScriptCommand> load_script(const std::filesystem::path& path);

@@ -29,7 +29,7 @@ std::size_t layer_of(const ScriptCommand& command, const ViewState& state) {
     return *index;
 }
 
-/// The pointer arrives, presses and goes, and lets go.
+/// The pointer arrives, presses, moves, and lets go.
 Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
     const double t =
         frame < 2 ? 0.0 : static_cast<double>(frame - 1) / static_cast<double>(num_frames - 3);
@@ -39,7 +39,7 @@ Pointer dragged(const std::vector<double>& numbers, std::size_t frame, std::size
             .down = frame > 0 && frame + 1 < num_frames};
 }
 
-/// The same around the ellipse that fills a rectangle.
+/// As dragged(), around the ellipse that fills a rectangle.
 Pointer lassoed(const std::vector<double>& numbers, std::size_t frame, std::size_t num_frames) {
     Pointer pointer = dragged({0.0, 0.0, 1.0, 0.0}, frame, num_frames);
     const double angle = 2.0 * std::numbers::pi * static_cast<double>(pointer.pixel.x);
@@ -71,6 +71,77 @@ double size_of(const cubemap::Region& region) {
     return 0.0;
 }
 
+cubemap::LightLayer new_layer(const ScriptCommand& command) {
+    const std::vector<double>& n = command.numbers;
+    if (command.action == Action::AddRectangle)
+        return {.name = command.text,
+                .region = cubemap::Rectangle{.direction = vector_of(command),
+                                             .width_degrees = n[3],
+                                             .height_degrees = n[4]}};
+    cubemap::LightLayer layer{
+        .name = command.text,
+        .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]}};
+    if (command.action == Action::AddGain)
+        layer.effect = cubemap::Gain{.factor = static_cast<float>(n[4])};
+    return layer;
+}
+
+void set_gain(const ScriptCommand& command, ViewState& state) {
+    const std::size_t index = layer_of(command, state);
+    cubemap::LightLayer layer = state.desk.layers()[index];
+    layer.gain_ev = command.numbers[0];
+    state.desk.change(index, layer);
+    state.desk.finish();
+}
+
+/// Returns the pointer in a frame of a command, and sets the tool that it uses.
+Pointer moved_pointer(const ScriptCommand& command, std::size_t frame, std::size_t num_frames,
+                      Tool& tool) {
+    const std::vector<double>& n = command.numbers;
+    switch (command.action) {
+    case Action::Click:
+        return {.pixel = glm::vec2(n[0], n[1]), .down = frame == 1};
+    case Action::LassoEnvironment:
+        // The panel goes back to the move tool when the outline is closed.
+        if (frame == 0)
+            tool = Tool::Lasso;
+        return lassoed(n, frame, num_frames);
+    case Action::PaintEnvironment:
+        tool = frame + 1 == num_frames ? Tool::Move : Tool::Paint;
+        return dragged(n, frame, num_frames);
+    default:
+        tool = Tool::Move;
+        return dragged(n, frame, num_frames);
+    }
+}
+
+void set_look(Action action, double value, ViewState& state) {
+    if (action == Action::SceneExposure)
+        state.scene_look.exposure_ev = static_cast<float>(value);
+    else if (action == Action::EnvironmentExposure)
+        state.environment_look.exposure_ev = static_cast<float>(value);
+    else if (action == Action::Wireframe)
+        state.scene_look.wireframe = value != 0.0;
+    else
+        state.environment_look.quadtree = value != 0.0;
+}
+
+/// Opens or saves a file. Returns false for a failure; the state's message tells the reason.
+bool use_file(Action action, const std::string& path, ViewState& state) {
+    switch (action) {
+    case Action::Open:
+        return open(state, path);
+    case Action::AddImage:
+        return add_image(state, path);
+    case Action::Drop:
+        return drop(state, path);
+    case Action::SaveLayers:
+        return save_layers(state, path);
+    default:
+        return save_environment(state, path);
+    }
+}
+
 } // namespace
 
 ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
@@ -81,7 +152,7 @@ ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
     const std::size_t count = num_frames(command);
     try {
         apply(command, state, count, frame);
-    } catch (const std::invalid_argument& error) { // a layer that no layer can be
+    } catch (const std::invalid_argument& error) { // values that no layer can have
         fail(command, error.what());
     }
     if (++frame_ >= count) {
@@ -91,85 +162,57 @@ ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
     return frame;
 }
 
+void ScriptPlayer::drag_layer(const ScriptCommand& command, ViewState& state, std::size_t count) {
+    const std::size_t index = layer_of(command, state);
+    if (frame_ == 0) {
+        from_ = turned(middle(state.desk.layers()[index].region), state.desk.editor().rotation());
+        state.desk.begin_drag({.index = index, .grip = Grip::Body}, from_);
+    }
+    const glm::dvec3 on_way = from_ + (vector_of(command) - from_) * part_done(count);
+    state.desk.drag_to(glm::length(on_way) > 1e-6 ? on_way : vector_of(command));
+    if (frame_ + 1 == count)
+        state.desk.end_drag();
+}
+
+void ScriptPlayer::resize_layer(const ScriptCommand& command, ViewState& state, std::size_t count) {
+    const std::size_t index = layer_of(command, state);
+    cubemap::LightLayer layer = state.desk.layers()[index];
+    if (frame_ == 0)
+        size_from_ = size_of(layer.region);
+    resize_region(layer.region, size_from_ + (command.numbers[0] - size_from_) * part_done(count));
+    state.desk.change(index, layer);
+    if (frame_ + 1 == count)
+        state.desk.finish();
+}
+
 void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::size_t count,
                          Frame& frame) {
-    const std::vector<double>& n = command.numbers;
-    const double t = static_cast<double>(frame_ + 1) / static_cast<double>(count);
-    const bool is_last = frame_ + 1 == count;
-    const auto must = [&](bool worked) {
-        if (!worked)
-            fail(command, state.message);
-    };
     switch (command.action) {
     case Action::Wait:
         break;
     case Action::AddDisc:
-        state.desk.add(
-            {.name = command.text,
-             .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]}});
-        break;
     case Action::AddRectangle:
-        state.desk.add({.name = command.text,
-                        .region = cubemap::Rectangle{.direction = vector_of(command),
-                                                     .width_degrees = n[3],
-                                                     .height_degrees = n[4]}});
-        break;
     case Action::AddGain:
-        state.desk.add(
-            {.name = command.text,
-             .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]},
-             .effect = cubemap::Gain{.factor = static_cast<float>(n[4])}});
+        state.desk.add(new_layer(command));
         break;
-    case Action::DragLayer: {
-        const std::size_t index = layer_of(command, state);
-        if (frame_ == 0) {
-            from_ =
-                turned(middle(state.desk.layers()[index].region), state.desk.editor().rotation());
-            state.desk.begin_drag({.index = index, .grip = Grip::Body}, from_);
-        }
-        const glm::dvec3 on_way = from_ + (vector_of(command) - from_) * t;
-        state.desk.drag_to(glm::length(on_way) > 1e-6 ? on_way : vector_of(command));
-        if (is_last)
-            state.desk.end_drag();
+    case Action::DragLayer:
+        drag_layer(command, state, count);
         break;
-    }
-    case Action::ResizeLayer: {
-        const std::size_t index = layer_of(command, state);
-        cubemap::LightLayer layer = state.desk.layers()[index];
-        if (frame_ == 0)
-            size_from_ = size_of(layer.region);
-        resize_region(layer.region, size_from_ + (n[0] - size_from_) * t);
-        state.desk.change(index, layer);
-        if (is_last)
-            state.desk.finish();
+    case Action::ResizeLayer:
+        resize_layer(command, state, count);
         break;
-    }
-    case Action::SetGain: {
-        const std::size_t index = layer_of(command, state);
-        cubemap::LightLayer layer = state.desk.layers()[index];
-        layer.gain_ev = n[0];
-        state.desk.change(index, layer);
-        state.desk.finish();
-        break;
-    }
-    case Action::DragEnvironment:
-    case Action::PaintEnvironment:
-    case Action::DragMesh:
-        state.tool =
-            command.action == Action::PaintEnvironment && !is_last ? Tool::Paint : Tool::Move;
-        frame.pointer = dragged(n, frame_, count);
-        break;
-    case Action::LassoEnvironment:
-        // The panel goes back to moving when the outline is closed.
-        if (frame_ == 0)
-            state.tool = Tool::Lasso;
-        frame.pointer = lassoed(n, frame_, count);
+    case Action::SetGain:
+        set_gain(command, state);
         break;
     case Action::Click:
-        frame.pointer = Pointer{.pixel = glm::vec2(n[0], n[1]), .down = frame_ == 1};
+    case Action::DragEnvironment:
+    case Action::DragMesh:
+    case Action::LassoEnvironment:
+    case Action::PaintEnvironment:
+        frame.pointer = moved_pointer(command, frame_, count, state.tool);
         break;
     case Action::Rotate:
-        state.desk.set_rotation(n[0]);
+        state.desk.set_rotation(command.numbers[0]);
         state.desk.finish();
         break;
     case Action::Undo:
@@ -179,31 +222,18 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
         state.desk.redo();
         break;
     case Action::SceneExposure:
-        state.scene_look.exposure_ev = static_cast<float>(n[0]);
-        break;
     case Action::EnvironmentExposure:
-        state.environment_look.exposure_ev = static_cast<float>(n[0]);
-        break;
     case Action::Wireframe:
-        state.scene_look.wireframe = n[0] != 0.0;
-        break;
     case Action::Quadtree:
-        state.environment_look.quadtree = n[0] != 0.0;
+        set_look(command.action, command.numbers[0], state);
         break;
     case Action::Open:
-        must(open(state, command.text));
-        break;
     case Action::AddImage:
-        must(add_image(state, command.text));
-        break;
     case Action::Drop:
-        must(drop(state, command.text));
-        break;
     case Action::SaveLayers:
-        must(save_layers(state, command.text));
-        break;
     case Action::SaveEnvironment:
-        must(save_environment(state, command.text));
+        if (!use_file(command.action, command.text, state))
+            fail(command, state.message);
         break;
     case Action::Screenshot:
         frame.screenshot = command.text;

@@ -29,7 +29,7 @@ public:
     explicit Pictures(const ViewState& state)
         : scene_(state.mesh), environment_(state.desk.editor().relighter().transfer().quadtree) {}
 
-    /// Sends what edits have changed to the graphics card.
+    /// Sends changes by edits to the graphics card.
     void update(ViewState& state) {
         const relight::LightEditor& editor = state.desk.editor();
         if (const auto version = state.desk.version(); version != version_) {
@@ -37,7 +37,7 @@ public:
             scene_.upload_radiance(editor.radiance());
             texture_.upload(editor.environment(), state.desk.take_changed_texels());
         }
-        // While a layer is dragged the heat map stays as it was: it costs as much as a relighting.
+        // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.
         if (state.heat_is_stale && state.receiver && state.environment_look.heat &&
             !state.desk.is_dragging() && !state.desk.is_painting()) {
             environment_.upload_heat(
@@ -88,7 +88,7 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
     }
 }
 
-/// Counts frames in which nobody did anything, so that an idle window takes no power.
+/// Counts frames without any input, so that an idle window takes no power.
 class Idleness {
 public:
     void count() {
@@ -129,7 +129,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         for (const Shortcut shortcut : window.take_shortcuts())
             handle(shortcut, state, window.layout());
 
-        // The panels first: what the pointer does in this frame is seen in this frame.
+        // The panels come first, so that this frame shows what the pointer does in it.
         const PanelLayout layout = window.layout();
         scene_panel(state, layout);
         environment_panel(state, layout);

@@ -16,27 +16,29 @@ namespace relumine::viewer {
 struct ViewOptions {
     int width = 1440;
     int height = 860;
-    /// Played, then the window closes
+    /// Played to its end, then the window closes.
     std::optional<std::vector<ScriptCommand>> script = {};
-    /// The last frame of the script; empty: none
+    /// File for a picture of the script's last frame; empty: none.
     std::filesystem::path screenshot = {};
-    /// Closes the window
+    /// Closes the window.
     std::stop_token stop = {};
 };
 
-/// What happened.
+/// What happened while the window was open.
 struct ViewReport {
-    /// OpenGL's own words
+    /// OpenGL's own words.
     std::string renderer;
     std::size_t num_frames = 0;
     double mean_frame_seconds = 0.0;
-    /// Relighting, for every event of a drag
+    /// Relighting, for every event of a drag.
     std::vector<double> drag_seconds = {};
 };
 
-/// Shows the state, all of the mesh first, until the window is closed or the script ends. Throws
-/// std::runtime_error when no window can be opened, for what a script cannot do and for a
-/// screenshot that cannot be written.
+/// Shows the state until the window is closed or the script ends. Begins with a view of the whole
+/// mesh.
+///
+/// Throws:  std::runtime_error when no window can be opened, for a command that a script cannot do,
+///          and for a screenshot that cannot be written.
 ViewReport view(ViewState& state, const ViewOptions& options = {});
 
 } // namespace relumine::viewer

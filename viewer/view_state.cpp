@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/image/environment.h"
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 
 namespace relumine::viewer {
 
@@ -33,7 +33,7 @@ bool is_picture(const std::filesystem::path& path) {
     return path.extension() == ".exr" || path.extension() == ".hdr";
 }
 
-/// Not a step of undo yet.
+/// Sets the environment; this is not a step of undo yet.
 void set_environment(ViewState& state, const std::filesystem::path& path) {
     state.desk.set_base(state.load_environment(path), path);
     state.heat_is_stale = true;
@@ -45,7 +45,7 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
         if (const std::filesystem::path base = path.parent_path() / *file.base;
             base.lexically_normal() != state.desk.base_path().lexically_normal())
             set_environment(state, base);
-    // Layers may be saved to another folder than they came from.
+    // Layers may be saved to another folder than the one they came from.
     for (cubemap::LightLayer& layer : file.layers)
         if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
             patch->path =
@@ -74,7 +74,8 @@ void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec
         return;
     const glm::vec3 weights(1.0f - hit->barycentric.x - hit->barycentric.y, hit->barycentric.x,
                             hit->barycentric.y);
-    // The triangle's corner with the largest weight: the nearest, in all but needles of triangles.
+    // The triangle's corner with the largest weight. It is the nearest one, except in very thin
+    // triangles.
     const int corner = weights.x >= weights.y && weights.x >= weights.z ? 0
                        : weights.y >= weights.z                         ? 1
                                                                         : 2;
@@ -114,9 +115,9 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
                                            path.string(), path.extension().string()));
         }
         cubemap::ImagePatch patch{.path = std::filesystem::absolute(path).lexically_normal(),
-                                  .picture = cubemap::load_picture(path)};
-        const cubemap::Picture::Level& full = patch.picture->levels().front();
-        // As the picture's pixels are, 40 degrees along its longer side.
+                                  .picture = cubemap::load_image_pyramid(path)};
+        const cubemap::Picture& full = patch.picture->levels().front();
+        // Shaped as the picture's pixels, 40 degrees along its longer side.
         constexpr double DegreesPerRadian = 180.0 / std::numbers::pi;
         const double half = std::tan(20.0 / DegreesPerRadian);
         const double longer = std::max(full.width, full.height);
@@ -150,7 +151,7 @@ bool save_layers(ViewState& state, const std::filesystem::path& path) {
         for (cubemap::LightLayer& layer : file.layers)
             if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
                 patch->path = from_folder(patch->path);
-        // Key frames of layers that are gone go with them.
+        // Removes the key frames of layers that are gone.
         for (cubemap::KeyFrame& frame : file.frames)
             std::erase_if(frame.changes,
                           [&](const auto& key) { return !state.desk.find(key.layer); });

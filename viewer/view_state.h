@@ -1,5 +1,5 @@
-// What the window's panels and scripts share: the scene, the desk, both views, what is shown and
-// chosen. Without a window.
+// The state that the window's panels and scripts share: the scene, the desk, both views, what is
+// shown and chosen. Works without a window.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ struct ViewState {
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
     LightDesk& desk;
-    /// Reads an environment file as the command line's options say; throws std::runtime_error.
+    /// Reads an environment file as the command line's options say. Throws std::runtime_error.
     std::function<cubemap::CubeMap(const std::filesystem::path&)> load_environment;
 
     OrbitCamera camera = {};
@@ -40,44 +40,45 @@ struct ViewState {
                               .region = cubemap::Lasso{.points = {}, .softness_degrees = 3.0},
                               .effect = cubemap::Gain{.factor = 0.25f}};
 
-    /// The vertex that was clicked
+    /// The vertex that was clicked.
     std::optional<std::uint32_t> receiver = {};
-    /// The contribution map has to be made anew
+    /// The contribution map must be made anew.
     bool heat_is_stale = false;
 
-    /// Of the layer file, kept for saving
+    /// Key frames of the layer file, kept for saving.
     std::vector<cubemap::KeyFrame> frames = {};
-    /// The text field
+    /// Content of the text field.
     std::string path = {};
-    /// The text field is to be typed into
+    /// The text field takes the keyboard.
     bool wants_path = false;
-    /// A picture of which the dialogue asks what it is to be; empty: none
+    /// A dropped picture, until the dialogue has asked how to use it; empty: none.
     std::filesystem::path dropped = {};
     std::string message = {};
     bool message_is_error = false;
     double frame_seconds = 0.0;
 };
 
-/// The camera that shows all of the mesh but the ground, as `relumine relight` takes it for a
-/// picture of this size.
+/// Returns the camera that shows all of the mesh but the ground, as `relumine relight` takes it for
+/// a picture of this size.
 [[nodiscard]] OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh,
                                         const PixelRectangle& viewport);
 
-/// Chooses the receiver nearest to where a pixel's ray meets the mesh, or none, and shows what
-/// lights it.
+/// Chooses the receiver nearest to the point where a pixel's ray meets the mesh, or none, and shows
+/// the light that reaches it.
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel);
 
-// Files. These report in `message` whether they worked and do not throw for what files may do;
-// false for a failure.
+// Files. These functions report success or failure in `message` and return false for a failure.
+// They do not throw for errors of files.
 
-/// A file that was dropped on the window: .json opens, a picture becomes `dropped`.
+/// Takes a file that was dropped on the window: a .json opens, a picture becomes `dropped`.
 bool drop(ViewState& state, const std::filesystem::path& path);
-/// A picture, .exr or .hdr, as a layer where the environment's view looks.
+/// Adds a picture, .exr or .hdr, as a layer where the environment's view looks.
 bool add_image(ViewState& state, const std::filesystem::path& path);
-/// Layers from .json (with the environment they name), an environment from .exr or .hdr.
+/// Opens layers from .json, with the environment that they name, or an environment from .exr or
+/// .hdr.
 bool open(ViewState& state, const std::filesystem::path& path);
 bool save_layers(ViewState& state, const std::filesystem::path& path);
-/// Base and layers as one lat-long, .exr or .hdr.
+/// Saves base and layers as one lat-long, .exr or .hdr.
 bool save_environment(ViewState& state, const std::filesystem::path& path);
 
 } // namespace relumine::viewer

@@ -19,7 +19,7 @@ namespace relumine::viewer {
 
 namespace {
 
-/// GLFW's last error, as it tells it.
+/// GLFW's last error, in its own words.
 std::string& last_error() {
     static std::string text;
     return text;
@@ -63,7 +63,7 @@ void set_style() {
         style.Colors[index] = color;
 }
 
-/// A font that most Linux systems have; Dear ImGui's own small one where none is found.
+/// Loads a font that most Linux systems have; Dear ImGui's own small one where none is found.
 void load_font(float scale) {
     constexpr std::array Candidates = {
         "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf",
@@ -90,7 +90,7 @@ struct Window::Impl {
     std::vector<std::filesystem::path> dropped;
     std::vector<Shortcut> shortcuts;
 
-    /// By the letter on the key, not by its place: Z is elsewhere on a German keyboard.
+    /// Goes by the letter on the key, not by its place: Z is elsewhere on a German keyboard.
     void on_key(int key, int scancode, int modifiers) {
         if (ImGui::GetIO().WantTextInput)
             return;
@@ -134,7 +134,7 @@ Window::Window(int width, int height, const std::string& title, bool scripted)
     glfwSwapInterval(scripted ? 0 : 1);
     glEnable(GL_MULTISAMPLE);
 
-    // Before Dear ImGui's, which call these in turn.
+    // Set before Dear ImGui's callbacks, which call these in turn.
     glfwSetWindowUserPointer(impl_->window, impl_.get());
     glfwSetDropCallback(impl_->window, [](GLFWwindow* window, int count, const char** paths) {
         static_cast<Impl*>(glfwGetWindowUserPointer(window))->dropped.assign(paths, paths + count);
@@ -147,7 +147,7 @@ Window::Window(int width, int height, const std::string& title, bool scripted)
 
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr; // nothing is left behind in the current folder
+    ImGui::GetIO().IniFilename = nullptr; // leaves nothing behind in the current folder
     float scale = 1.0f;
     if (!scripted)
         glfwGetWindowContentScale(impl_->window, &scale, nullptr);

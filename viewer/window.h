@@ -1,4 +1,4 @@
-// The window: GLFW, an OpenGL 3.3 core context and Dear ImGui, made together and gone together.
+// The window: GLFW, an OpenGL 3.3 core context and Dear ImGui, made and destroyed together.
 #pragma once
 
 #include <filesystem>
@@ -24,8 +24,10 @@ enum class Shortcut { Undo, Redo, Delete, FrameAll, Wireframe, Quadtree };
 
 class Window {
 public:
-    /// Throws std::runtime_error when there is no display or no OpenGL 3.3. If `scripted`, nothing
-    /// of a person's mouse reaches it, and frames come as fast as they are drawn.
+    /// Opens the window. If `scripted`, it ignores a person's mouse, and frames come as fast as
+    /// they are drawn.
+    ///
+    /// Throws:  std::runtime_error when there is no display or no OpenGL 3.3.
     Window(int width, int height, const std::string& title, bool scripted);
     ~Window();
     Window(const Window&) = delete;
@@ -35,22 +37,22 @@ public:
     /// In pixels of the window; the frame buffer may be finer.
     [[nodiscard]] PanelLayout layout() const;
 
-    /// Takes events (waits for one up to `wait_seconds`) and begins a frame of Dear ImGui. A
+    /// Takes events (waits up to `wait_seconds` for one) and begins a frame of Dear ImGui. A
     /// script's pointer replaces the real one.
     void begin_frame(double wait_seconds, const std::optional<Pointer>& pointer);
-    /// The OpenGL viewport of a part of the window.
+    /// Sets the OpenGL viewport to a part of the window.
     void set_viewport(const PixelRectangle& part) const;
-    /// Draws Dear ImGui's frame over what was drawn before.
+    /// Draws Dear ImGui's frame over the pictures.
     void end_frame();
-    /// What is about to be shown; before show().
+    /// Returns the picture that is about to be shown. Call it before show().
     [[nodiscard]] relight::Picture screenshot() const;
     void show();
 
-    /// Since the last call.
+    /// Returns the files that were dropped since the last call.
     [[nodiscard]] std::vector<std::filesystem::path> take_dropped_files();
     [[nodiscard]] std::vector<Shortcut> take_shortcuts();
 
-    /// OpenGL's own words on who draws.
+    /// OpenGL's own words about the renderer.
     [[nodiscard]] std::string renderer() const;
 
 private:

@@ -13,18 +13,18 @@ namespace {
 constexpr double RadiansPerDegree = std::numbers::pi / 180.0;
 
 /// The surroundings are a ring about the peak. Its inner radius leaves out the bloom that lenses
-/// put around the sun; its width is that of a piece of sky. Both are at least some texels in coarse
-/// maps.
+/// put around the sun. Its width spans a piece of sky. In coarse maps both are at least some
+/// texels.
 constexpr double RingInnerDegrees = 8.0, RingOuterDegrees = 20.0;
 constexpr double RingInnerTexels = 3.0, RingOuterTexels = 6.0;
-/// No other spot is looked for closer to a peak.
+/// No other spot is searched closer to a peak than this.
 constexpr double ApartDegrees = 5.0;
 constexpr double ApartTexels = 2.0;
-/// A spot ends where the light is less than this part of its peak, or this many times its
-/// surroundings.
+/// A spot ends where the light above the surroundings falls below PeakPart of the peak's, or the
+/// light falls below TimesSurroundings times the surroundings.
 constexpr double PeakPart = 0.01;
 constexpr double TimesSurroundings = 2.0;
-/// Peaks below this part of the brightest are not worth a look.
+/// Peaks below this part of the brightest peak are ignored.
 constexpr double FaintestPeak = 0.002;
 
 double distance_of_angle(double radians) {
@@ -49,7 +49,7 @@ struct Finder {
         return solid_angles[texel % (std::size_t{resolution} * resolution)];
     }
 
-    /// Brightest texel that is not taken.
+    /// Returns the brightest texel that is not taken.
     [[nodiscard]] std::uint32_t peak() const {
         std::uint32_t best = 0;
         float value = -1.0f;
@@ -62,7 +62,7 @@ struct Finder {
         return value > 0.0f ? best : static_cast<std::uint32_t>(luminances.size());
     }
 
-    /// Calls visit(texel, chord) for texels within a chord.
+    /// Calls visit(texel, squared chord) for the texels within a chord.
     template<typename Visit>
     void near(const glm::vec3& direction, double chord, const Visit& visit) const {
         const auto limit = static_cast<float>(chord * chord);
@@ -91,16 +91,9 @@ struct Finder {
         return *middle;
     }
 
-    [[nodiscard]] BrightSpot spot(std::uint32_t start, double max_radius) const {
-        BrightSpot spot;
-        spot.peak_direction = glm::normalize(glm::dvec3(directions[start]));
-        spot.peak_luminance = luminances[start];
-        spot.surrounding_luminance = surroundings(directions[start]);
-        const double level =
-            std::max(TimesSurroundings * spot.surrounding_luminance,
-                     spot.surrounding_luminance +
-                         PeakPart * (spot.peak_luminance - spot.surrounding_luminance));
-        const double farthest = distance_of_angle(std::max(max_radius, 2.0 * texel_angle));
+    /// Sets the spot's texels: all texels above `level` that are connected with `start`. The spot
+    /// is cut at the chord `farthest`.
+    void flood(std::uint32_t start, float farthest, double level, BrightSpot& spot) const {
         std::vector<std::uint32_t> front = {start};
         spot.texels = {start};
         std::vector<bool> seen(luminances.size(), false);
@@ -113,8 +106,7 @@ struct Finder {
                 seen[texel] = true;
                 if (luminances[texel] <= level)
                     continue;
-                if (glm::distance(directions[texel], directions[start]) >
-                    static_cast<float>(farthest)) {
+                if (glm::distance(directions[texel], directions[start]) > farthest) {
                     spot.is_cut = true;
                     continue;
                 }
@@ -123,6 +115,19 @@ struct Finder {
             spot.texels.insert(spot.texels.end(), next.begin(), next.end());
             front = std::move(next);
         }
+    }
+
+    [[nodiscard]] BrightSpot spot(std::uint32_t start, double max_radius) const {
+        BrightSpot spot;
+        spot.peak_direction = glm::normalize(glm::dvec3(directions[start]));
+        spot.peak_luminance = luminances[start];
+        spot.surrounding_luminance = surroundings(directions[start]);
+        const double level =
+            std::max(TimesSurroundings * spot.surrounding_luminance,
+                     spot.surrounding_luminance +
+                         PeakPart * (spot.peak_luminance - spot.surrounding_luminance));
+        const double farthest = distance_of_angle(std::max(max_radius, 2.0 * texel_angle));
+        flood(start, static_cast<float>(farthest), level, spot);
         std::sort(spot.texels.begin(), spot.texels.end());
         for (const std::uint32_t texel : spot.texels) {
             spot.solid_angle += solid_angle(texel);
@@ -133,7 +138,7 @@ struct Finder {
     }
 
     void take(const BrightSpot& spot) {
-        // Its rim too, where it covers texels only in part.
+        // The rim is taken too: the spot covers its texels in part.
         for (const std::uint32_t texel : grown(grown(spot.texels, resolution), resolution))
             taken[texel] = true;
         const double apart =

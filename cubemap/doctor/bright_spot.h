@@ -1,4 +1,4 @@
-// Bright spots of a cube map: connected texels that stand out of what surrounds them.
+// Bright spots of a cube map: connected texels that stand out of their surroundings.
 #pragma once
 
 #include <cstdint>
@@ -11,41 +11,48 @@
 
 namespace relumine::cubemap {
 
-/// One spot. Luminance has Rec. 709 weights.
+/// One bright spot. Luminance has Rec. 709 weights.
 struct BrightSpot {
-    /// Indices into CubeMap::texels, connected (also over face edges and corners), ascending
+    /// Indices into CubeMap::texels, ascending. The texels are connected, also over edges and
+    /// corners of faces.
     std::vector<std::uint32_t> texels;
-    /// Unit; the brightest texel
+    /// Unit direction of the brightest texel.
     glm::dvec3 peak_direction{0.0};
     double peak_luminance = 0.0;
-    /// Median around the spot
+    /// Median luminance around the spot.
     double surrounding_luminance = 0.0;
-    /// Luminance above the surroundings, summed over the texels' solid angles
+    /// Sum over the texels of luminance above the surroundings times solid angle.
     double irradiance = 0.0;
-    /// Of all texels
+    /// Sum of the texels' solid angles, in steradians.
     double solid_angle = 0.0;
-    /// Wider than SpotOptions::max_radius_degrees: the texels are those within it
+    /// True if the spot goes beyond SpotOptions::max_radius_degrees. Its texels are then the ones
+    /// within this radius.
     bool is_cut = false;
 };
 
+/// Limits of bright_spots().
 struct SpotOptions {
     std::size_t max_spots = 8;
-    /// How far from its peak a spot is followed
+    /// How far from its peak a spot is followed.
     double max_radius_degrees = 12.0;
 };
 
-/// The spots around the brightest texels, in the order of their peaks; none in a map without light.
-/// A texel belongs to a spot when its luminance is above twice the surroundings' and above a
-/// hundredth of the peak's, and when such texels join it with the peak. What lies close around a
-/// spot (bloom, aureole) is no spot of its own.
+/// Returns the spots around the brightest texels, in the order of their peaks. A map without light
+/// has none.
+///
+/// A texel belongs to a spot if its luminance is above twice the surroundings' and above the
+/// surroundings by a hundredth of the peak's contrast, and if such texels connect it to the peak.
+/// Bloom and aureole close around a spot are no spots of their own.
 [[nodiscard]] std::vector<BrightSpot> bright_spots(const CubeMap& map,
                                                    const SpotOptions& options = {});
 
-/// The texels given and those next to them, also over edges and corners of faces; ascending.
+/// Returns the given texels and all texels next to them, also over edges and corners of faces,
+/// ascending.
 [[nodiscard]] std::vector<std::uint32_t> grown(const std::vector<std::uint32_t>& texels,
                                                std::uint32_t resolution);
 
-/// Index of the texel that a direction (any length but zero) goes through.
+/// Returns the index of the texel that a direction goes through. The direction may have any length
+/// but zero.
 [[nodiscard]] std::uint32_t texel_index(const glm::dvec3& direction, std::uint32_t resolution);
 
 } // namespace relumine::cubemap

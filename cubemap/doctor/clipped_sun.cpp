@@ -15,19 +15,19 @@ namespace relumine::cubemap {
 namespace {
 
 constexpr float LargestHalf = 65504.0f;
-/// Clipped pixels are equal but for what compression does to them.
+/// Clipped pixels are equal. Compression may change them a little.
 constexpr float AtMaximum = 0.998f;
 constexpr std::size_t LeastPlateau = 4;
 constexpr double WidestPlateauDegrees = 10.0;
-/// A sun seen through clear air has ten times that
+/// The sun through clear air has ten times this contrast.
 constexpr double SunContrast = 5000.0;
 constexpr double GlowContrast = 2.5, MaxGlowContrast = 100.0;
-/// Surroundings of a glow, over the mean
+/// Least luminance of a glow's surroundings, relative to the mean.
 constexpr double BrightSky = 1.2;
 constexpr double LowestGlowDegrees = -5.0;
 constexpr double LeastSunOverSky = 0.25, HighSunDegrees = 10.0;
 
-/// Pixels at the maximum that lie together.
+/// Adjacent pixels at the maximum.
 struct Plateau {
     std::size_t num_pixels = 0;
     double solid_angle = 0.0;
@@ -39,8 +39,8 @@ struct BrightPixel {
     PixelPlace place;
 };
 
-/// The largest group of adjacent pixels at the maximum. Neighbours may have a texel between them:
-/// texels at a cube's corners are half as wide as a lat-long's pixels.
+/// Returns the largest group of adjacent pixels at the maximum. Neighbours may have a texel between
+/// them: texels at a cube's corners are half as wide as a lat-long's pixels.
 Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint32_t resolution) {
     std::vector<BrightPixel> pixels;
     for_each_pixel({image.layout, image.sampling, image.width, image.height},
@@ -52,7 +52,7 @@ Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint3
     std::stable_sort(pixels.begin(), pixels.end(),
                      [](const BrightPixel& a, const BrightPixel& b) { return a.texel < b.texel; });
     Plateau largest;
-    // More than a hundredth of the image at its maximum is no sun.
+    // If more than a hundredth of the image is at its maximum, the maximum is no sun.
     if (pixels.size() > image.pixels.size() / 100)
         return largest;
     std::vector<bool> seen(pixels.size(), false);

@@ -16,20 +16,20 @@ namespace relumine::cubemap {
 
 namespace {
 
-// How far out of line is a fault, in stops. The factors are chosen so that none of some twenty
-// measured environments has a fault that cannot be seen in it, and that a lost row or a turned face
-// has one.
-/// Against the most uneven hundredth of the columns
+// Thresholds in stops, and factors of a usual step. They come from some twenty measured
+// environments: none has a fault that the eye cannot see, while a lost row or a turned face is a
+// fault.
+/// Relative to the most uneven hundredth of the columns.
 constexpr double WrapFactor = 2.0, WrapLeastEv = 0.15;
-/// Against the most uneven of the next rows
+/// Relative to the most uneven of the next rows.
 constexpr double PoleFactor = 3.0, PoleLeastEv = 0.2;
-/// Around the pole, against one row's step
+/// Around the pole, relative to one row's step.
 constexpr double AroundFactor = 4.0, AroundLeastEv = 0.4;
-/// Against one texel's step beside the edge
+/// Relative to one texel's step beside the edge.
 constexpr double EdgeFactor = 2.5, EdgeLeastEv = 0.15;
 constexpr std::size_t NumPoleRows = 8;
 constexpr std::uint32_t LeastHeight = 16, LeastFace = 8;
-/// Luminance below this part of the mean is dark, however many stops it varies.
+/// Luminance below this part of the mean counts as dark: its variation in stops does not matter.
 constexpr double DarkPart = 1e-2;
 
 double quantile(std::vector<double> values, double part) {
@@ -42,7 +42,7 @@ double median(std::vector<double> values) {
     return quantile(std::move(values), 0.5);
 }
 
-/// Luminance in stops, pixel by pixel.
+/// Returns the luminance of every pixel in stops.
 std::vector<double> stops(const EnvironmentImage& image) {
     double mean = 0.0;
     for (const glm::vec3& pixel : image.pixels)
@@ -81,8 +81,8 @@ public:
         std::vector<double> levels;
         for (std::size_t i = 0; i <= NumPoleRows; ++i)
             levels.push_back(median({row(i).begin(), row(i).end()}));
-        // Rows change from one to the next, and grain makes the pole, where all pixels may be one
-        // sample, differ from the mean.
+        // Rows differ from one to the next. Grain also makes the pole differ from the mean, since
+        // all its pixels may be one sample.
         double usual = 0.0;
         for (std::size_t i = 1; i < NumPoleRows; ++i) {
             std::vector<double> grain;
@@ -108,7 +108,7 @@ public:
     }
 
 private:
-    /// Mean step between two columns, rows weighted with their solid angles.
+    /// Returns the mean step between two columns. Rows are weighted with their solid angles.
     [[nodiscard]] double step(std::size_t first, std::size_t second) const {
         double sum = 0.0, weights = 0.0;
         for (std::size_t y = 0; y < height_; ++y) {
@@ -131,23 +131,23 @@ struct Texel {
     std::uint32_t x, y;
 };
 
-/// One texel further into the face from the border it lies on.
+/// Returns the texel one step further into the face from its border.
 Texel inwards(Texel texel, bool across, std::uint32_t resolution) {
     std::uint32_t& position = across ? texel.x : texel.y;
     position = position < resolution / 2 ? position + 1 : position - 1;
     return texel;
 }
 
-/// A face's border, and what lies beyond.
+/// A border of a face.
 struct Border {
     Face face;
-    /// Left or right border, else top or bottom
+    /// True: left or right border. False: top or bottom.
     bool across;
-    /// Right or bottom
+    /// True: right or bottom border.
     bool far;
 };
 
-/// The texel beyond a border, and whether it lies on a left or right border of its face.
+/// Returns the texel beyond a border, and whether it lies on a left or right border of its face.
 std::pair<Texel, bool> beyond(const Border& border, double along, std::uint32_t resolution) {
     constexpr double Outside = 1e-7;
     const double out = border.far ? 1.0 + Outside : -Outside;
@@ -167,12 +167,12 @@ std::string_view axis_name(Face face) {
     return Names[static_cast<std::size_t>(face)];
 }
 
-void check_edges(const EnvironmentImage& image, const FaceCells& cells,
+void check_edges(const EnvironmentImage& image, const FaceSquares& squares,
                  std::vector<SeamFault>& faults) {
-    const std::uint32_t resolution = cells.resolution();
+    const std::uint32_t resolution = squares.resolution();
     const std::vector<double> values = stops(image);
     const auto at = [&](const Texel& texel) {
-        return values[cells.pixel(texel.face, texel.x, texel.y)];
+        return values[squares.pixel(texel.face, texel.x, texel.y)];
     };
     for (const Face face : AllFaces) {
         for (int side = 0; side < 4; ++side) {
@@ -182,8 +182,8 @@ void check_edges(const EnvironmentImage& image, const FaceCells& cells,
             for (std::uint32_t i = 0; i < resolution; ++i) {
                 const std::uint32_t end = border.far ? resolution - 1 : 0;
                 const Texel here = border.across ? Texel{face, end, i} : Texel{face, i, end};
-                // Texel i has the same number on the other face, or the same counted from the other
-                // end, with either sampling.
+                // With either sampling, texel i has the same number on the other face, or the same
+                // number counted from the other end.
                 const auto [there, there_across] =
                     beyond(border, (i + 0.5) / resolution, resolution);
                 other = there.face;
@@ -213,9 +213,9 @@ std::vector<SeamFault> seam_faults(const EnvironmentImage& image) {
         check.pole(true);
         check.pole(false);
     } else if (has_faces(image.layout)) {
-        const FaceCells cells(image.layout, image.width, image.height);
-        if (cells.resolution() >= LeastFace)
-            check_edges(image, cells, faults);
+        const FaceSquares squares(image.layout, image.width, image.height);
+        if (squares.resolution() >= LeastFace)
+            check_edges(image, squares, faults);
     }
     return faults;
 }

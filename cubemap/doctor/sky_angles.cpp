@@ -29,8 +29,8 @@ glm::dvec3 direction(const SkyAngles& angles) {
 }
 
 double disc_diameter_degrees(double solid_angle) {
-    // Solid angle of a cap of angular radius a: 2 pi (1 - cos a) = 4 pi sin^2(a / 2), which does
-    // not cancel for small caps.
+    // The solid angle of a cap of angular radius a is 2 pi (1 - cos a) = 4 pi sin^2(a / 2). The
+    // second form has no cancellation for small caps.
     const double share = std::clamp(solid_angle / (4.0 * std::numbers::pi), 0.0, 1.0);
     return 4.0 * std::asin(std::sqrt(share)) * DegreesPerRadian;
 }

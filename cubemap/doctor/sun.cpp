@@ -18,30 +18,30 @@ namespace relumine::cubemap {
 
 namespace {
 
-// What makes a spot a sun. The figures come from measured environments: suns there are 0.6 to 4
-// degrees wide with their bloom, 100 times their surroundings and more, 1 % to 50 % of the light;
-// lamps and windows of interiors have rivals of half their strength.
+// Conditions for a sun. The figures come from measured environments. Suns there, with their bloom,
+// are 0.6 to 4 degrees wide, at least 100 times as bright as their surroundings, and 1 % to 50 % of
+// the light. Lamps and windows of interiors have rivals of half their strength.
 constexpr double MaxDiameterDegrees = 5.0;
 constexpr double MaxDiameterPixels = 3.0;
 constexpr double MinContrast = 8.0;
 constexpr double MinShare = 0.005;
-/// Of the strongest spot's ...
+/// A rival has this part of the strongest spot's irradiance ...
 constexpr double RivalIrradiance = 0.5;
-/// ... if it is this bright too: a wide glow is no rival
+/// ... and this part of its peak luminance. A wide glow is no rival.
 constexpr double RivalPeak = 0.1;
-/// Spots are looked for at this resolution at most (a texel of 0.18 degrees); the sun is then
-/// measured in the pixels themselves.
+/// Spots are searched at this resolution at most (a texel of 0.18 degrees). The sun is then
+/// measured in the image's own pixels.
 constexpr std::uint32_t SearchResolution = 512;
 constexpr std::uint32_t CoarsestResolution = 8;
 
-// What belongs to the sun. Pixels at its rim that it hardly covers are found two texels around the
-// spot.
+// The sun's pixels lie in the spot and up to two texels around it. The sun hardly covers the pixels
+// at its rim.
 constexpr int RegionRings = 2;
-/// The next texels outwards show the sky
+/// The next texels outwards show the sky.
 constexpr int SkyRings = 2;
-constexpr double PeakPart = 2e-4;
+constexpr double SunPeakPart = 2e-4;
 constexpr double SkyPart = 0.25;
-/// Times the ring's upper quartile: another light in the ring is not sky
+/// Texels of the ring above this multiple of its upper quartile are another light, not sky.
 constexpr double BrightestSky = 3.0;
 
 struct Pixels {
@@ -49,8 +49,8 @@ struct Pixels {
     std::span<const glm::vec3> radiance;
 };
 
-/// The sky carried over a hole: mean of the texels around it, weighted with inverse squared
-/// distances.
+/// Carries the sky over a hole: the mean of the texels around the hole, weighted with inverse
+/// squared distances.
 class SkyOverHole {
 public:
     SkyOverHole(const CubeMap& map, const std::vector<std::uint32_t>& hole) {
@@ -99,15 +99,15 @@ private:
     std::vector<Sample> samples_;
 };
 
-/// A sun's pixel with what it adds.
+/// The part of the sun's light in one pixel.
 struct Part {
     glm::dvec3 direction;
-    /// Above the sky
+    /// Power above the sky.
     glm::dvec3 power;
     double solid_angle;
 };
 
-/// The spot's light, measured in the image's own pixels.
+/// Measures the spot's light in the image's own pixels.
 Sun measure(const Pixels& image, const CubeMap& map, const BrightSpot& spot, double total_power) {
     std::vector<std::uint32_t> region = spot.texels;
     for (int i = 0; i < RegionRings; ++i)
@@ -128,9 +128,9 @@ Sun measure(const Pixels& image, const CubeMap& map, const BrightSpot& spot, dou
         const glm::dvec3 around = sky.radiance(place.direction);
         const double value = luminance(glm::dvec3(radiance)), sky_value = luminance(around);
         if (value <=
-            sky_value + std::max(SkyPart * sky_value, PeakPart * (spot.peak_luminance - sky_value)))
+            sky_value + std::max(SkyPart * sky_value, SunPeakPart * (spot.peak_luminance - sky_value)))
             return;
-        // In a channel where the sky is brighter the pixel stays as it is, so that the sun has no
+        // In a channel where the sky is brighter, the pixel stays as it is. So the sun has no
         // negative light.
         const glm::vec3 without = glm::min(radiance, glm::vec3(around));
         sun.pixels.push_back({index, without});
@@ -150,7 +150,7 @@ Sun measure(const Pixels& image, const CubeMap& map, const BrightSpot& spot, dou
         sun.irradiance += part.power * glm::dot(part.direction, sun.direction);
         const double power = luminance(part.power);
         const glm::dvec3 apart = part.direction - sun.direction;
-        // A disc of solid angle W has the variance W / (2 pi), for both axes together.
+        // A disc of solid angle W has the variance W / (2 pi), both axes together.
         variance += power * (glm::dot(apart, apart) + part.solid_angle / (2.0 * std::numbers::pi));
     }
     const double power = glm::length(middle);

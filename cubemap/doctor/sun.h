@@ -1,4 +1,4 @@
-// The sun of an environment: where it is, how large, how strong, and which pixels it is made of.
+// The sun of an environment: its place, size, strength and pixels.
 #pragma once
 
 #include <cstddef>
@@ -14,52 +14,58 @@
 
 namespace relumine::cubemap {
 
-/// A pixel that shows the sun, and what would be seen there without it.
+/// A pixel that shows the sun, and the sky that would be seen there without it.
 struct SunPixel {
-    /// Into the image's or the cube map's pixels
+    /// Index of the pixel in the image or the cube map.
     std::size_t index = 0;
-    glm::vec3 sky{
-        /// Radiance of the sky around, carried over the sun; no channel above the pixel's own
-        0.0f};
+    /// Radiance of the surrounding sky, carried over the sun. No channel exceeds the pixel's own.
+    glm::vec3 sky{0.0f};
 };
 
-/// The sun is what its pixels have above the sky around it.
+/// The sun: the light of its pixels above the sky around it.
 struct Sun {
-    /// Unit; the mean direction of its light
+    /// Unit; the mean direction of the sun's light.
     glm::dvec3 direction{0.0, 1.0, 0.0};
-    /// RGB, on a surface that faces it
+    /// RGB irradiance on a surface that faces the sun.
     glm::dvec3 irradiance{0.0};
-    /// Of the uniform disc whose light is spread as widely (same variance of directions), a pixel
-    /// being a disc of its own solid angle: exact for a sun of one pixel; a sun smaller than a
-    /// pixel has the pixel's.
+    /// Solid angle of the uniform disc whose light is spread as widely (same variance of
+    /// directions). A pixel counts as a disc of its own solid angle, so a sun of one pixel is
+    /// exact; a sun smaller than a pixel gets the pixel's solid angle.
     double solid_angle = 0.0;
     double peak_luminance = 0.0;
-    /// Mean over its pixels of what is around it
+    /// Mean over the sun's pixels of the sky's luminance.
     double sky_luminance = 0.0;
-    /// Of all light (luminance over the sphere), 0 to 1
+    /// The sun's share of all light (luminance over the sphere), 0 to 1.
     double share_of_power = 0.0;
     std::vector<SunPixel> pixels = {};
 };
 
+/// The result of a search for the sun: the sun or the reason why there is none, and the lights that
+/// were compared.
 struct SunSearch {
     std::optional<Sun> sun = {};
-    /// One phrase, "the brightest light is 12 degrees wide"; empty with a sun
+    /// Why no sun was found, in one phrase: "the brightest light is 12 degrees wide". Empty: there
+    /// is a sun.
     std::string why_none = {};
-    /// Where it was looked for; at most 512 texels along a face's edge
+    /// The spots among which the sun was searched, on a map of at most 512 texels along a face's
+    /// edge.
     std::vector<BrightSpot> spots = {};
-    /// Of the cube map that the spots' texels belong to
+    /// Resolution of the cube map to which the spots' texels belong.
     std::uint32_t spot_resolution = 0;
-    /// Luminance over the sphere
+    /// Integral of luminance over the sphere.
     double power = 0.0;
-    /// Of the disc as large as the mean pixel
+    /// Diameter of a disc with the solid angle of the mean pixel.
     double pixel_diameter_degrees = 0.0;
 };
 
-/// The strongest of the bright spots, if it is a sun: at most 5 degrees wide (or 3 pixels), at
-/// least 8 times as bright as its surroundings, half a percent or more of all light, and with no
-/// other spot of nearly its strength: rooms have several lamps or windows. Finds it anywhere: over
-/// the seam, the edges of faces and at the poles. Radiance must be finite and not negative. Bitwise
-/// independent of the thread count.
+/// Finds the sun: the strongest bright spot, under these conditions.
+/// - It is at most 5 degrees wide, or 3 pixels.
+/// - It is at least 8 times as bright as its surroundings.
+/// - It has at least half a percent of all light.
+/// - No other spot is nearly as strong: rooms have several lamps or windows.
+///
+/// The sun is found anywhere: over the seam, over the edges of faces and at the poles. Radiance
+/// must be finite and not negative. The result is bitwise independent of the number of threads.
 [[nodiscard]] SunSearch find_sun(const EnvironmentImage& image);
 [[nodiscard]] SunSearch find_sun(const CubeMap& map);
 

@@ -21,12 +21,12 @@ glm::dmat3 diagonal(double x, double y, double z) {
     return {{x, 0.0, 0.0}, {0.0, y, 0.0}, {0.0, 0.0, z}};
 }
 
-/// A quarter turn about +Y: +Z, the middle of OpenEXR's lat-long, to +X.
+/// A quarter turn about +Y. It carries +Z, the middle of OpenEXR's lat-long, to +X.
 const glm::dmat3 QuarterTurn = {{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}};
 
 const std::array<Convention, 8>& table() {
     static const std::array<Convention, 8> Table = {
-        // ImfEnvmap.h.
+        // Source:  ImfEnvmap.h.
         Convention{
             .name = "openexr",
             .mathematics =
@@ -35,22 +35,23 @@ const std::array<Convention, 8>& table() {
             .usual_layout = Layout::LatLong,
             .layouts = AllLayouts,
             .has_attribute = true},
-        // UsdLuxDomeLight: "adheres to the OpenEXR specification for latitude-longitude maps".
+        // Source:  UsdLuxDomeLight, "adheres to the OpenEXR specification for latitude-longitude
+        //          maps".
         Convention{.name = "usd",
                    .mathematics =
                        "u = 1/2 - atan2(x, z) / 2 pi, v = acos(y) / pi (DomeLight, pole axis Y)",
                    .usual_layout = Layout::LatLong,
                    .layouts = LatLongOnly},
-        // Mitsuba 3, emitter `envmap`, eval(): u = atan2(x, -z) / 2 pi, v = acos(y) / pi; the same
-        // as OpenEXR's.
+        // Source:  Mitsuba 3, emitter `envmap`, eval(): u = atan2(x, -z) / 2 pi, v = acos(y) / pi.
+        //          This is OpenEXR's mapping.
         Convention{.name = "mitsuba",
                    .mathematics = "u = atan2(x, -z) / 2 pi mod 1, v = acos(y) / pi (emitter "
                                   "envmap, identity to_world)",
                    .usual_layout = Layout::LatLong,
                    .layouts = LatLongOnly},
-        // Cycles, direction_to_equirectangular() and direction_to_mirrorball() in
-        // kernel/camera/projection.h. The middle of the
-        // lat-long is Blender's +X, that of the ball Blender's -Y, our +Z.
+        // Source:  Cycles, direction_to_equirectangular() and direction_to_mirrorball() in
+        //          kernel/camera/projection.h. The middle of the lat-long is Blender's +X. The
+        //          middle of the ball is Blender's -Y, our +Z.
         Convention{
             .name = "blender",
             .mathematics =
@@ -59,8 +60,8 @@ const std::array<Convention, 8>& table() {
             .usual_layout = Layout::LatLong,
             .layouts = LatLongAndBall,
             .world_from_lat_long = QuarterTurn},
-        // equirectUv() in three.js' ShaderChunk `common`; cubes are looked up at (-x, y, z)
-        // (flipEnvMap) in OpenGL's faces.
+        // Source:  equirectUv() in three.js' ShaderChunk `common`. Cubes are looked up at (-x, y,
+        //          z) (flipEnvMap) in OpenGL's faces.
         Convention{.name = "threejs",
                    .mathematics = "u = 1/2 + atan2(z, x) / 2 pi, v = acos(y) / pi; six files: "
                                   "OpenGL's faces at (-x, y, z)",
@@ -69,8 +70,8 @@ const std::array<Convention, 8>& table() {
                    .world_from_lat_long = QuarterTurn,
                    .world_from_faces = diagonal(-1.0, 1.0, -1.0),
                    .swaps_z_faces = true},
-        // OpenGL 4.6, table 8.19, with the world direction as the texture coordinate: sc, tc = (-z,
-        // -y) (z, -y) (x, z) (x, -z) (x, -y) (-x, -y).
+        // Source:  OpenGL 4.6, table 8.19. With the world direction as the texture coordinate, sc,
+        //          tc = (-z, -y) (z, -y) (x, z) (x, -z) (x, -y) (-x, -y).
         Convention{.name = "opengl",
                    .mathematics = "cube faces of OpenGL's table 8.19 looked up at (x, y, z): "
                                   "OpenEXR's with +Z and -Z "
@@ -79,7 +80,8 @@ const std::array<Convention, 8>& table() {
                    .layouts = Faces,
                    .world_from_faces = diagonal(1.0, 1.0, -1.0),
                    .swaps_z_faces = true},
-        // Direct3D 9 and later, "Cubic Environment Mapping": the same faces in a left-handed world.
+        // Source:  Direct3D 9 and later, "Cubic Environment Mapping": the same faces in a
+        //          left-handed world.
         Convention{.name = "directx",
                    .mathematics = "the same faces looked up at (x, y, z) in Direct3D's left-handed "
                                   "axes, our (x, y, -z): "
@@ -87,8 +89,8 @@ const std::array<Convention, 8>& table() {
                    .usual_layout = Layout::Cube,
                    .layouts = Faces,
                    .swaps_z_faces = true},
-        // pbrt-v4, EqualAreaSquareToSphere() with imgtool makeequiarea's Z up; Layout::Octahedral
-        // has these axes already.
+        // Source:  pbrt-v4, EqualAreaSquareToSphere() with Z up as in imgtool makeequiarea.
+        //          Layout::Octahedral already has these axes.
         Convention{.name = "pbrt",
                    .mathematics = "(u, v) = EqualAreaSphereToSquare(x, y, z) in pbrt's axes, Z up: "
                                   "pbrt's (x, y, z) is our "
@@ -125,11 +127,11 @@ const Convention* find_convention(std::string_view name) {
 void swap_z_faces(EnvironmentImage& image) {
     if (image.layout != Layout::Cube && image.layout != Layout::HorizontalStrip)
         return;
-    const FaceCells cells(image.layout, image.width, image.height);
-    for (std::uint32_t y = 0; y < cells.resolution(); ++y) {
-        for (std::uint32_t x = 0; x < cells.resolution(); ++x)
-            std::swap(image.pixels[cells.pixel(Face::PositiveZ, x, y)],
-                      image.pixels[cells.pixel(Face::NegativeZ, x, y)]);
+    const FaceSquares squares(image.layout, image.width, image.height);
+    for (std::uint32_t y = 0; y < squares.resolution(); ++y) {
+        for (std::uint32_t x = 0; x < squares.resolution(); ++x)
+            std::swap(image.pixels[squares.pixel(Face::PositiveZ, x, y)],
+                      image.pixels[squares.pixel(Face::NegativeZ, x, y)]);
     }
 }
 

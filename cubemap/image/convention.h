@@ -1,4 +1,4 @@
-// How other programs place an environment picture in the world.
+// The ways in which other programs place an environment picture in the world.
 #pragma once
 
 #include <array>
@@ -12,38 +12,43 @@
 
 namespace relumine::cubemap {
 
-/// A program's or format's way to read environment pictures. docs/environments.md has the table
-/// with sources.
+/// How one program or format reads environment pictures. The table with sources is in
+/// docs/environments.md.
 ///
-/// World axes: ours, right-handed with +Y up. Programs with Z up (Blender, pbrt) have their (x, y,
-/// z) at our (x, z, -y), as glTF exporters turn it; Direct3D, left-handed, has its (x, y, z) at our
-/// (x, y, -z).
+/// Axes:    directions are in our world, right-handed with +Y up. A program with Z up (Blender,
+///          pbrt) has its (x, y, z) at our (x, z, -y), as glTF exporters turn it. Direct3D is
+///          left-handed and has its (x, y, z) at our (x, y, -z).
 struct Convention {
     std::string_view name;
-    /// One line
+    /// The mapping from direction to picture, in one line.
     std::string_view mathematics;
-    /// What the program reads
+    /// The layout that the program reads by default.
     Layout usual_layout;
-    /// All that it reads
+    /// All layouts that the program reads.
     std::span<const Layout> layouts;
-    /// Our world direction of what Layout's own description (OpenEXR's axes) calls a direction.
+    /// These matrices turn a direction in OpenEXR's axes, in which Layout describes the pictures,
+    /// into our world direction. Pictures that are neither lat-longs nor made of faces need none.
     glm::dmat3 world_from_lat_long = glm::dmat3(1.0);
     glm::dmat3 world_from_faces = glm::dmat3(1.0);
-    /// The picture of a strip or of six files that is named +Z is the one that OpenEXR's cube has
-    /// at -Z, and the other way round.
+    /// True if the pictures of +Z and -Z in a strip or in six files are exchanged against OpenEXR's
+    /// cube.
     bool swaps_z_faces = false;
-    /// Samples of .exr files lie on the borders and the `envmap` attribute says so.
+    /// True if samples of .exr files lie on the borders and the `envmap` attribute says so.
     bool has_attribute = false;
 
+    /// Returns true if the program reads this layout.
     [[nodiscard]] bool reads(Layout layout) const;
+    /// Returns the matrix for a layout.
     [[nodiscard]] const glm::dmat3& world_from(Layout layout) const;
 };
 
+/// Returns all conventions.
 [[nodiscard]] std::span<const Convention> conventions();
-/// Null for a name that none has.
+/// Returns the convention of a name. Null for an unknown name.
 [[nodiscard]] const Convention* find_convention(std::string_view name);
 
-/// Exchanges the pictures of +Z and -Z of a Cube or HorizontalStrip; other layouts stay.
+/// Exchanges the pictures of +Z and -Z of a Cube or HorizontalStrip. Other layouts stay as they
+/// are.
 void swap_z_faces(EnvironmentImage& image);
 
 } // namespace relumine::cubemap

@@ -19,11 +19,11 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Width of an octahedral map over a cube face's resolution: pixels as wide as a lat-long's of
-/// width 4 R, 4 R / sqrt(pi).
+/// Width of an octahedral map over a cube face's resolution R. Its pixels are as wide as those of a
+/// lat-long of width 4 R if the width is 4 R / sqrt(pi).
 constexpr double OctahedralWidth = 2.25;
 
-/// The layout that the proportions suggest. Squares do not tell.
+/// Returns the layout that the proportions suggest. A square image may be any of three layouts.
 std::optional<Layout> guess_layout(std::uint32_t width, std::uint32_t height) {
     if (width == 2 * std::uint64_t{height})
         return Layout::LatLong;
@@ -51,7 +51,7 @@ std::string_view proportions(Layout layout) {
     }
 }
 
-/// Decides layout and sampling and says why.
+/// Decides on layout and sampling, and records the reason.
 void interpret(const ImageFile& file, const LoadOptions& options, const std::string& path,
                EnvironmentImage& image) {
     const std::string size = fmt::format("{}x{}", image.width, image.height);
@@ -82,7 +82,7 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
     if (!fits(image.layout, image.width, image.height))
         throw std::runtime_error(fmt::format("{}: expected a {} image for layout {}, got {}", path,
                                              proportions(image.layout), name(image.layout), size));
-    // The attribute's border rule belongs to the attribute's layout.
+    // The attribute's rule about borders holds only for the attribute's layout.
     image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;
     why += image.sampling == Sampling::Borders ? ", samples on the borders"
                                                : ", samples at texel centres";
@@ -118,7 +118,7 @@ BadPixels find_bad_pixels(const EnvironmentImage& image) {
     return bad;
 }
 
-/// NaN and negative become 0, infinity the largest finite value.
+/// NaN and negative values become 0, infinity becomes the largest finite value.
 void fix_bad_pixels(EnvironmentImage& image) {
     float largest = 0.0f;
     for (const glm::vec3& pixel : image.pixels) {
@@ -139,7 +139,7 @@ void fix_bad_pixels(EnvironmentImage& image) {
     image.fixed = true;
 }
 
-/// Where six files are meant, `{face}` stands for px, nx, ...
+/// In a path of six files, `{face}` stands for px, nx, ...
 constexpr std::string_view FacePlace = "{face}";
 
 ImageFile decode(const std::filesystem::path& path) {
@@ -151,7 +151,7 @@ ImageFile decode(const std::filesystem::path& path) {
     return is_exr(bytes) ? decode_exr(bytes, path.string()) : decode_hdr(bytes, path.string());
 }
 
-/// Six square files, one below the other.
+/// Reads six square files, one below the other.
 ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
     ImageFile all;
     for (const std::filesystem::path& path : paths) {
@@ -200,9 +200,7 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
                                              path.string(), name(*options.layout)));
     ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
     EnvironmentImage image;
-    image.width = file.width;
-    image.height = file.height;
-    image.pixels = std::move(file.pixels);
+    static_cast<Picture&>(image) = static_cast<Picture&&>(file);
     interpret(file, options, path.string(), image);
     if (paths.size() > 1)
         image.assumptions = fmt::format("cube of six files, {}", image.assumptions);
@@ -223,7 +221,7 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
 
 std::uint32_t natural_resolution(const EnvironmentImage& image) {
     if (has_faces(image.layout))
-        return FaceCells(image.layout, image.width, image.height).resolution();
+        return FaceSquares(image.layout, image.width, image.height).resolution();
     if (image.layout == Layout::Octahedral)
         return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
     return std::max(1U, (image.width + 2) / 4);
@@ -294,8 +292,8 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
 }
 
 Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
-    // The specification of the `envmap` attribute puts samples on the borders; it knows two
-    // layouts, and .hdr no attribute.
+    // The specification of the `envmap` attribute puts samples on the borders. It knows two
+    // layouts; .hdr has no attribute.
     const bool has_attribute = extension_of(path) == ".exr" &&
                                environment_files(path).size() == 1 &&
                                (layout == Layout::LatLong || layout == Layout::Cube);
@@ -306,7 +304,7 @@ void save_environment(const std::filesystem::path& path, const CubeMap& map, Lay
     check_environment_name(path);
     const ImageSize size = natural_size(layout, map.resolution);
     for (const std::filesystem::path& each : environment_files(path))
-        files::OutputFile{each}; // whatever cannot be written is found before the work
+        files::OutputFile{each}; // finds a path that cannot be written before the work
     save_image(path,
                to_image(map, layout, size.width, size.height, default_sampling(path, layout)));
 }

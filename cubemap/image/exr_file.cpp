@@ -1,4 +1,4 @@
-// OpenEXR pictures in memory, in and out.
+// Reads and writes OpenEXR pictures in memory.
 #include <algorithm>
 #include <cstring>
 #include <memory>
@@ -72,16 +72,17 @@ private:
     std::size_t position_ = 0;
 };
 
-/// Where a part keeps what its pixels look like.
+/// The channels of a part that hold its colours.
 struct Channels {
     enum class Kind { Rgb, LuminanceChroma, Luminance } kind = Kind::Rgb;
-    /// Of red, green and blue, or three times luminance
+    /// Names of red, green and blue, or three times the name of luminance.
     std::array<std::string, 3> names;
-    /// Their common prefix with its dot, or nothing
+    /// Common prefix of the names with its dot, or empty.
     std::string layer;
 };
 
-/// The channels of plain R, G and B; else of the only layer that has all three; else of luminance.
+/// Returns the channels R, G and B without a layer, else the channels of the only layer that has
+/// all three, else luminance.
 std::optional<Channels> find_channels(const Imf::ChannelList& list) {
     const auto has = [&](const std::string& channel) {
         return list.findChannel(channel.c_str()) != nullptr;
@@ -118,9 +119,9 @@ struct Window {
     std::uint32_t width = 0, height = 0;
 };
 
-class Decoder {
+class ExrDecoder {
 public:
-    Decoder(std::span<const std::byte> bytes, const std::string& name)
+    ExrDecoder(std::span<const std::byte> bytes, const std::string& name)
         : bytes_(bytes), name_(name) {}
 
     ImageFile decode() {
@@ -144,7 +145,7 @@ public:
         return image;
     }
 
-    /// The size that decode() would give; the header only.
+    /// Returns the size that decode() would give. Reads the header only.
     ImageSize size(const std::filesystem::path& path) {
         Imf::StdIFStream stream(path.c_str());
         check_exr_header(stream, files::size(path));
@@ -162,7 +163,7 @@ private:
         throw std::runtime_error(fmt::format("{}: expected {}, got {}", name_, expected, got));
     }
 
-    /// The first flat part with R, G and B, else the first with luminance.
+    /// Chooses the first flat part with R, G and B, else the first with luminance.
     void choose_part(const Imf::MultiPartInputFile& file) {
         std::string found;
         bool is_chosen = false;
@@ -196,14 +197,14 @@ private:
                 static_cast<std::uint32_t>(height)};
     }
 
-    /// Refuses what the file cannot hold before anything is allocated for it.
+    /// Refuses sizes that the file cannot hold, before memory is allocated.
     void check_size(const Imf::Header& header) const {
         const std::uint64_t num_pixels = std::uint64_t{window_.width} * window_.height;
         const std::string size = fmt::format("{}x{}", window_.width, window_.height);
         if (num_pixels == 0 || num_pixels > MaxPixels)
             fail("a size that an environment can have", size);
-        // Measured on black pictures of 4096x2048: 12 bytes per pixel are up to 1862 times the
-        // file, with DWA 23426 times.
+        // Measured on black pictures of 4096x2048 at 12 bytes per pixel: they have up to 1862 times
+        // the size of the file, with DWA 23426 times.
         const bool is_dwa = header.compression() == Imf::DWAA_COMPRESSION ||
                             header.compression() == Imf::DWAB_COMPRESSION;
         const std::uint64_t largest_ratio = is_dwa ? 50000 : 4000;
@@ -219,10 +220,10 @@ private:
         }
     }
 
-    /// Bands of rows, each through its own reader of the same bytes: OpenEXR's own threads would
-    /// have to be switched on for the whole program.
+    /// Reads bands of rows in parallel, each through its own reader of the same bytes. OpenEXR's
+    /// own threads would have to be switched on for the whole program.
     void read_bands(const Imf::Header& header, ImageFile& image) const {
-        // Divisible by the rows of every compression's blocks (1, 16, 32 or 256).
+        // A multiple of the rows per block of every compression (1, 16, 32 or 256).
         const std::uint32_t band_height =
             header.hasTileDescription() ? std::max(256U, header.tileDescription().ySize) : 256U;
         const std::uint32_t num_bands = (window_.height + band_height - 1) / band_height;
@@ -230,8 +231,8 @@ private:
             MemoryInput stream(bytes_);
             Imf::MultiPartInputFile file(stream, 0);
             Imf::InputPart part(file, part_);
-            // The frame buffer is addressed by the data window's coordinates, so its base lies
-            // before the pixels.
+            // The data window's coordinates address the frame buffer, so its base lies before the
+            // pixels.
             const auto stride = static_cast<std::ptrdiff_t>(sizeof(glm::vec3));
             const std::ptrdiff_t row_stride = stride * window_.width;
             char* base = reinterpret_cast<char*>(image.pixels.data()) - window_.x * stride -
@@ -291,8 +292,7 @@ private:
         fill_display_window(header, image);
     }
 
-    /// A data window smaller than an environment's display window is the part of it that is not
-    /// black.
+    /// A data window smaller than an environment's display window is the part that is not black.
     [[nodiscard]] static bool fills_display_window(const Imf::Header& header) {
         if (Imf::hasEnvmap(header) &&
             (Imf::envmap(header) == Imf::ENVMAP_LATLONG || Imf::envmap(header) == Imf::ENVMAP_CUBE))
@@ -315,7 +315,7 @@ private:
             return;
         const Window display = window(header.displayWindow());
         const std::uint64_t num_pixels = std::uint64_t{display.width} * display.height;
-        // A tiny picture in a huge frame is taken at its word only as far as memory is cheap.
+        // A tiny picture in a huge frame is believed only as long as memory is cheap.
         if (num_pixels > std::max<std::uint64_t>(image.pixels.size() * 64, std::uint64_t{1} << 22))
             fail(fmt::format("data for {}x{} pixels", display.width, display.height),
                  fmt::format("{}x{}", image.width, image.height));
@@ -350,14 +350,14 @@ bool is_exr(std::span<const std::byte> bytes) {
 
 namespace {
 
-/// Runs `read` and gives OpenEXR's complaints the form of ours.
+/// Runs `read` and gives OpenEXR's errors the form of our messages.
 template<typename Read>
 auto with_own_messages(const std::string& name, const Read& read) {
     try {
         return read();
     } catch (const std::exception& error) {
         std::string message = error.what();
-        if (message.starts_with(name + ": ")) // our own, complete already
+        if (message.starts_with(name + ": ")) // our own message, already complete
             throw;
         std::replace(message.begin(), message.end(), '\n', ' ');
         // OpenEXR quotes the name of the stream, which is always "file" here.
@@ -371,15 +371,15 @@ auto with_own_messages(const std::string& name, const Read& read) {
 } // namespace
 
 ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name) {
-    return with_own_messages(name, [&] { return Decoder(bytes, name).decode(); });
+    return with_own_messages(name, [&] { return ExrDecoder(bytes, name).decode(); });
 }
 
 ImageSize exr_size(const std::filesystem::path& path) {
     const std::string name = path.string();
-    return with_own_messages(name, [&] { return Decoder({}, name).size(path); });
+    return with_own_messages(name, [&] { return ExrDecoder({}, name).size(path); });
 }
 
-std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const float> alpha) {
+std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     if (image.sampling == Sampling::Borders &&
@@ -387,7 +387,7 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const
         Imf::addEnvmap(header,
                        image.layout == Layout::Cube ? Imf::ENVMAP_CUBE : Imf::ENVMAP_LATLONG);
     Imf::FrameBuffer buffer;
-    // OpenEXR reads only, but its frame buffers are for both ways.
+    // OpenEXR only reads here, but its frame buffers are made for reading and writing.
     char* base = const_cast<char*>(reinterpret_cast<const char*>(image.pixels.data()));
     std::size_t offset = 0;
     for (const char* channel : {"R", "G", "B"}) {
@@ -396,12 +396,12 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image, std::span<const
                                           sizeof(glm::vec3) * image.width));
         offset += sizeof(float);
     }
-    if (!alpha.empty()) {
+    if (!image.alpha.empty()) {
         header.channels().insert("A", Imf::Channel(Imf::FLOAT));
-        buffer.insert("A",
-                      Imf::Slice(Imf::FLOAT,
-                                 const_cast<char*>(reinterpret_cast<const char*>(alpha.data())),
-                                 sizeof(float), sizeof(float) * image.width));
+        buffer.insert(
+            "A", Imf::Slice(Imf::FLOAT,
+                            const_cast<char*>(reinterpret_cast<const char*>(image.alpha.data())),
+                            sizeof(float), sizeof(float) * image.width));
     }
     MemoryOutput stream;
     {

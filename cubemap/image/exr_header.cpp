@@ -15,24 +15,24 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// What decides how much OpenEXR allocates for a part. All 64 bits wide, so that differences and
-/// products of windows fit.
+/// The numbers that decide how much OpenEXR allocates for a part. All have 64 bits, so differences
+/// and products of windows fit.
 struct Part {
     std::int64_t width = 0, height = 0;
-    /// 0: rows
+    /// 0: the part has rows, not tiles.
     std::int64_t tile_width = 0, tile_height = 0;
     std::int64_t rows_per_block = 1;
     std::int64_t bytes_per_pixel = 0;
-    /// As declared
+    /// As declared. Empty: not declared.
     std::optional<std::int64_t> num_chunks = {};
 };
 
-/// By the number that stands for the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A,
-/// DWAA, DWAB.
+/// Indexed by the number of the compression: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA,
+/// DWAB.
 constexpr std::array<std::int64_t, 10> RowsPerBlock = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
 
-/// Blocks up to this size are allowed for any file, larger ones for files that are not this many
-/// times smaller: as for whole images in exr_file.cpp.
+/// A block up to CheapBlock bytes is allowed in any file. A larger block may have at most
+/// LargestRatio times the size of the file, as whole images in exr_file.cpp.
 constexpr std::uint64_t CheapBlock = std::uint64_t{256} << 20, LargestRatio = 4000;
 
 struct FixedSize {
@@ -102,7 +102,7 @@ private:
     }
 
     std::int64_t number() {
-        std::int32_t value = 0; // little-endian, as we are
+        std::int32_t value = 0; // little-endian, like our processors
         read(reinterpret_cast<char*>(&value), sizeof value);
         return value;
     }
@@ -118,7 +118,7 @@ private:
         return result;
     }
 
-    /// Nothing where there is an empty header, which ends the list of parts.
+    /// Reads a part's header. Returns nothing for an empty header, which ends the list of parts.
     std::optional<Part> read_part() {
         Part part;
         bool is_empty = true;
@@ -136,8 +136,8 @@ private:
         return is_empty ? std::nullopt : std::optional(part);
     }
 
-    /// OpenEXR reads a known type as far as its content says, whatever size is declared, and the
-    /// next attribute begins there.
+    /// Reads one attribute. For a known type, OpenEXR reads as far as the content says, whatever
+    /// size is declared, and takes the next attribute from there.
     void read_attribute(const std::string& name, const std::string& type, std::int64_t size,
                         Part& part) {
         const auto fixed = std::find_if(FixedSizes.begin(), FixedSizes.end(),
@@ -172,7 +172,7 @@ private:
 
     std::int64_t unsigned_number() { return static_cast<std::uint32_t>(number()); }
 
-    /// Names with 16 bytes each, up to an empty name. Returns the bytes of a pixel.
+    /// Reads names with 16 bytes each, up to an empty name. Returns the bytes of a pixel.
     std::int64_t read_channels(std::int64_t size) {
         const std::uint64_t end = stream_.tellg() + static_cast<std::uint64_t>(size);
         std::int64_t bytes_per_pixel = 0;
@@ -202,7 +202,7 @@ private:
         if (part.width < 1 || part.height < 1)
             return;
         const bool is_tiled = part.tile_width > 0 && part.tile_height > 0;
-        // In double: four numbers of 32 bits do not fit into 64.
+        // In double, because a product of four 32-bit numbers does not fit into 64 bits.
         const double num_pixels =
             is_tiled ? static_cast<double>(part.tile_width) * static_cast<double>(part.tile_height)
                      : static_cast<double>(part.width) * static_cast<double>(part.rows_per_block);
@@ -212,7 +212,8 @@ private:
                 fmt::format("blocks of {:.0f} bytes in a file of {}", size, num_bytes_));
     }
 
-    /// Of the finest level; the others are fewer.
+    /// Returns the declared number of chunks, or the number at the finest level. Coarser levels
+    /// have fewer.
     static std::uint64_t chunks_of(const Part& part) {
         if (part.num_chunks)
             return static_cast<std::uint64_t>(std::max<std::int64_t>(*part.num_chunks, 0));

@@ -1,4 +1,4 @@
-// Whether OpenEXR may be let at a file.
+// A check of .exr headers before OpenEXR reads a file.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +7,14 @@
 
 namespace relumine::cubemap {
 
-/// OpenEXR believes what a header declares and allocates it: attributes of gigabytes, tables of two
-/// thousand million rows, blocks of 256 rows of one that has millions of pixels. This walks over
-/// the headers of all parts first and throws std::runtime_error for what is not in the file of
-/// `num_bytes`: an attribute or what it holds, a table of chunks, or a block that no compression
-/// could make so small. Everything else is left to OpenEXR. The stream ends where it began, at the
-/// file's start.
+/// Refuses files whose headers declare more than the file of `num_bytes` can hold. OpenEXR believes
+/// a header and allocates what it declares: attributes of gigabytes, tables of two thousand million
+/// rows, blocks of 256 rows with millions of pixels each.
+///
+/// The check walks over the headers of all parts. It refuses an attribute or a table of chunks that
+/// goes beyond the file, and a block that no compression could make so small. OpenEXR checks
+/// everything else. The stream ends at the file's start, where it began.
+/// Throws:  std::runtime_error.
 void check_exr_header(Imf::IStream& stream, std::uint64_t num_bytes);
 
 } // namespace relumine::cubemap

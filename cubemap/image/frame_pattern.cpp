@@ -16,7 +16,7 @@ bool is_digit(char c) {
     return c >= '0' && c <= '9';
 }
 
-/// The number that all of the text is, digits only.
+/// Returns the number if the whole text is one, digits only.
 std::optional<std::int64_t> whole_number(std::string_view text) {
     std::int64_t value = 0;
     const char* end = text.data() + text.size();
@@ -26,7 +26,7 @@ std::optional<std::int64_t> whole_number(std::string_view text) {
     return value;
 }
 
-/// A place for the number.
+/// The place of the number in a name.
 struct Place {
     std::size_t begin = 0, end = 0, digits = 0;
 };
@@ -40,7 +40,7 @@ std::optional<Place> place_at(std::string_view text, std::size_t begin) {
     }
     if (text[begin] != '%')
         return std::nullopt;
-    // %d and %04d; a width without the zero would fill up with spaces.
+    // %d and %04d are allowed. A width without the zero would fill up with spaces.
     ++end;
     const std::size_t width_begin = end;
     while (end < text.size() && is_digit(text[end]))

@@ -9,38 +9,40 @@
 
 namespace relumine::cubemap {
 
-/// A file name with a place for the frame's number: `%d`, `%04d` as in printf, or `####`, one # per
-/// digit; longer numbers take more.
+/// A file name with a place for the frame's number: `%d` or `%04d` as in printf, or `####` with one
+/// # per digit. Longer numbers take more digits.
 class FramePattern {
 public:
-    /// Nothing when the name of the file (folders are taken as they are) has no such place. Throws
-    /// std::runtime_error when it has two.
+    /// Reads a pattern. Returns nothing if the file's name has no place for a number; names of
+    /// folders are not searched.
+    /// Throws:  std::runtime_error for two such places.
     [[nodiscard]] static std::optional<FramePattern> parse(const std::string& text);
 
-    /// The path of a frame, number >= 0.
+    /// Returns the path of a frame with a number >= 0.
     [[nodiscard]] std::string name(std::int64_t number) const;
-    /// The path with a text in the number's place.
+    /// Returns the path with a text in the number's place.
     [[nodiscard]] std::string name_of_all(std::string_view text) const;
-    /// The number of the frame that has this path, or nothing. Leading zeros count: frame.07.exr is
-    /// no frame of frame.%d.exr.
+    /// Returns the number of the frame with this path, or nothing if the path does not fit the
+    /// pattern. Leading zeros count: frame.07.exr is no frame of frame.%d.exr.
     [[nodiscard]] std::optional<std::int64_t> number(std::string_view path) const;
 
 private:
     FramePattern(std::string prefix, std::size_t digits, std::string suffix);
 
     std::string prefix_;
-    /// At least so many
+    /// Least number of digits.
     std::size_t digits_;
     std::string suffix_;
 };
 
-/// Frames first, first + step, ... up to last.
+/// The frames first, first + step, ... up to last.
 struct FrameRange {
     std::int64_t first = 0;
     std::int64_t last = 0;
     std::int64_t step = 1;
 
-    /// "10-200", "10-200x5" (every fifth) or "10". Throws std::runtime_error for anything else.
+    /// Reads "10-200", "10-200x5" (every fifth) or "10".
+    /// Throws:  std::runtime_error for any other text.
     [[nodiscard]] static FrameRange parse(const std::string& text);
     [[nodiscard]] bool contains(std::int64_t number) const {
         return number >= first && number <= last && (number - first) % step == 0;

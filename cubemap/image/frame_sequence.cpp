@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// More frames than any sequence has; beyond it a range is taken for a slip before a list of it is
+/// More frames than any sequence has. A larger range is taken for a mistake before a list of it is
 /// made.
 constexpr std::int64_t MaxFrames = 10'000'000;
 
@@ -25,7 +25,7 @@ constexpr std::int64_t MaxFrames = 10'000'000;
     throw std::runtime_error(fmt::format("{}: expected {}, got {}", name, expected, got));
 }
 
-/// "7, 9-11 and 20 more".
+/// Returns a text such as "7, 9-11 and 20 more".
 std::string list_of(const std::vector<std::int64_t>& numbers) {
     constexpr std::size_t MaxRuns = 5;
     std::string list;
@@ -48,13 +48,13 @@ std::string list_of(const std::vector<std::int64_t>& numbers) {
 std::vector<FrameFile> frames_of(const std::string& name, const FramePattern& pattern,
                                  const std::optional<FrameRange>& range) {
     const fs::path folder = fs::path(name).parent_path();
-    // Of six files per frame the first stands for all; loading finds out about the others.
+    // With six files per frame, the first one stands for all. Loading finds missing others.
     const FramePattern first_file = *FramePattern::parse(environment_files(name).front().string());
     std::map<std::int64_t, fs::path> found;
     std::error_code error;
     for (fs::directory_iterator entry(folder.empty() ? fs::path(".") : folder, error), end;
          !error && entry != end; entry.increment(error)) {
-        // Spelled as the pattern is: `frames` and `./frames` are the same folder.
+        // The path is spelled as in the pattern: `frames` and `./frames` are the same folder.
         const std::string path = (folder / entry->path().filename()).string();
         if (const auto number = first_file.number(path))
             found.emplace(*number, pattern.name(*number));
@@ -84,7 +84,7 @@ std::vector<FrameFile> frames_of(const std::string& name, const FramePattern& pa
     return frames;
 }
 
-/// The last number in a file's name, its extension apart.
+/// Returns the last number in a file's name without extension.
 std::optional<std::int64_t> last_number(const fs::path& path) {
     const std::string stem = path.stem().string();
     const std::size_t last = stem.find_last_of("0123456789");
@@ -102,7 +102,8 @@ std::vector<FrameFile> frames_of_glob(const std::string& name,
                                       const std::optional<FrameRange>& range) {
     glob_t matches{};
     const int status = ::glob(name.c_str(), 0, nullptr, &matches);
-    std::vector<fs::path> paths(matches.gl_pathv, matches.gl_pathv + matches.gl_pathc); // sorted
+    std::vector<fs::path> paths(matches.gl_pathv,
+                                matches.gl_pathv + matches.gl_pathc); // sorted by name
     ::globfree(&matches);
     if (status != 0 || paths.empty())
         fail(name, "frames", "no file of such a name");
@@ -131,7 +132,7 @@ std::vector<FrameFile> frames_of_glob(const std::string& name,
 std::vector<FrameFile> find_frames(const std::string& name,
                                    const std::optional<FrameRange>& range) {
     std::error_code error;
-    const bool is_file = fs::is_regular_file(name, error); // whatever characters its name has
+    const bool is_file = fs::is_regular_file(name, error); // its name may hold any characters
     if (!is_file)
         if (const std::optional<FramePattern> pattern = FramePattern::parse(name))
             return frames_of(name, *pattern, range);

@@ -1,4 +1,4 @@
-// Environments that change over time: one file per frame.
+// Environments that change over time, with one file per frame.
 #pragma once
 
 #include <cstddef>
@@ -17,30 +17,34 @@
 
 namespace relumine::cubemap {
 
-/// One frame's file.
+/// The file of one frame.
 struct FrameFile {
     std::int64_t number = 0;
     std::filesystem::path path = {};
 };
 
-/// The frames that a name stands for, numbers ascending: a FramePattern, a glob (* ? [...]) or one
-/// file.
+/// Returns the frames that a name stands for, numbers ascending. The name is a FramePattern, a glob
+/// (* ? [...]) or one file.
+///
 /// - A pattern's frames must follow each other without a gap: all from the first to the last file,
-/// or all of `range`.
-/// - A glob takes what is there. The number is the last one in the file's name; where two names
-/// have the same, the files are
-///   counted from 1 in the order of their names. Of them `range` chooses.
-/// Throws std::runtime_error "NAME: expected ..., got ..." where there are none, or a gap.
+///   or all of `range`.
+/// - A glob takes the files that are there. A frame's number is the last number in the file's name.
+///   If a name has no number or two names have the same, the files are counted from 1 in the order
+///   of their names. `range` chooses among them.
+///
+/// Throws:  std::runtime_error "NAME: expected ..., got ..." if there is no frame, or a gap.
 [[nodiscard]] std::vector<FrameFile> find_frames(const std::string& name,
                                                  const std::optional<FrameRange>& range = {});
 
-/// Frames on disk, of which two are in memory at a time: the one that was asked for and the next.
+/// Frames on disk. At most two are in memory at a time: the frame that was asked for and the next
+/// one.
 class FrameSequence {
 public:
     using Loader = std::function<EnvironmentImage(const std::filesystem::path&)>;
 
-    /// Reads the header of every frame. Throws std::runtime_error naming the first that cannot be
-    /// read or has not the size of the first frame. The loader may be called by another thread.
+    /// Reads the header of every frame. The loader may be called by another thread.
+    /// Throws:  std::runtime_error naming the first frame that cannot be read or differs in size
+    ///          from the first.
     explicit FrameSequence(std::vector<FrameFile> files, Loader loader = default_loader());
     FrameSequence(const FrameSequence&) = delete;
     FrameSequence& operator=(const FrameSequence&) = delete;
@@ -54,15 +58,17 @@ public:
     /// Width and height of all frames.
     [[nodiscard]] ImageSize image_size() const { return size_; }
 
-    /// The frame as the loader gives it, and starts loading the next. Any order; in ascending order
-    /// the frame has mostly been loaded while the caller was busy. Throws what the loader throws.
+    /// Returns the frame as the loader gives it, and starts loading the next one. Frames may be
+    /// asked for in any order; in ascending order most frames were loaded while the caller was
+    /// busy.
+    /// Throws:  what the loader throws.
     [[nodiscard]] EnvironmentImage load(std::size_t frame) { return ahead_.get(frame); }
-    /// The frame alone; for callers who read ahead themselves.
+    /// Returns the frame and loads nothing else, for callers that read ahead themselves.
     [[nodiscard]] EnvironmentImage read(std::size_t frame) const {
         return loader_(files_[frame].path);
     }
 
-    /// load_environment() without options.
+    /// Returns load_environment() with default options.
     [[nodiscard]] static Loader default_loader();
 
 private:

@@ -1,8 +1,8 @@
-// Radiance pictures (.hdr, .pic): RGBE, flat or run-length encoded the old or the new way.
-//
+// Radiance pictures (.hdr, .pic): RGBE, flat or run-length encoded in the old or the new way.
 // Based on: Greg Ward, Real Pixels, Graphics Gems II, 1991, and the file format page of Radiance.
-// Written out here because the widespread single-file decoders read truncated files as if they were
-// whole, or never return from them.
+//
+// The project has its own decoder because widespread single-file decoders read truncated files as
+// if they were whole, or never return from them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,15 +20,15 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-/// Scanlines of other lengths are never run-length encoded the new way.
+/// Only scanlines of these lengths may be run-length encoded in the new way.
 bool can_be_run_length_encoded(std::uint32_t width) {
     return width >= 8 && width <= 0x7fff;
 }
 
-class Decoder {
+class HdrDecoder {
 public:
-    /// `num_bytes`: of the whole file, of which `bytes` may be the beginning.
-    Decoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
+    /// `num_bytes` is the size of the whole file. `bytes` may be only its beginning.
+    HdrDecoder(std::span<const std::byte> bytes, std::size_t num_bytes, const std::string& name)
         : bytes_(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()),
           num_bytes_(num_bytes), name_(name) {}
 
@@ -111,7 +111,8 @@ private:
         return value;
     }
 
-    /// The resolution line, such as "-Y 512 +X 1024", and whether the file can hold that much.
+    /// Reads the resolution line, such as "-Y 512 +X 1024", and checks that the file can hold this
+    /// size.
     void read_size() {
         const std::string line(read_line());
         std::array<char, 2> signs{}, axes{};
@@ -129,8 +130,8 @@ private:
         right_to_left_ = signs[1] == '-';
 
         const auto [height, width] = sizes;
-        // A run of 127 equal bytes takes 2, so nothing shrinks more than 64:1; the old runs could,
-        // but hardly do.
+        // A run of 127 equal bytes takes 2 bytes, so nothing shrinks by more than 64:1. The old
+        // runs could, but hardly do.
         constexpr std::size_t AlwaysAllowed = std::size_t{1} << 22;
         const std::size_t num_bytes = num_bytes_ - position_;
         if (width == 0 || height == 0 || width > MaxPixels || height > MaxPixels ||
@@ -179,8 +180,8 @@ private:
         }
     }
 
-    /// Flat pixels; (1, 1, 1, n) repeats the pixel before n times, and right after another
-    /// repetition n * 256 times.
+    /// Reads flat pixels. (1, 1, 1, n) repeats the pixel before n times; right after another
+    /// repetition it repeats n * 256 times.
     void read_old_scanline(std::vector<Rgbe>& scanline, Rgbe pixel, std::uint32_t row) {
         std::uint32_t shift = 0;
         for (std::uint32_t x = 0; x < width_;) {
@@ -227,7 +228,7 @@ Rgbe rgbe(const glm::vec3& radiance) {
     const float largest = std::max({radiance.x, radiance.y, radiance.z});
     const auto fits = [](float value) {
         return value >= 0.0f && value < 1.6e38f;
-    }; // no NaN
+    }; // false for NaN
     if (!fits(radiance.x) || !fits(radiance.y) || !fits(radiance.z))
         throw std::invalid_argument(
             "expected radiance from 0 to 1.6e38 for a .hdr file, got a NaN, infinite, negative "
@@ -245,7 +246,8 @@ Rgbe rgbe(const glm::vec3& radiance) {
             static_cast<std::uint8_t>(exponent + 128)};
 }
 
-/// One channel of a scanline in runs of up to 127 equal bytes and stretches of up to 128 others.
+/// Appends one channel of a scanline as runs of up to 127 equal bytes and stretches of up to 128
+/// others.
 void append_runs(const std::vector<Rgbe>& scanline, std::size_t channel,
                  std::vector<std::uint8_t>& out) {
     constexpr std::size_t ShortestRun = 4, LongestRun = 127, LongestStretch = 128;
@@ -284,12 +286,12 @@ bool is_hdr(std::span<const std::byte> bytes) {
 }
 
 ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name) {
-    return Decoder(bytes, bytes.size(), name).decode();
+    return HdrDecoder(bytes, bytes.size(), name).decode();
 }
 
 ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                    const std::string& name) {
-    return Decoder(head, num_bytes, name).size();
+    return HdrDecoder(head, num_bytes, name).size();
 }
 
 std::vector<std::byte> encode_hdr(const EnvironmentImage& image) {

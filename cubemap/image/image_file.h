@@ -1,4 +1,4 @@
-// What the readers of both file formats hand to load_environment().
+// What the readers of both file formats return to load_environment().
 #pragma once
 
 #include <cstddef>
@@ -15,42 +15,39 @@
 
 namespace relumine::cubemap {
 
-/// A decoded file.
-struct ImageFile {
-    std::uint32_t width = 0;
-    std::uint32_t height = 0;
-    /// [height * width] row by row from the top; linear RGB radiance
-    std::vector<glm::vec3> pixels;
-    /// The layout that the file itself states (OpenEXR's `envmap` attribute)
+/// The content of a decoded file. An alpha channel is not read.
+struct ImageFile : Picture {
+    /// The layout that the file itself states by OpenEXR's `envmap` attribute. Empty: none stated.
     std::optional<Layout> envmap;
-    /// What a user may want to know, e.g. "luminance only"
+    /// What a user may want to know, for example "luminance only".
     std::vector<std::string> remarks;
 };
 
-/// More pixels than any environment has (a cube of 6 x 9459^2); beyond it a file is taken for
-/// damaged before memory is allocated.
+/// More pixels than any environment has: a cube of 6 x 9459^2. A larger file is refused as damaged
+/// before memory is allocated.
 inline constexpr std::uint64_t MaxPixels = std::uint64_t{1} << 29;
 
+/// Returns true if a file's first bytes mark it as .exr or .hdr.
 [[nodiscard]] bool is_exr(std::span<const std::byte> bytes);
 [[nodiscard]] bool is_hdr(std::span<const std::byte> bytes);
 
-/// Decode a file's content. `name` stands for it in messages: std::runtime_error "name: expected X,
-/// got Y".
+/// Decodes a file's content. `name` stands for the file in messages.
+/// Throws:  std::runtime_error "name: expected X, got Y".
 [[nodiscard]] ImageFile decode_exr(std::span<const std::byte> bytes, const std::string& name);
 [[nodiscard]] ImageFile decode_hdr(std::span<const std::byte> bytes, const std::string& name);
 
-/// The size of the image that they would decode, from the header alone.
+/// Returns the size that decode_exr() would find, from the header alone.
 [[nodiscard]] ImageSize exr_size(const std::filesystem::path& path);
-/// `head`: the file's first bytes, of `num_bytes` that it has.
+/// Returns the size that decode_hdr() would find. `head` holds the first bytes of a file of
+/// `num_bytes`.
 [[nodiscard]] ImageSize hdr_size(std::span<const std::byte> head, std::size_t num_bytes,
                                  const std::string& name);
 
-/// 32-bit float RGB, ZIP, with the `envmap` attribute where the samples lie on the borders, and a
-/// channel A where `alpha` is given, one for each pixel.
-[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image,
-                                                std::span<const float> alpha = {});
-/// RGBE, run-length encoded, rounded to nearest. Throws std::invalid_argument for radiance that
-/// RGBE cannot hold.
+/// Returns an .exr file: 32-bit float RGB, ZIP. The `envmap` attribute is set if samples lie on the
+/// borders. The file has a channel A if the picture has alpha.
+[[nodiscard]] std::vector<std::byte> encode_exr(const EnvironmentImage& image);
+/// Returns an .hdr file: RGBE, run-length encoded, rounded to nearest.
+/// Throws:  std::invalid_argument for radiance that RGBE cannot hold.
 [[nodiscard]] std::vector<std::byte> encode_hdr(const EnvironmentImage& image);
 
 } // namespace relumine::cubemap

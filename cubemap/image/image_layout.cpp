@@ -9,7 +9,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "cubemap/resample/patch.h"
+#include "cubemap/resample/footprint.h"
 #include "cubemap/resample/projection.h"
 
 namespace relumine::cubemap {
@@ -88,7 +88,7 @@ bool fits(Layout layout, std::uint32_t width, std::uint32_t height) {
 }
 
 std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction) {
-    // The sample of n that lies at a position of [0, 1].
+    // Returns the sample of n that lies at a position of [0, 1], if there is one.
     const auto sample = [&](double position, std::uint32_t n) -> std::optional<std::size_t> {
         const double index =
             shape.sampling == Sampling::Borders && n > 1 ? position * (n - 1) : position * n - 0.5;
@@ -99,13 +99,14 @@ std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& d
         return static_cast<std::size_t>(nearest);
     };
     if (has_faces(shape.layout)) {
-        const FaceCells cells(shape.layout, shape.width, shape.height);
+        const FaceSquares squares(shape.layout, shape.width, shape.height);
         const FacePoint point = face_point(direction);
-        const auto x = sample(point.s, cells.resolution()), y = sample(point.t, cells.resolution());
+        const auto x = sample(point.s, squares.resolution()),
+                   y = sample(point.t, squares.resolution());
         if (!x || !y)
             return std::nullopt;
-        return cells.pixel(point.face, static_cast<std::uint32_t>(*x),
-                           static_cast<std::uint32_t>(*y));
+        return squares.pixel(point.face, static_cast<std::uint32_t>(*x),
+                             static_cast<std::uint32_t>(*y));
     }
     glm::dvec2 point(0.0);
     if (const Projection* picture = projection(shape.layout))
@@ -119,26 +120,26 @@ std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& d
     return *y * shape.width + *x;
 }
 
-FaceCells::FaceCells(Layout layout, std::uint32_t width, std::uint32_t height)
-    : width_(width), resolution_(0), cells_{} {
+FaceSquares::FaceSquares(Layout layout, std::uint32_t width, std::uint32_t height)
+    : width_(width), resolution_(0), squares_{} {
     if (!has_faces(layout) || !fits(layout, width, height))
         throw std::invalid_argument(fmt::format(
             "expected an image of six cube faces, got a {} of {}x{}", name(layout), width, height));
     if (layout == Layout::Cube) {
         resolution_ = width;
         for (std::size_t face = 0; face < NumFaces; ++face)
-            cells_[face] = {0, face, false};
+            squares_[face] = {0, face, false};
     } else if (layout == Layout::HorizontalStrip) {
         resolution_ = height;
         for (std::size_t face = 0; face < NumFaces; ++face)
-            cells_[face] = {face, 0, false};
+            squares_[face] = {face, 0, false};
     } else if (layout == Layout::HorizontalCross) {
         //          +Y
         //      -X  -Z  +X  +Z
         //          -Y
         resolution_ = height / 3;
-        cells_ = {Cell{2, 1, false}, Cell{0, 1, false}, Cell{1, 0, false},
-                  Cell{1, 2, false}, Cell{3, 1, false}, Cell{1, 1, false}};
+        squares_ = {Square{2, 1, false}, Square{0, 1, false}, Square{1, 0, false},
+                    Square{1, 2, false}, Square{3, 1, false}, Square{1, 1, false}};
     } else {
         // The cross unfolds the cube around -Z, as HDR Shop and Debevec's probes do; +Z hangs at
         // the bottom, upside down:
@@ -148,8 +149,8 @@ FaceCells::FaceCells(Layout layout, std::uint32_t width, std::uint32_t height)
         //          -Y
         //          +Z (turned)
         resolution_ = width / 3;
-        cells_ = {Cell{2, 1, false}, Cell{0, 1, false}, Cell{1, 0, false},
-                  Cell{1, 2, false}, Cell{1, 3, true},  Cell{1, 1, false}};
+        squares_ = {Square{2, 1, false}, Square{0, 1, false}, Square{1, 0, false},
+                    Square{1, 2, false}, Square{1, 3, true},  Square{1, 1, false}};
     }
 }
 
@@ -183,10 +184,10 @@ std::vector<PixelPlace> projected_places(const ImageShape& shape) {
     const Projection& picture = *projection(shape.layout);
     std::vector<PixelPlace> places(static_cast<std::size_t>(shape.width) * shape.height);
     const double area = 1.0 / (static_cast<double>(shape.width) * shape.height);
-    // Gauss-Legendre, three points each way, is exact to 1e-9 of a pixel this small.
+    // Gauss-Legendre with three points in each direction is exact to 1e-9 of such a small pixel.
     constexpr std::uint32_t SmallPixels = 32;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, shape.height), [&](const auto& rows) {
-        PatchPieces pieces(picture, shape.width, shape.height);
+        ProjectionFootprints pieces(picture, shape.width, shape.height);
         for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
             for (std::uint32_t x = 0; x < shape.width; ++x) {
                 PixelPlace& place = places[static_cast<std::size_t>(y) * shape.width + x];

@@ -1,5 +1,5 @@
-// Where the pixels of an environment image lie on the sphere. The names of layouts and samplings
-// are in environment.h.
+// Where the pixels of an environment image lie on the sphere. Layouts and samplings are named in
+// environment.h.
 #pragma once
 
 #include <array>
@@ -24,81 +24,88 @@ struct ImageShape {
     bool operator==(const ImageShape&) const = default;
 };
 
-/// The borders of n cells side by side over [0, 1], [n + 1] ascending from 0 to 1. At texel centres
-/// all cells are equally wide; with samples on the borders the first and the last cell are half as
-/// wide as the others.
+/// Returns the borders of n cells side by side over [0, 1]. With TexelCentres all cells are equally
+/// wide. With Borders the first and the last cell are half as wide as the others.
+///
+/// Shape:   [n + 1] ascending from 0 to 1.
 [[nodiscard]] std::vector<double> cell_borders(std::uint32_t num_cells, Sampling sampling);
 
-/// Position in [0, 1] of sample i of n: the cell's centre, or i / (n - 1) with samples on the
-/// borders.
+/// Returns the position in [0, 1] of sample i of n: the centre of its cell, or i / (n - 1) for
+/// Borders.
 [[nodiscard]] double sample_position(std::uint32_t index, std::uint32_t num_samples,
                                      Sampling sampling);
 
-/// True if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n for
-/// VerticalCross and so on; n x n for a Projection.
+/// Returns true if the proportions suit the layout: any size for LatLong, n x 6n for Cube, 3n x 4n
+/// for VerticalCross and so on, n x n for a Projection.
 [[nodiscard]] bool fits(Layout layout, std::uint32_t width, std::uint32_t height);
 
 /// The squares of an image that hold the six faces.
-class FaceCells {
+class FaceSquares {
 public:
-    /// Throws std::invalid_argument for proportions that do not fit, or for a layout without faces.
-    FaceCells(Layout layout, std::uint32_t width, std::uint32_t height);
+    /// Throws:  std::invalid_argument for proportions that do not fit, or for a layout without
+    ///          faces.
+    FaceSquares(Layout layout, std::uint32_t width, std::uint32_t height);
 
     [[nodiscard]] std::uint32_t resolution() const { return resolution_; }
 
-    /// Index of the image's pixel that is texel (x, y) of a face.
+    /// Returns the index of the image's pixel that is texel (x, y) of a face.
     [[nodiscard]] std::size_t pixel(Face face, std::uint32_t x, std::uint32_t y) const {
-        const Cell& cell = cells_[static_cast<std::size_t>(face)];
-        const std::size_t column = cell.turned ? resolution_ - 1 - x : x;
-        const std::size_t row = cell.turned ? resolution_ - 1 - y : y;
-        return (cell.row * resolution_ + row) * width_ + cell.column * resolution_ + column;
+        const Square& square = squares_[static_cast<std::size_t>(face)];
+        const std::size_t column = square.turned ? resolution_ - 1 - x : x;
+        const std::size_t row = square.turned ? resolution_ - 1 - y : y;
+        return (square.row * resolution_ + row) * width_ + square.column * resolution_ + column;
     }
 
 private:
-    /// Column and row of the cell in the image; turned by 180 degrees against Face or not.
-    struct Cell {
+    /// Column and row of the square in the image. `turned`: the square is turned by 180 degrees
+    /// against Face.
+    struct Square {
         std::size_t column, row;
         bool turned;
     };
     std::size_t width_;
     std::uint32_t resolution_;
-    std::array<Cell, NumFaces> cells_;
+    std::array<Square, NumFaces> squares_;
 };
 
-/// A pixel's place on the sphere.
+/// The place of a pixel on the sphere.
 struct PixelPlace {
-    /// Unit, where the pixel's sample lies
+    /// Unit direction of the pixel's sample.
     glm::dvec3 direction{0.0};
-    /// Of the patch it stands for
+    /// Solid angle of the pixel's footprint, in steradians.
     double solid_angle = 0.0;
 };
 
-/// The pixel whose sample lies in a unit direction to 1e-6 of a pixel's width, if there is one.
+/// Returns the pixel whose sample lies in a unit direction to 1e-6 of a pixel's width, if there is
+/// one.
 [[nodiscard]] std::optional<std::size_t> pixel_at(const ImageShape& shape,
                                                   const glm::dvec3& direction);
 
-/// Calls `visit(pixel_index, PixelPlace)` for every pixel that shows a part of the sphere (a cross
-/// has cells that do not), in an order that depends on the shape only.
+/// Calls `visit(pixel_index, PixelPlace)` for every pixel that shows a part of the sphere. A cross
+/// also has pixels that show nothing. The order depends on the shape only.
 template<typename Visit>
 void for_each_pixel(const ImageShape& shape, const Visit& visit);
 
 namespace detail {
 
-/// One row of a lat-long image: sine and cosine of its samples' polar angle and the row's share of
-/// the sphere per turn.
+/// One row of a lat-long image: cosine and sine of the polar angle of its samples, and the row's
+/// solid angle per radian of longitude.
 struct LatLongRow {
     double cos_polar, sin_polar, height;
 };
 [[nodiscard]] std::vector<LatLongRow> lat_long_rows(const ImageShape& shape);
 
-/// One column: sine and cosine of its samples' longitude, width in radians.
+/// One column of a lat-long image: sine and cosine of the longitude of its samples, and its width
+/// in radians.
 struct LatLongColumn {
     double sin_longitude, cos_longitude, width;
 };
 [[nodiscard]] std::vector<LatLongColumn> lat_long_columns(const ImageShape& shape);
 
-/// All pixels of a Projection, [height * width]. On the rim of a disc a pixel stands for its part
-/// inside, with the mean direction.
+/// Returns the places of all pixels of a Projection. A pixel on the rim of a disc stands for its
+/// part inside the disc, with the mean direction of this part.
+///
+/// Shape:   [height * width].
 [[nodiscard]] std::vector<PixelPlace> projected_places(const ImageShape& shape);
 
 } // namespace detail
@@ -125,13 +132,13 @@ void for_each_pixel(const ImageShape& shape, const Visit& visit) {
         }
         return;
     }
-    const FaceCells cells(shape.layout, shape.width, shape.height);
-    const std::uint32_t resolution = cells.resolution();
+    const FaceSquares squares(shape.layout, shape.width, shape.height);
+    const std::uint32_t resolution = squares.resolution();
     const std::vector<double> borders = cell_borders(resolution, shape.sampling);
     for (const Face face : AllFaces) {
         for (std::uint32_t y = 0; y < resolution; ++y) {
             for (std::uint32_t x = 0; x < resolution; ++x)
-                visit(cells.pixel(face, x, y),
+                visit(squares.pixel(face, x, y),
                       PixelPlace{
                           direction(face, sample_position(x, resolution, shape.sampling),
                                     sample_position(y, resolution, shape.sampling)),

@@ -15,9 +15,9 @@ namespace relumine::cubemap {
 namespace {
 
 ImageSize size_of_file(const std::filesystem::path& path) {
-    // A .hdr header is lines of text, a few hundred bytes of them.
+    // A .hdr header is a few hundred bytes of text.
     constexpr std::size_t MaxHeaderBytes = 1 << 16;
-    const std::size_t num_bytes = files::size(path); // refuses what is missing or no file
+    const std::size_t num_bytes = files::size(path); // refuses a missing file and a folder
     std::vector<std::byte> head(std::min(num_bytes, MaxHeaderBytes));
     std::ifstream file(path, std::ios::binary);
     file.read(reinterpret_cast<char*>(head.data()), static_cast<std::streamsize>(head.size()));

@@ -1,4 +1,4 @@
-// How large an image file is, from its header.
+// The size of an image file, from its header.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,9 @@
 
 namespace relumine::cubemap {
 
-/// The size that load_environment() would find, without reading the pixels: an intact header says
-/// nothing about them. Throws std::runtime_error "path: expected X, got Y".
+/// Returns the size that load_environment() would find. Pixels are not read, so a damaged file may
+/// still have a size.
+/// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] ImageSize read_image_size(const std::filesystem::path& path);
 
 } // namespace relumine::cubemap

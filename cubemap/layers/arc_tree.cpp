@@ -23,8 +23,8 @@ double squared_length(const glm::dvec3& v) {
 
 double ArcTree::Arc::squared_distance(const glm::dvec3& w) const {
     if (glm::dot(w, after_from) > 0.0 && glm::dot(w, before_to) > 0.0) {
-        // The foot on the great circle lies on the arc: 2 - 2 cos with sin = w.n, without
-        // cancellation.
+        // The foot of w on the great circle lies on the arc. The squared chord is 2 - 2 cos with
+        // sin = w.n, written without cancellation.
         const double sine = glm::dot(w, normal);
         return 2.0 * sine * sine / (1.0 + std::sqrt(std::max(0.0, 1.0 - sine * sine)));
     }
@@ -75,7 +75,7 @@ void ArcTree::build(std::uint32_t begin, std::uint32_t end) {
 double ArcTree::squared_distance(const glm::dvec3& w, double limit) const {
     struct Waiting {
         std::uint32_t node;
-        /// To the ball's centre, less its radius
+        /// Distance to the ball's centre less the ball's radius.
         double distance;
     };
     const auto waiting = [&](std::uint32_t node) {
@@ -95,7 +95,7 @@ double ArcTree::squared_distance(const glm::dvec3& w, double limit) const {
                 nearest = std::min(nearest, arcs_[i].squared_distance(w));
             continue;
         }
-        // The nearer one first, so that the other is mostly skipped.
+        // The nearer node comes first, so the other one is mostly skipped.
         Waiting near = waiting(next.node + 1), far = waiting(node.second);
         if (far.distance < near.distance)
             std::swap(near, far);
@@ -178,9 +178,10 @@ bool ArcTree::encloses(const glm::dvec2& point) const {
 
 namespace {
 
-/// How far from a ball's centre an arc may be to matter in the ball. At any w in it, the nearest
-/// arc is no further than distance + chord, so no further than distance + 2 chord from the centre;
-/// one within `chord` of w is within 2 chord of it. A hair more for rounding.
+/// Returns how far from a ball's centre an arc may be to matter in the ball. At any w in the ball,
+/// the nearest arc is within distance + chord of w, so within distance + 2 chord of the centre. An
+/// arc within `chord` of w is within 2 chord of the centre. The result is a little larger, for
+/// rounding.
 double reach_of(double distance, double chord) {
     return (distance + 2.0 * chord) * (1.0 + 1e-9) + 1e-12;
 }

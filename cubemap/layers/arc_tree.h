@@ -1,4 +1,4 @@
-// Great-circle arcs in the order of a line, in a tree of balls: the distance to the nearest in
+// A line of great-circle arcs in a tree of balls. The tree finds the distance to the nearest arc in
 // logarithmic time.
 #pragma once
 
@@ -14,53 +14,56 @@
 
 namespace relumine::cubemap {
 
-/// Distances are chords (straight through the sphere), so they obey the triangle inequality and
-/// need no arctangents.
+/// A tree over the arcs of a line. Distances are chords, straight through the sphere: they obey the
+/// triangle inequality and need no arctangents.
 class ArcTree {
 public:
-    /// Arcs between neighbours of unit points, and from the last to the first if closed. One point
-    /// is an arc of no length.
+    /// Makes arcs between neighbouring unit points, and from the last to the first point if closed.
+    /// A single point is an arc without length.
     ArcTree(std::span<const glm::dvec3> points, bool closed);
 
-    /// Squared chord from a unit direction to the nearest arc, or `limit` if none is nearer.
+    /// Returns the squared chord from a unit direction to the nearest arc, or `limit` if no arc is
+    /// nearer.
     [[nodiscard]] double squared_distance(const glm::dvec3& w,
                                           double limit = std::numeric_limits<double>::max()) const;
 
-    /// Whether two or more arcs come within a chord of a unit direction.
+    /// Returns true if two or more arcs come within a chord of a unit direction.
     [[nodiscard]] bool several_within(const glm::dvec3& w, double chord) const;
 
-    /// Sets plane coordinates of the arcs' ends, [number of arcs] starts; arc i ends where arc i +
-    /// 1 starts.
+    /// Sets plane coordinates of the arcs' ends. Arc i ends where arc i + 1 starts.
+    /// Shape:   `starts` is [number of arcs].
     void set_plane(std::span<const glm::dvec2> starts);
 
-    /// Even-odd rule for a point of that plane. Only for closed lines.
+    /// Returns true if the line encloses a point of the plane of set_plane(), by the even-odd rule.
+    /// Only for closed lines.
     [[nodiscard]] bool encloses(const glm::dvec2& point) const;
 
 private:
     friend class NearArcs;
     struct Arc {
         glm::dvec3 from{0.0}, to{0.0};
-        /// Unit, of the great circle; zero for an arc of no length
+        /// Unit normal of the great circle; zero for an arc without length.
         glm::dvec3 normal{0.0};
-        /// Normals of the planes that bound the arc's lune
+        /// Normals of the planes that bound the arc's lune.
         glm::dvec3 after_from{0.0}, before_to{0.0};
         glm::dvec3 middle{0.0};
-        /// From the middle to an end
+        /// Chord from the middle to an end.
         double half_chord = 0.0;
         glm::dvec2 plane_from{0.0}, plane_to{0.0};
         [[nodiscard]] double squared_distance(const glm::dvec3& w) const;
     };
-    /// Arcs [begin, end) within a ball; its first child follows it, the second is at `second` (0: a
-    /// leaf).
+    /// Arcs [begin, end) within a ball. The first child follows the node; the second child is at
+    /// `second` (0: the node is a leaf).
     struct Node {
         glm::dvec3 centre{0.0};
         double radius = 0.0;
-        /// Range of the second plane coordinate
+        /// Range of the second plane coordinate.
         double low = 0.0, high = 0.0;
         std::uint32_t begin = 0, end = 0, second = 0;
     };
     void build(std::uint32_t begin, std::uint32_t end);
-    /// Calls `visit(arc)` for the arcs within a chord of a unit direction until it returns false.
+    /// Calls `visit(arc)` for the arcs within a chord of a unit direction, until `visit` returns
+    /// false.
     template<typename Visit>
     void visit_within(const glm::dvec3& w, double chord, const Visit& visit) const;
 
@@ -68,36 +71,38 @@ private:
     std::vector<Node> nodes_;
 };
 
-/// The arcs of a tree that matter in a ball around a direction: those that may be the nearest of a
-/// direction in it, or within the ball's radius of one. There the answers are the tree's, bit by
-/// bit, from a few arcs instead of a search. The tree must outlive it.
+/// The arcs of a tree that matter for directions in a ball: arcs that may be the nearest of such a
+/// direction, and arcs within the ball's radius of one. For directions in the ball the answers are
+/// the tree's answers, bit by bit, from a few arcs instead of a search. The tree must outlive the
+/// object.
 class NearArcs {
 public:
-    /// Of all directions within a chord of a unit direction.
+    /// Takes the ball of all directions within a chord of a unit direction.
     NearArcs(const ArcTree& tree, const glm::dvec3& w, double chord);
-    /// The same from the arcs of a ball that this one lies in.
+    /// The same, from the arcs of a ball that holds this ball.
     NearArcs(const NearArcs& wider, const glm::dvec3& w, double chord);
 
-    /// From the ball's centre to the nearest arc.
+    /// Chord from the ball's centre to the nearest arc.
     [[nodiscard]] double distance() const { return distance_; }
 
-    /// As ArcTree's, for directions in the ball.
+    /// As ArcTree::squared_distance(), for directions in the ball.
     [[nodiscard]] double squared_distance(const glm::dvec3& w,
                                           double limit = std::numeric_limits<double>::max()) const;
-    /// As ArcTree's, for directions in the ball and chords up to its radius.
+    /// As ArcTree::several_within(), for directions in the ball and chords up to its radius.
     [[nodiscard]] bool several_within(const glm::dvec3& w, double chord) const;
-    /// As ArcTree's; this one question goes to the tree.
+    /// As ArcTree::encloses(). The tree answers this question.
     [[nodiscard]] bool encloses(const glm::dvec2& point) const { return tree_->encloses(point); }
 
 private:
-    /// More than these are not fewer work than the tree: a ball this large asks it.
+    /// Testing more arcs than these costs as much as asking the tree, so a ball with more arcs asks
+    /// the tree.
     static constexpr std::size_t MaxArcs = 64;
     [[nodiscard]] bool too_many() const { return count_ > MaxArcs; }
     void collect_from_tree(const glm::dvec3& w, double reach);
 
     const ArcTree* tree_;
     double distance_ = 0.0;
-    /// MaxArcs + 1: too many
+    /// MaxArcs + 1: there are more arcs than arcs_ holds.
     std::size_t count_ = 0;
     std::array<std::uint32_t, MaxArcs> arcs_;
 };

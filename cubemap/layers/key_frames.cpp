@@ -1,4 +1,4 @@
-// Layers between key frames.
+// Interpolates layers between key frames.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -13,7 +13,7 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// The keys around a frame that name a field: one of them may be missing.
+/// The two keys around a frame that name a field. One of them may be missing.
 struct Around {
     const KeyFrame* before = nullptr;
     const KeyFrame* after = nullptr;
@@ -42,9 +42,9 @@ Around keys_around(std::span<const KeyFrame> frames, double frame, const std::st
     return around;
 }
 
-/// On the great circle at constant speed; the length goes linearly. Opposite directions turn about
-/// an axis across them.
-glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double t) {
+/// Moves along the great circle at constant speed; the length changes linearly. Between opposite
+/// directions the turn is about an axis perpendicular to them.
+glm::dvec3 turned_toward(const glm::dvec3& from, const glm::dvec3& to, double t) {
     const double from_length = glm::length(from), to_length = glm::length(to);
     if (from == to || !(from_length > 0.0) || !(to_length > 0.0))
         return t < 1.0 ? from : to;
@@ -74,7 +74,7 @@ std::vector<double> between(const LayerField& field, const std::vector<double>& 
     }
     for (std::size_t i = 0; i + 2 < from.size(); i += 3) {
         const glm::dvec3 point =
-            turned({from[i], from[i + 1], from[i + 2]}, {to[i], to[i + 1], to[i + 2]}, t);
+            turned_toward({from[i], from[i + 1], from[i + 2]}, {to[i], to[i + 1], to[i + 2]}, t);
         result[i] = point.x;
         result[i + 1] = point.y;
         result[i + 2] = point.z;

@@ -15,9 +15,9 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Tiles are cut from the whole face, not from the rectangles, so that every texel meets the same
-/// tests wherever rectangles begin. 32 x 32: a disc of 100 texels' radius has about as many tiles
-/// at its rim as inside it.
+/// Tiles are cut from the whole face, not from the rectangles. So a texel gets the same tests
+/// wherever rectangles begin. With 32 x 32, a disc of 100 texels' radius has about as many tiles at
+/// its rim as inside.
 constexpr std::uint32_t TileSize = 32;
 
 /// A layer's effect with its gain multiplied in.
@@ -31,12 +31,12 @@ struct Filter {
         texel *= 1.0f + coverage * (factor - 1.0f);
     }
 };
-struct Patch {
-    const Picture* picture;
+struct Image {
+    const ImagePyramid* picture;
     bool replace;
     float gain;
 };
-using PreparedEffect = std::variant<Light, Filter, Patch>;
+using PreparedEffect = std::variant<Light, Filter, Image>;
 
 struct PreparedLayer {
     RegionShape region;
@@ -53,7 +53,7 @@ PreparedLayer prepared(const LightLayer& layer) {
             return Filter{gain * effect.factor * effect.tint};
         }
         PreparedEffect operator()(const ImagePatch& patch) const {
-            return Patch{patch.picture.get(), patch.blend == ImagePatch::Blend::Replace, gain};
+            return Image{patch.picture.get(), patch.blend == ImagePatch::Blend::Replace, gain};
         }
     };
     return {shape(layer.region), std::visit(Prepare{gain}, layer.effect)};
@@ -75,7 +75,7 @@ void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& ran
                 texel(x, y, 1.0);
         }
     } else if (range.is_texel()) {
-        const double mean = mean_coverage(shape, grid.plane, grid.cell(range.x0, range.y0));
+        const double mean = mean_coverage(shape, grid.plane, grid.square(range.x0, range.y0));
         if (mean > 0.0)
             texel(range.x0, range.y0, mean);
     } else {
@@ -88,36 +88,38 @@ void for_covered(const Shape& shape, const FaceGrid& grid, const TexelRange& ran
 /// A picture on its rectangle, averaged over texels.
 class PlacedPicture {
 public:
-    PlacedPicture(const RectangleShape& rectangle, const Picture& picture, const FaceGrid& grid)
+    PlacedPicture(const RectangleShape& rectangle, const ImagePyramid& picture,
+                  const FaceGrid& grid)
         : rectangle_(rectangle), picture_(picture), plane_(grid.plane) {
-        // One level for the whole picture, or a bright spot where two levels meet would be counted
-        // by neither or both: pixels of half a texel or more at the picture's and the face's
-        // middle, but at least eight of them.
+        // One level serves the whole picture. With two, a bright spot at their border would be
+        // counted twice or not at all. At the middle of the picture and of the face, a pixel of
+        // this level has at least half the width of a texel; the level has at least eight pixels.
         const glm::dvec2& half = rectangle.half_sides();
         const double texel = std::min(0.25, grid.half_texel / std::sqrt(half.x * half.y));
-        const Picture::Level& full = picture.levels().front();
+        const Picture& full = picture.levels().front();
         const double pixels = std::max(1.0, 0.5 * texel * std::max(full.width, full.height));
         level_ = std::min(static_cast<std::size_t>(std::ceil(std::log2(pixels))),
                           picture.levels().size() - 1);
-        const Picture::Level& chosen = picture.levels()[level_];
+        const Picture& chosen = picture.levels()[level_];
         largest_part_ = LargestPart / std::max({chosen.width, chosen.height, 8u});
     }
 
-    /// Mean of coverage times the picture over a texel.
-    [[nodiscard]] glm::dvec3 mean(const Cell& texel, bool covered) const {
+    /// Returns the mean of coverage times the picture over a texel.
+    [[nodiscard]] glm::dvec3 mean(const FaceSquare& texel, bool covered) const {
         return light(texel, covered) / texel.solid_angle();
     }
 
 private:
-    /// Of a pixel's side, so that every pixel is met evenly
+    /// Part of a pixel's side. Smaller parts meet every pixel evenly.
     static constexpr double LargestPart = 0.5;
 
-    /// Integral over the solid angle of a texel or a part of it.
-    [[nodiscard]] glm::dvec3 light(const Cell& part, bool covered) const {
+    /// Returns the integral of coverage times the picture over the solid angle of a texel or a part
+    /// of it.
+    [[nodiscard]] glm::dvec3 light(const FaceSquare& part, bool covered) const {
         const glm::dvec3 middle = plane_.direction(part.u, part.v);
         if (!covered && rectangle_.bound(middle, part.chord()) == Overlap::None)
             return glm::dvec3(0.0);
-        // The part's side in units of the picture's.
+        // The part is small enough if its side, in units of the picture's, is below the limit.
         const double angle = part.solid_angle();
         if (angle > largest_part_ * largest_part_ * rectangle_.solid_angle_of_picture(middle)) {
             glm::dvec3 sum(0.0);
@@ -131,7 +133,7 @@ private:
     }
 
     const RectangleShape& rectangle_;
-    const Picture& picture_;
+    const ImagePyramid& picture_;
     const FacePlane& plane_;
     std::size_t level_;
     double largest_part_;
@@ -139,15 +141,15 @@ private:
 
 void apply(const PreparedLayer& layer, const FaceGrid& grid, const TexelRange& tile,
            const TexelRectangle& rectangle, CubeMap& target) {
-    if (const auto* patch = std::get_if<Patch>(&layer.effect)) {
+    if (const auto* image = std::get_if<Image>(&layer.effect)) {
         const auto& region = std::get<RectangleShape>(layer.region);
-        const PlacedPicture picture(region, *patch->picture, grid);
+        const PlacedPicture picture(region, *image->picture, grid);
         for_covered(region, grid, tile, rectangle,
                     [&](std::uint32_t x, std::uint32_t y, double coverage) {
-                        const glm::dvec3 light = picture.mean(grid.cell(x, y), coverage == 1.0);
+                        const glm::dvec3 light = picture.mean(grid.square(x, y), coverage == 1.0);
                         glm::vec3& texel = target.at(grid.face, x, y);
-                        texel = texel * static_cast<float>(patch->replace ? 1.0 - coverage : 1.0) +
-                                patch->gain * glm::vec3(light);
+                        texel = texel * static_cast<float>(image->replace ? 1.0 - coverage : 1.0) +
+                                image->gain * glm::vec3(light);
                     });
         return;
     }
@@ -220,7 +222,8 @@ void composite(const CubeMap& base, std::span<const LightLayer> layers,
         else
             validate(layer);
     }
-    // One rectangle after the other, so that texels of two are never written at the same time.
+    // Rectangles are done one after the other, so texels in two of them are never written at the
+    // same time.
     for (const TexelRectangle& rectangle : rectangles) {
         if (rectangle.x0 < rectangle.x1 && rectangle.y0 < rectangle.y1)
             composite_rectangle(base, ready, rectangle, target);

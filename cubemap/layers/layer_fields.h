@@ -1,4 +1,4 @@
-// The numbers of a light layer by the names they have in layer files and key frames.
+// The numbers of a light layer, by their names in layer files and key frames.
 #pragma once
 
 #include <span>
@@ -9,10 +9,10 @@
 
 namespace relumine::cubemap {
 
-/// Numbers of a layer under one name. One of the pointers is set.
+/// The numbers of a layer under one name. Exactly one of the pointers is set.
 struct LayerField {
     std::string_view name;
-    /// By a layer file; others have the default of light_layer.h
+    /// True if a layer file must give the field. Other fields have the default of light_layer.h.
     bool required = false;
     bool* flag = nullptr;
     double* number = nullptr;
@@ -22,19 +22,19 @@ struct LayerField {
     std::vector<glm::dvec3>* points = nullptr;
 };
 
-/// The fields that a layer of this region and effect has, in the order they are written. Valid
-/// while neither is replaced.
+/// Returns the fields of a layer with this region and effect, in the order in which they are
+/// written. The pointers are valid until the region or the effect is replaced.
 [[nodiscard]] std::vector<LayerField> fields(LightLayer& layer);
 
-/// A field's numbers: 1, 3, or 3 per point; a flag is 0 or 1.
+/// Returns a field's numbers: 1 number, 3 numbers, or 3 per point. A flag is 0 or 1.
 [[nodiscard]] std::vector<double> values(const LayerField& field);
 
-/// Sets a field from as many numbers as values() has (points: any multiple of 3).
+/// Sets a field from as many numbers as values() returns. Points take any multiple of 3.
 void set_values(const LayerField& field, std::span<const double> numbers);
 
-/// "disc", "rectangle", "lasso", "stroke".
+/// Returns "disc", "rectangle", "lasso" or "stroke".
 [[nodiscard]] std::string_view type_name(const Region& region);
-/// "emit", "gain", "image".
+/// Returns "emit", "gain" or "image".
 [[nodiscard]] std::string_view effect_name(const Effect& effect);
 
 } // namespace relumine::cubemap

@@ -89,7 +89,7 @@ private:
         return result;
     }
 
-    /// The kind that a name stands for: variants are listed in the order of their names.
+    /// Returns the kind with a name. Kinds have the order of the names.
     template<typename Variant, std::size_t N>
     Variant kind(const files::JsonValue& value, std::string_view what,
                  const std::array<Variant, N>& kinds,
@@ -118,7 +118,7 @@ private:
             patch.blend = text == "add" ? ImagePatch::Blend::Add : ImagePatch::Blend::Replace;
         }
         try {
-            patch.picture = load_picture(path_.parent_path() / patch.path);
+            patch.picture = load_image_pyramid(path_.parent_path() / patch.path);
         } catch (const std::runtime_error& error) {
             json_.refuse(path.line, "a picture", error.what());
         }
@@ -186,7 +186,7 @@ private:
         return result;
     }
 
-    /// Adds one layer's values at a key frame, and refuses those that no layer may have.
+    /// Adds one layer's values at a key frame. Refuses values that no layer may have.
     void keyed_layer(LightLayer layer, const files::JsonValue& changes, const LightLayers& before,
                      KeyFrame& result) const {
         std::vector<std::string_view> names;

@@ -1,4 +1,4 @@
-// Light layers written as JSON.
+// Writes light layers as JSON.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -20,8 +20,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The shortest decimal that reads back as the same float, rather than the float's many digits as a
-/// double.
+/// Returns the shortest decimal that reads back as the same float. As a double, the float would
+/// have many digits.
 double shortest(float value) {
     std::array<char, 32> text;
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;

@@ -17,11 +17,11 @@ namespace relumine::cubemap {
 namespace {
 
 constexpr double DegreesPerRadian = 180.0 / std::numbers::pi;
-/// Degrees from the mean
+/// In degrees from the mean.
 constexpr double LargestLassoAngle = 89.9;
 constexpr double LargestGainEv = 100.0;
 
-/// Angle between unit vectors in degrees, accurate near 0 and 180 as well.
+/// Returns the angle between unit vectors in degrees. It is accurate near 0 and 180 too.
 double angle_degrees(const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * DegreesPerRadian;
 }
@@ -35,14 +35,14 @@ std::string text(const glm::dvec3& v) {
 }
 
 void check_direction(std::string_view what, const glm::dvec3& direction) {
-    // The square must be finite and above 0 too, or it could not be normalised.
+    // The square must also be finite and above 0, or normalising would fail.
     const double squared = glm::dot(direction, direction);
     if (!(squared > 0.0) || !std::isfinite(squared) || !std::isnormal(squared))
         refuse(what, "of finite length above 0", text(direction));
 }
 
-/// A star. Coverage of texels is found by cutting them until a shape is not small any more, which
-/// for no size at all has no end.
+/// The size of a star. Texels are quartered until the shape is not small any more. For a shape
+/// without size this would never end.
 constexpr double SmallestSize = 1e-4;
 
 void check_size(std::string_view what, double degrees, double up_to) {
@@ -136,7 +136,7 @@ struct CheckEffect {
             refuse("an image", "on a rectangle", "another region");
         if (!patch.picture)
             refuse("an image", "with its picture loaded", "none");
-        // The last level is the mean; no need to walk over all pixels for every edit.
+        // The last level is the mean, so edits need not visit all pixels.
         check_colour("the picture's mean radiance", patch.picture->levels().back().pixels.front(),
                      scale);
     }
@@ -153,7 +153,7 @@ struct BoundingCone {
                 std::atan(std::hypot(x, y)) * DegreesPerRadian};
     }
     Cone operator()(const Lasso& lasso) const {
-        // A cap below a hemisphere that holds the corners holds the edges too.
+        // A cap smaller than a hemisphere that holds the corners holds the edges too.
         return around(lasso.points, 0.0);
     }
     Cone operator()(const Stroke& stroke) const {
@@ -161,7 +161,7 @@ struct BoundingCone {
         for (std::size_t i = 0; i + 1 < stroke.points.size(); ++i)
             longest = std::max(longest, angle_degrees(glm::normalize(stroke.points[i]),
                                                       glm::normalize(stroke.points[i + 1])));
-        // No point of an arc is further from its nearer end than half its length.
+        // A point of an arc is at most half the arc's length from its nearer end.
         const Cone cap = around(stroke.points, 0.0);
         return {cap.axis,
                 std::min(180.0, (cap.radius_degrees < 90.0 ? cap.radius_degrees

@@ -11,7 +11,7 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// A hard edge is a ramp this narrow, as a part of the size: far below a texel, far above rounding.
+/// Width of a hard edge's ramp relative to the size: far below a texel, far above rounding.
 constexpr double HardEdge = 1e-9;
 
 double radians(double degrees) {
@@ -22,11 +22,11 @@ double chord(double degrees) {
     return 2.0 * std::sin(0.5 * radians(degrees));
 }
 
-double squared_length(const glm::dvec3& v) {
-    return glm::dot(v, v);
+double squared_distance(const glm::dvec3& a, const glm::dvec3& b) {
+    return glm::dot(a - b, a - b);
 }
 
-/// 1 / (outer^2 - inner^2): the ramp of a disc runs in squared chords, that is in cosines.
+/// Returns 1 / (outer^2 - inner^2). The ramp of a disc is linear in squared chords, so in cosines.
 double inverse_band(double outer, double inner) {
     return 1.0 / std::max((outer - inner) * (outer + inner), HardEdge * outer * outer);
 }
@@ -78,7 +78,7 @@ DiscShape::DiscShape(const Disc& disc)
       inverse_band_(inverse_band(outer_, inner_)), smallest_feature_(outer_ / 64.0) {}
 
 Overlap DiscShape::bound(const glm::dvec3& w, double chord_radius) const {
-    const double squared = squared_length(w - axis_);
+    const double squared = squared_distance(w, axis_);
     const double reach = outer_ + chord_radius;
     if (squared >= reach * reach)
         return Overlap::None;
@@ -87,13 +87,13 @@ Overlap DiscShape::bound(const glm::dvec3& w, double chord_radius) const {
 }
 
 std::array<double, 1> DiscShape::ramps(const glm::dvec3& w) const {
-    return {(squared_outer_ - squared_length(w - axis_)) * inverse_band_};
+    return {(squared_outer_ - squared_distance(w, axis_)) * inverse_band_};
 }
 
 RectangleShape::RectangleShape(const Rectangle& rectangle)
     : forward_(glm::normalize(rectangle.direction)) {
-    // Right and up as seen from the centre; straight above and below as the cube faces +Y and -Y
-    // lie.
+    // Right and up as seen from the centre. Straight above and below, they are as in the cube faces
+    // +Y and -Y.
     glm::dvec3 right = glm::cross(forward_, glm::dvec3(0.0, 1.0, 0.0));
     const double length = glm::length(right);
     right = length > 1e-9 ? right / length : glm::dvec3(1.0, 0.0, 0.0);
@@ -195,7 +195,8 @@ Overlap LassoRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const 
     if (away >= chord_radius)
         return Overlap::None;
     const double reach = size_.band + chord_radius;
-    // A little more than needed, so that rounding cannot make a cell deep inside one at the edge.
+    // The limit is a little larger than needed. So rounding cannot make a square deep inside look
+    // like one at the edge.
     const double distance = std::sqrt(outline_.squared_distance(w, 1.001 * reach * reach));
     return bound_of_depth(inside(w) ? distance : -distance, size_.band, chord_radius);
 }
@@ -208,8 +209,8 @@ std::array<double, 1> LassoRamps<Arcs>::ramps(const glm::dvec3& w) const {
 
 template<typename Arcs>
 bool LassoRamps<Arcs>::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
-    // Corners are where two edges come near; below 1/64 of the size what they hide is below 1/4096.
-    // Cells of more than 1/16 may have a sample beyond a corner that lies outside the cell.
+    // At a corner two edges come near. Below 1/64 of the size, a corner hides less than 1/4096. In
+    // squares of more than 1/16 a sample may see a corner that lies outside the square.
     return chord_radius > size_.extent / 64.0 &&
            (chord_radius > size_.extent / 16.0 || outline_.several_within(w, chord_radius));
 }
@@ -219,7 +220,7 @@ LassoRamps<NearArcs> LassoRamps<Arcs>::within(const glm::dvec3& w, double chord_
     const NearArcs outline(outline_, w, chord_radius);
     LassoRamps<NearArcs> result(plane_, size_, outline);
     result.side_ = side_;
-    // A ball that the outline does not meet lies on one side of it. A margin for rounding.
+    // A ball that the outline does not meet lies on one side of it. The margin is for rounding.
     if (!side_ && outline.distance() > 1.000001 * chord_radius + 1e-9)
         result.side_ = inside(w);
     return result;

@@ -1,14 +1,16 @@
-// Regions of light layers made ready for many questions: axes, squared chords and trees, computed
+// Regions of light layers, prepared for many questions: axes, squared chords and trees are computed
 // once.
 //
-// A shape answers two questions without arctangents. bound(): is a ball around a direction outside,
-// in the flat part, or neither? All distances are chords, so that the triangle inequality holds.
-// ramps(): the coverage at a direction is the product of smoothsteps of these numbers (0 and less:
-// none, 1 and more: all), which are nearly linear over a small cell.
+// A shape answers two questions without arctangents.
+// - bound(): is a ball around a direction outside the region, in its flat part, or neither? All
+//   distances are chords, so the triangle inequality holds.
+// - ramps(): numbers that are nearly linear over a small square. Coverage is the product of their
+//   smoothsteps: 0 or less is none, 1 or more is all.
 //
-// within() gives a shape that answers the same for directions within a chord of a unit direction,
-// bit by bit, but looks only at what of the region matters there: who halves blocks of texels
-// narrows the shape on the way down.
+// within() narrows a shape to the directions within a chord of a unit direction. For these
+// directions the narrowed shape gives the same answers, bit by bit, but looks only at the part of
+// the region that matters there. Code that halves blocks of texels narrows the shape on the way
+// down.
 #pragma once
 
 #include <array>
@@ -24,31 +26,35 @@
 
 namespace relumine::cubemap {
 
+/// How a region meets a set of directions: outside, partly or unknown, in its flat part.
 enum class Overlap { None, Part, All };
 
+/// A Disc. The other shapes have the same functions.
 class DiscShape {
 public:
     static constexpr std::size_t NumRamps = 1;
-    /// 1 at a cell's corners means 1 all over it
+    /// True if a ramp of 1 at a square's corners is 1 all over the square.
     static constexpr bool HasConcaveRamps = false;
     explicit DiscShape(const Disc& disc);
 
-    /// Of all directions within a chord of a unit direction. None and All are certain, Part is not.
+    /// Returns how the region meets all directions within a chord of a unit direction. None and All
+    /// are certain, Part is not.
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
-    /// Whether ramp i may have a kink that samples within a chord do not show.
+    /// Returns true if ramp i may have a kink within a chord that samples there do not show.
     [[nodiscard]] static bool has_kink(std::size_t, const glm::dvec3&, double) { return false; }
-    /// Cells of this chord radius are small against the region's features.
+    /// Returns a chord radius at which a square is small against the region's features.
     [[nodiscard]] double smallest_feature() const { return smallest_feature_; }
     [[nodiscard]] const DiscShape& within(const glm::dvec3&, double) const { return *this; }
 
 private:
     glm::dvec3 axis_;
-    /// chords
+    /// Chords.
     double outer_, inner_;
     double squared_outer_, inverse_band_, smallest_feature_;
 };
 
+/// A Rectangle.
 class RectangleShape {
 public:
     static constexpr std::size_t NumRamps = 2;
@@ -61,9 +67,10 @@ public:
     [[nodiscard]] double smallest_feature() const { return smallest_feature_; }
     [[nodiscard]] const RectangleShape& within(const glm::dvec3&, double) const { return *this; }
 
-    /// Position in a picture that fills the rectangle, [0, 1]^2 from the top left, clamped to it.
+    /// Returns the position in a picture that fills the rectangle, in [0, 1]^2 from the top left.
+    /// Positions outside are clamped.
     [[nodiscard]] glm::dvec2 picture_position(const glm::dvec3& w) const;
-    /// Solid angle of a small part of the rectangle around w, over its part of the picture's area.
+    /// Returns the ratio of solid angle to picture area for a small part of the rectangle around w.
     [[nodiscard]] double solid_angle_of_picture(const glm::dvec3& w) const;
     [[nodiscard]] const glm::dvec2& half_sides() const { return half_; }
 
@@ -74,7 +81,7 @@ private:
     glm::dvec3 forward_, right_, up_;
     glm::dvec2 half_;
     std::array<Side, 2> sides_;
-    /// Less than the depth (cosine to the axis) anywhere in the rectangle
+    /// A bound below the depth (cosine to the axis) anywhere in the rectangle.
     double min_depth_;
     double smallest_feature_;
 };
@@ -83,22 +90,25 @@ private:
 struct LassoPlane {
     glm::dvec3 mean{0.0}, first{0.0}, second{0.0};
 };
+/// Lengths of a lasso as chords.
 struct LassoSize {
     double band = 0.0, extent = 0.0, smallest_feature = 0.0;
 };
+/// Lengths of a stroke.
 struct StrokeSize {
-    /// chords
+    /// Chords.
     double outer = 0.0, inner = 0.0;
     double squared_outer = 0.0, inverse_band = 0.0, smallest_feature = 0.0;
 };
 
-/// With all arcs of its outline (ArcTree), or with those that matter in a ball (NearArcs).
+/// A lasso with all arcs of its outline (ArcTree), or with the arcs that matter in a ball
+/// (NearArcs).
 template<typename Arcs>
 class LassoRamps {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    /// Only with ArcTree
+    /// Only for ArcTree.
     explicit LassoRamps(const Lasso& lasso);
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
@@ -117,7 +127,8 @@ private:
     LassoPlane plane_;
     LassoSize size_;
     Arcs outline_;
-    /// Of all directions that may be asked for, where the outline is not among them
+    /// True or false if all directions in the ball are inside or outside. Empty: the outline may
+    /// cross the ball.
     std::optional<bool> side_;
 };
 template<>
@@ -129,7 +140,7 @@ class StrokeRamps {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    /// Only with ArcTree
+    /// Only for ArcTree.
     explicit StrokeRamps(const Stroke& stroke);
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
@@ -154,10 +165,11 @@ using StrokeShape = StrokeRamps<ArcTree>;
 
 using RegionShape = std::variant<DiscShape, RectangleShape, LassoShape, StrokeShape>;
 
-/// Throws std::invalid_argument like validate().
+/// Prepares a region.
+/// Throws:  std::invalid_argument as validate() does.
 [[nodiscard]] RegionShape shape(const Region& region);
 
-/// From 0 at 0 to 1 at 1, level at both and beyond.
+/// Rises from 0 at t = 0 to 1 at t = 1, and is level at both ends and beyond.
 [[nodiscard]] double smoothstep(double t);
 
 } // namespace relumine::cubemap

@@ -1,18 +1,18 @@
-// Blocks of texels of a face, halved each way until they are texels.
+// Blocks of a face's texels, quartered until they are single texels.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
-#include "cubemap/layers/cell_coverage.h"
 #include "cubemap/layers/region_shape.h"
+#include "cubemap/layers/square_coverage.h"
 #include "cubemap/texel_rectangle.h"
 
 namespace relumine::cubemap {
 
-/// The texels of a block [x0, x0 + size) x [y0, y0 + size) that lie in the face; size is a power of
-/// two.
+/// The texels of a block [x0, x0 + size) x [y0, y0 + size) that lie in the face. The size is a
+/// power of two.
 struct TexelRange {
     TexelRange(std::uint32_t x, std::uint32_t y, std::uint32_t block_size, std::uint32_t resolution)
         : x0(x), y0(y), x1(std::min(x + block_size, resolution)),
@@ -27,7 +27,7 @@ struct TexelRange {
         const std::uint32_t half = size / 2;
         return {(i & 1) != 0 ? x0 + half : x0, (i & 2) != 0 ? y0 + half : y0, half, end};
     }
-    /// Cut, so not to be quartered.
+    /// Returns the part inside a rectangle. Do not quarter this part.
     [[nodiscard]] TexelRange within(const TexelRectangle& rectangle) const {
         TexelRange part = *this;
         part.x0 = std::max(x0, rectangle.x0);
@@ -44,10 +44,10 @@ struct FaceGrid {
         : face(which), plane(which), half_texel(1.0 / resolution) {}
     Face face;
     FacePlane plane;
-    /// On the plane of [-1, 1]^2
+    /// Half the width of a texel on the plane of [-1, 1]^2.
     double half_texel;
 
-    [[nodiscard]] Cell cell(std::uint32_t x, std::uint32_t y) const {
+    [[nodiscard]] FaceSquare square(std::uint32_t x, std::uint32_t y) const {
         return {(2 * x + 1) * half_texel - 1.0, (2 * y + 1) * half_texel - 1.0, half_texel};
     }
 };
@@ -66,14 +66,14 @@ struct BlockBall {
     double chord;
 };
 
-/// How a region meets the texels of a block. None and All are certain.
+/// Returns how a region meets the texels of a block. None and All are certain.
 template<typename Shape>
 [[nodiscard]] Overlap bound(const Shape& shape, const FaceGrid& grid, const TexelRange& range) {
     const BlockBall ball(grid, range);
     return shape.bound(ball.centre, ball.chord);
 }
 
-/// The region as it is within a block.
+/// Returns the shape narrowed to a block by within().
 template<typename Shape>
 [[nodiscard]] decltype(auto) narrowed(const Shape& shape, const FaceGrid& grid,
                                       const TexelRange& range) {

@@ -1,4 +1,5 @@
-// Which texels a layer can change: the same quartering and the same bounds as the composite's.
+// Finds the texels that a layer can change, with the same quartering and the same bounds as the
+// composite.
 #include <bit>
 #include <cstdint>
 #include <stdexcept>
@@ -13,14 +14,15 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Halvings of a face's rectangle, so at most 2^3 rectangles.
+/// Halvings of a face's rectangle, which give at most 2^3 rectangles.
 constexpr int MaxHalvings = 3;
-/// A halved rectangle must save this part of its area, or it is not worth its own pass.
+/// Two halves together must keep at most this part of the area, or halving is not worth an
+/// additional pass.
 constexpr double LargestKeptPart = 0.7;
-/// Texels along the sides of the smallest range looked at: a box may be a texel wider than it must
-/// be, and is found twice as fast.
+/// Texels along the sides of the smallest range examined. A box may be one texel wider than
+/// necessary, but is found twice as fast.
 constexpr std::uint32_t Finest = 2;
-/// Texels, one tile of the composite
+/// Texels of one tile of the composite.
 constexpr std::uint64_t SmallestToHalve = 1024;
 
 std::uint64_t area(const TexelRectangle& r) {
@@ -49,14 +51,14 @@ public:
     Touched(const Shape& shape, Face face, std::uint32_t resolution)
         : shape_(shape), grid_(face, resolution), resolution_(resolution) {}
 
-    /// The box of the touched texels within a rectangle; empty if there are none.
+    /// Returns the box of the touched texels within a rectangle. Empty if there are none.
     [[nodiscard]] TexelRectangle box(const TexelRectangle& within) const {
         TexelRectangle result{.face = within.face};
         grow(shape_, TexelRange(0, 0, std::bit_ceil(resolution_), resolution_), within, result);
         return result;
     }
 
-    /// Halves a box that is mostly untouched, again and again.
+    /// Halves a box repeatedly as long as it is mostly untouched.
     void split(const TexelRectangle& box_of_all, int halvings,
                std::vector<TexelRectangle>& result) const {
         if (halvings > 0 && area(box_of_all) > SmallestToHalve) {

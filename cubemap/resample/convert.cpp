@@ -44,7 +44,7 @@ std::uint32_t natural_resolution(const ImageShape& shape) {
     return cubemap::natural_resolution(image);
 }
 
-/// Pixel by pixel, where every target pixel lies on a source pixel.
+/// Copies pixel by pixel. Returns nothing unless every target pixel lies on a source pixel.
 std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const ImageShape& target,
                                        const Reorientation& reorientation) {
     if (has_faces(image.layout) != has_faces(target.layout) ||
@@ -52,7 +52,7 @@ std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const Imag
         image.sampling != target.sampling ||
         natural_resolution(target) != natural_resolution(shape_of(image)))
         return std::nullopt;
-    // A lat-long's poles with samples on the borders are one direction for a whole row.
+    // In a lat-long with samples on the borders, the whole row at a pole is one direction.
     if (image.layout == Layout::LatLong && image.sampling == Sampling::Borders &&
         reorientation.target_from_source() != glm::dmat3(1.0))
         return std::nullopt;
@@ -73,8 +73,8 @@ std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const Imag
     return complete ? std::optional(std::move(result)) : std::nullopt;
 }
 
-/// The cube map that holds a cube image exactly: cells with borders half a sample off are two
-/// texels wide.
+/// Returns the resolution of a cube map that holds a cube image exactly. With samples on the
+/// borders, cells are shifted by half a sample and become two texels wide.
 std::uint32_t exact_resolution(const ImageShape& shape) {
     const std::uint32_t faces = natural_resolution(shape);
     return shape.sampling == Sampling::Borders && faces > 1 ? 2 * (faces - 1) : faces;
@@ -93,8 +93,8 @@ CubeMap reoriented(const CubeMap& map, const Reorientation& reorientation) {
     return turned(world, glm::transpose(reorientation.world_from_target));
 }
 
-/// The resolution of the cube map on the way: a cube's own, else fine enough to add no blur that
-/// matters.
+/// Returns the resolution of the cube map between source and target: the resolution of a layout
+/// with faces, otherwise one fine enough that its blur does not matter.
 std::uint32_t resolution_between(const ImageShape& source, const ImageShape& target) {
     if (has_faces(source.layout))
         return exact_resolution(source);
@@ -105,12 +105,12 @@ std::uint32_t resolution_between(const ImageShape& source, const ImageShape& tar
                     std::max({Finest, natural_resolution(source), natural_resolution(target)}));
 }
 
-/// Averaging from one shape to another and back.
+/// Averages from one shape to another and back.
 class Path {
 public:
     Path(const ImageShape& source, const ImageShape& target, const Reorientation& reorientation)
         : source_(source), target_(target), reorientation_(reorientation) {}
-    /// Each target pixel is the mean over its patch.
+    /// Each target pixel is the mean over its footprint.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
         return averaged(image, source_, target_, reorientation_);
     }
@@ -129,19 +129,19 @@ private:
         return to_image(map, to.layout, to.width, to.height, to.sampling);
     }
 
-    /// Straight into the cube's cells, wherever their samples lie.
+    /// Averages directly into the cube's squares, for either sampling.
     [[nodiscard]] static EnvironmentImage faces_from_lat_long(const EnvironmentImage& image,
                                                               const ImageShape& target,
                                                               const Reorientation& reorientation) {
-        const FaceCells cells(target.layout, target.width, target.height);
+        const FaceSquares squares(target.layout, target.width, target.height);
         const CubeMap map =
-            turned(detail::cube_from_lat_long(image, cells.resolution(), target.sampling),
+            turned(detail::cube_from_lat_long(image, squares.resolution(), target.sampling),
                    reorientation.target_from_source());
         EnvironmentImage result = empty_image(target);
         for (const Face face : AllFaces) {
             for (std::uint32_t y = 0; y < map.resolution; ++y) {
                 for (std::uint32_t x = 0; x < map.resolution; ++x)
-                    result.pixels[cells.pixel(face, x, y)] = map.at(face, x, y);
+                    result.pixels[squares.pixel(face, x, y)] = map.at(face, x, y);
             }
         }
         return result;
@@ -151,12 +151,12 @@ private:
     Reorientation reorientation_;
 };
 
-/// Bilinear over the sphere, at four points of each pixel: a smooth start that keeps energy only
-/// roughly.
+/// Interpolates bilinearly over the sphere at four points of each pixel. The result is a smooth
+/// start that keeps energy only roughly.
 EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& target,
                               const Reorientation& reorientation) {
-    // A lat-long's pixels are narrower than the texels of its natural resolution in the middle of a
-    // face.
+    // In the middle of a face, a lat-long's pixels are narrower than the texels of its natural
+    // resolution.
     const std::uint32_t natural = natural_resolution(shape_of(image));
     const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
     const CubeMap source = resample(image, coarse);
@@ -173,17 +173,18 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
 
 using Pixels = std::vector<glm::vec3>;
 
-/// Multiplies `grown` by what `back(grown)` lacks of the image, spread over the patches by `forth`
-/// (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, nothing becomes
-/// negative, and a constant stays as it is. Differs from them: rounds start further along the way
-/// of the last one (Nesterov 1983; Biggs and Andrews 1997 for this iteration), which takes a
-/// fraction of the rounds. What is returned is the end of a round, so the power is exact all the
-/// same.
+/// Multiplies `grown` by the ratio of the image to `back(grown)`, spread over the footprints by
+/// `forth` (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, makes
+/// nothing negative, and leaves a constant as it is.
+///
+/// Differs from them: a round starts beyond the end of the last one, in the same direction
+/// (Nesterov 1983; Biggs and Andrews 1997 for this iteration). This takes a fraction of the rounds.
+/// The result is the end of a round, so the power is still exact.
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
              Pixels& grown) {
-    // The product never leaves zero, where the interpolation may have missed a part of a wide
-    // pixel.
+    // A product never leaves zero, and the interpolation may have missed a part of a wide pixel. So
+    // pixels of zero start from the mean.
     const Pixels means = forth(image);
     for (std::size_t i = 0; i < grown.size(); ++i) {
         for (int channel = 0; channel < 3; ++channel) {
@@ -194,7 +195,8 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
     Pixels start = grown;
     double last_difference = std::numeric_limits<double>::infinity(),
            earlier_difference = last_difference;
-    int run = 0; // rounds since the way was straight from the start
+    // Rounds since the last restart.
+    int run = 0;
     for (int round = 0; round < num_rounds; ++round) {
         Pixels ratio = back(start);
         double difference = 0.0, sum = 0.0;
@@ -207,15 +209,15 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
             }
         }
         const Pixels factor = forth(ratio);
-        // Gone too far: the way starts anew.
+        // The difference rose, so the step was too long: restart.
         run = difference > last_difference ? 0 : run + 1;
         last_difference = difference;
-        // Wedges narrower than the target's pixels are never told apart: then the difference stops
-        // falling.
-        constexpr int Patience =
-            20; // rounds, to fall by a fiftieth: restarts make it wave for some ten rounds
-        // A tenth of what irradiance may lose; more rounds make specks of the pixels around poles
-        // and rims.
+        // Wedges narrower than the target's pixels cannot be told apart. The difference then stops
+        // falling: it must fall by a fiftieth in Patience rounds. Restarts make it wave for some
+        // ten rounds.
+        constexpr int Patience = 20;
+        // Enough is a tenth of the error that irradiance may have. More rounds would turn pixels
+        // around poles and rims into specks.
         constexpr double Enough = 1e-4, Falling = 0.98;
         bool is_last = difference <= Enough * sum;
         if (round % Patience == 0) {
@@ -224,8 +226,9 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         }
         const float further =
             run > 0 ? static_cast<float>(run - 1) / static_cast<float>(run + 2) : 0.0f;
-        constexpr float Least =
-            0.25f; // of a pixel: the next round multiplies, so it must not come near zero
+        // Least value relative to the pixel. The next round multiplies, so a value must not come
+        // near zero.
+        constexpr float Least = 0.25f;
         for (std::size_t i = 0; i < grown.size(); ++i) {
             const glm::vec3 end = start[i] * factor[i];
             start[i] = glm::max(end + further * (end - grown[i]), Least * end);
@@ -240,7 +243,7 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
                        const Reorientation& reorientation) {
     const ImageShape source = shape_of(image);
     EnvironmentImage result = interpolated(image, target, reorientation);
-    // In pictures this large no sun is lost in a pixel any more, and the links would take
+    // In pictures this large a sun is never smaller than a pixel, and the links would take
     // gigabytes.
     constexpr std::size_t Large = std::size_t{1} << 22;
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
@@ -260,7 +263,7 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
     const PixelLinks links(
         source, target, reorientation.target_from_source(), resolution_between(source, target),
         has_faces(source.layout) ? PixelLinks::Axes::Source : PixelLinks::Axes::Target);
-    constexpr int MostRounds = 200; // a sun in a disc's rim takes most of them
+    constexpr int MostRounds = 200; // a sun in a disc's rim needs most of them
     correct(
         image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
         [&](const Pixels& pixels) { return links.to_source(pixels); }, MostRounds, result.pixels);
@@ -284,7 +287,7 @@ EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target
                                                 name(target.layout), target.width, target.height));
     if (auto copy = copied(image, target, reorientation))
         return std::move(*copy);
-    // At about the same size there is nothing to make smooth, and hardly room for corrections.
+    // At about the same size there is nothing to smooth and hardly any room for corrections.
     const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(shape_of(image));
     EnvironmentImage result = grows ? grown(image, target, reorientation)
                                     : Path(shape_of(image), target, reorientation).forth(image);
@@ -298,10 +301,10 @@ ImageSize conversion_size(const EnvironmentImage& image, Layout target) {
         return {image.width, image.height};
     if (has_faces(target) && has_faces(image.layout))
         return natural_size(target, natural);
-    // The rim pixels of a disc are long wedges that meet in a point: it takes finer pixels to tell
-    // them apart.
+    // The rim pixels of a disc are long wedges that meet in a point. Only finer pixels tell them
+    // apart.
     const bool is_disc = image.layout == Layout::AngularMap || image.layout == Layout::MirrorBall;
-    // An octahedral map's are longish where the rim of an angular map points.
+    // An octahedral map has elongated pixels where the rim of an angular map points.
     const std::uint32_t roomy = !is_disc ? 256 : target == Layout::Octahedral ? 640 : 512;
     return natural_size(target, std::max(natural, roomy));
 }

@@ -1,5 +1,4 @@
-// Environment images from one layout to another: turned as asked, with the energy of every pixel
-// kept.
+// Conversion of environment images between layouts. The energy of every pixel is kept.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -9,40 +8,45 @@
 
 namespace relumine::cubemap {
 
-/// From the directions of an image to those of another: both have axes of their own in the world.
+/// The turn from the directions of one image to the directions of another. Both images have their
+/// own axes in the world.
 struct Reorientation {
-    /// Carries axes to axes
+    /// Carries axes to axes. Applied first.
     glm::dmat3 world_from_source = glm::dmat3(1.0);
-    /// Then turned about the world's +Y, as rotated() does
+    /// Turn about the world's +Y, as in rotated(). Applied second.
     double degrees_about_y = 0.0;
-    /// Carries axes to axes
+    /// Carries axes to axes. Its inverse is applied last.
     glm::dmat3 world_from_target = glm::dmat3(1.0);
 
+    /// Returns the matrix of the whole turn.
     [[nodiscard]] glm::dmat3 target_from_source() const;
+    /// Returns the turn back.
     [[nodiscard]] Reorientation inverse() const;
 };
 
-/// The image in another layout, size and sampling.
+/// Returns the image in another layout, size and sampling.
 ///
-/// - Where each target pixel shows one source pixel (the faces of a cube in another arrangement, a
-/// lat-long turned by whole pixels) pixels
-///   are copied bit by bit.
-/// - What shrinks is averaged over area: each target pixel is the mean of the source's patches
-/// under it.
-/// - What grows (in natural resolution) is interpolated smoothly across all seams and then
-/// corrected, so that the mean over each source pixel's patch is nearly
-///   that pixel again and shrinking it back gives the source: with samples never negative,
-///   constants constant, total power kept.
+/// - Pixels are copied bit by bit where each target pixel shows one source pixel: the faces of a
+///   cube in another arrangement, a lat-long turned by whole pixels.
+/// - An image that shrinks is averaged over area: each target pixel is the mean of the source's
+///   footprints under it.
+/// - An image that grows (in natural resolution) is interpolated smoothly across all seams and then
+///   corrected: the mean over each source pixel's footprint is nearly that pixel again, so
+///   shrinking the image back gives the source. Samples are never negative, constants stay
+///   constant, and total power is kept.
 ///
-/// Bitwise independent of the thread count. Throws std::invalid_argument for sizes that do not fit
-/// the layout.
+/// Throws:  std::invalid_argument for sizes that do not fit the layout.
+/// Threads: parallel (TBB); the result is bitwise independent of the number of threads.
 [[nodiscard]] EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
                                        const Reorientation& reorientation = {});
 
-/// The size of a converted image whose size nobody asked for: as fine as the image, but at least as
-/// fine as 6 x 256 x 256, and where the image is a disc, as 6 x 512 x 512 (to octahedral maps:
-/// 640). In smaller maps a pixel is so wide that a sun in it would move when the sphere is cut up
-/// differently; with that much room it comes back where it was. Copies keep their size.
+/// Returns the size of a converted image for which the user gave no size. The result is as fine as
+/// the image, and at least as fine as 6 x 256 x 256. Images of a disc get at least 6 x 512 x 512
+/// (octahedral targets: 640).
+///
+/// The reason for the least size: in a small map a pixel is wide, and a sun in it would move when
+/// the sphere is divided in another way. With this much room the sun comes back to its place.
+/// Copies keep the size of their source.
 [[nodiscard]] ImageSize conversion_size(const EnvironmentImage& image, Layout target);
 
 } // namespace relumine::cubemap

@@ -13,7 +13,7 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// The pixels over each texel of a cube map, as parts of the texel that add up to 1.
+/// The pixels over each texel of a cube map. Each has a part of the texel; the parts add up to 1.
 class TexelPixels {
 public:
     TexelPixels(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution)
@@ -60,7 +60,7 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
     const TexelPixels over(source, as_source ? glm::dmat3(1.0) : target_from_source, resolution);
     const std::size_t num_pixels = static_cast<std::size_t>(target.width) * target.height;
 
-    // Rows of faces do not come in the order of pixels, so where a pixel's links lie is noted
+    // Rows of faces do not come in the order of pixels. So the place of each pixel's links is noted
     // first.
     struct Range {
         std::size_t begin = 0, end = 0;

@@ -1,5 +1,5 @@
-// Which pixels of one image lie on which of another one, and how much: found once, to average there
-// and back as often as one likes.
+// Overlaps of the pixels of two images. They are found once and then average pixels in both
+// directions, as often as needed.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,21 @@
 
 namespace relumine::cubemap {
 
-/// Overlaps of two images' pixels, by way of a cube map of a resolution in the source's directions
-/// or in the target's: within a texel everything is taken as mixed. Some 12 bytes per pair of
-/// pixels; more while it is made.
+/// The overlaps of two images' pixels, found by way of a cube map. The cube map has the given
+/// resolution and lies along the axes of the source or of the target. Pixels that meet in one texel
+/// are taken as mixed all over the texel.
+///
+/// Memory:  about 12 bytes per pair of pixels, and more during construction.
 class PixelLinks {
 public:
     enum class Axes { Source, Target };
     PixelLinks(const ImageShape& source, const ImageShape& target,
                const glm::dmat3& target_from_source, std::uint32_t resolution, Axes axes);
 
-    /// Each pixel of the target the mean over its patch; `pixels` are the source's. Pixels that
+    /// Averages the source's `pixels` over the footprint of each target pixel. Target pixels that
     /// show nothing are black.
     [[nodiscard]] std::vector<glm::vec3> to_target(const std::vector<glm::vec3>& pixels) const;
-    /// Each pixel of the source the mean over its patch; `pixels` are the target's.
+    /// Averages the target's `pixels` over the footprint of each source pixel.
     [[nodiscard]] std::vector<glm::vec3> to_source(const std::vector<glm::vec3>& pixels) const;
 
 private:
@@ -33,7 +35,7 @@ private:
     std::vector<std::size_t> starts_;
     std::vector<std::uint32_t> sources_;
     std::vector<double> solid_angles_;
-    /// Sums per source pixel
+    /// Sum of the links' solid angles, per source pixel.
     std::vector<double> source_angles_;
 };
 

@@ -1,4 +1,4 @@
-// Points inside the pixels of an image, to sample something smooth at.
+// Points inside the pixels of an image, for sampling a smooth function.
 #pragma once
 
 #include <array>
@@ -19,18 +19,18 @@
 
 namespace relumine::cubemap {
 
-/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel with the unit directions of
-/// up to four points of each pixel that shows something at them: a quarter of its sides from its
-/// corners.
+/// Calls `visit(pixel_index, std::span<const glm::dvec3>)` in parallel for each pixel that shows
+/// something. The span holds the unit directions of up to four points of the pixel. The points lie
+/// a quarter of a side away from the pixel's sides.
 template<typename Visit>
 void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
     const bool faces = has_faces(shape.layout);
     const Projection* const picture = projection(shape.layout);
-    std::optional<FaceCells> cells;
+    std::optional<FaceSquares> squares;
     if (faces)
-        cells.emplace(shape.layout, shape.width, shape.height);
-    const std::uint32_t width = faces ? cells->resolution() : shape.width,
-                        height = faces ? cells->resolution() : shape.height;
+        squares.emplace(shape.layout, shape.width, shape.height);
+    const std::uint32_t width = faces ? squares->resolution() : shape.width,
+                        height = faces ? squares->resolution() : shape.height;
     const std::vector<double> columns = cell_borders(width, shape.sampling),
                               rows = cell_borders(height, shape.sampling);
     const auto visit_pixel = [&](std::size_t pixel, std::uint32_t x, std::uint32_t y,
@@ -55,7 +55,7 @@ void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
             if (faces) {
                 for (const Face face : AllFaces) {
                     for (std::uint32_t x = 0; x < width; ++x)
-                        visit_pixel(cells->pixel(face, x, y), x, y, [&](const glm::dvec2& point) {
+                        visit_pixel(squares->pixel(face, x, y), x, y, [&](const glm::dvec2& point) {
                             return direction(face, point.x, point.y);
                         });
                 }

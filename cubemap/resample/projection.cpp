@@ -12,7 +12,7 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// From the middle, to the right and up.
+/// Returns the position relative to the middle, to the right and up.
 glm::dvec2 from_middle(const glm::dvec2& point) {
     return {point.x - 0.5, 0.5 - point.y};
 }
@@ -20,8 +20,8 @@ glm::dvec2 to_point(const glm::dvec2& from_middle) {
     return {0.5 + from_middle.x, 0.5 - from_middle.y};
 }
 
-/// Debevec's light probes: the middle is -Z, the angle from there grows with the distance, the rim
-/// is +Z. Right is +X, up is +Y.
+/// Debevec's light probes. The middle is -Z; the angle from -Z grows with the distance from the
+/// middle; the rim is +Z. Right is +X, up is +Y.
 ///     angle = 2 pi rho,  rho = |(x, y)| <= 1/2
 ///     direction = (sin(angle) x / rho, sin(angle) y / rho, -cos(angle))
 class AngularMap : public Projection {
@@ -50,11 +50,11 @@ public:
     [[nodiscard]] bool is_mirrored() const override { return false; }
 };
 
-/// A mirror ball seen from far away along -Z: the middle reflects +Z, the camera, and the rim -Z,
-/// what is behind the ball. With the ball's normal n = (2x, 2y, sqrt(1 - 4 rho^2)) the direction is
-/// the reflection of the line of sight,
+/// A mirror ball seen from far away along -Z. The middle reflects +Z, the camera; the rim reflects
+/// -Z, the world behind the ball. The ball's normal is n = (2x, 2y, sqrt(1 - 4 rho^2)). The
+/// direction is the reflection of the line of sight:
 ///     direction = (2 n.z n.x, 2 n.z n.y, 2 n.z^2 - 1)
-/// which shows equal solid angles as equal areas: dw = 16 dA.
+/// Equal solid angles have equal areas: dw = 16 dA.
 class MirrorBall : public Projection {
 public:
     [[nodiscard]] glm::dvec3 direction(const glm::dvec2& point) const override {
@@ -64,7 +64,7 @@ public:
         return {scale * n.x, scale * n.y, 2.0 * squared - 1.0};
     }
     [[nodiscard]] glm::dvec2 point(const glm::dvec3& w) const override {
-        // n is half way between the direction and +Z; near the rim 1 + z would lose its digits.
+        // n is half way between the direction and +Z. Near the rim 1 + z would lose its digits.
         const double across = std::hypot(w.x, w.y);
         if (across == 0.0)
             return to_point({w.z > 0.0 ? 0.0 : 0.5, 0.0});
@@ -77,8 +77,8 @@ public:
 };
 
 /// The equal-area octahedral map of pbrt-v4 (Clarberg: Fast Equal-Area Mapping of the (Hemi)Sphere
-/// using SIMD, 2008), with pbrt's Z up: the middle is +Y, the corners are -Y, right is +X and down
-/// is -Z. The square inside |u| + |v| = 1 is the upper half-sphere.
+/// using SIMD, 2008), with pbrt's Z up. The middle is +Y, the corners are -Y, right is +X and down
+/// is -Z. The square |u| + |v| <= 1 is the upper half-sphere.
 ///     r = 1 - |1 - |u| - |v||,  angle = pi/4 ((|v| - |u|) / r + 1),
 ///     height = +-(1 - r^2),  horizontal radius = r sqrt(2 - r^2);  dw = 4 pi dA
 class Octahedral : public Projection {
@@ -94,7 +94,7 @@ public:
     }
     [[nodiscard]] glm::dvec2 point(const glm::dvec3& w) const override {
         const double x = std::abs(w.x), down = std::abs(w.z), across = std::hypot(x, down);
-        // sqrt(1 - |y|) without cancellation.
+        // This is sqrt(1 - |y|) without cancellation.
         const double r = across / std::sqrt(1.0 + std::abs(w.y));
         const double share = across == 0.0 ? 0.5 : std::atan2(down, x) * 2.0 / Pi;
         glm::dvec2 p(r * (1.0 - share), r * share);

@@ -9,7 +9,7 @@
 #include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
-#include "cubemap/resample/lat_long_patch.h"
+#include "cubemap/resample/lat_long_footprint.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resample_projection.h"
 #include "cubemap/spherical_overlap.h"
@@ -18,13 +18,13 @@ namespace relumine::cubemap {
 
 namespace {
 
-/// Part of a source cell under a destination cell, [begin, end] in [0, 1].
+/// The part [begin, end], in [0, 1], of a source cell under a destination cell.
 struct Overlap {
     std::uint32_t source;
     double begin, end;
 };
 
-/// For each destination cell the source cells under it.
+/// Returns the source cells under each destination cell.
 std::vector<std::vector<Overlap>> overlaps(const std::vector<double>& source,
                                            const std::vector<double>& destination) {
     std::vector<std::vector<Overlap>> found(destination.size() - 1);
@@ -39,10 +39,10 @@ std::vector<std::vector<Overlap>> overlaps(const std::vector<double>& source,
     return found;
 }
 
-/// solid_angle(), faster for the small rectangles that there are millions of.
+/// As solid_angle(), but faster for small rectangles. There are millions of them.
 double small_solid_angle(const Overlap& x, const Overlap& y) {
     const double width = 2.0 * (x.end - x.begin), height = 2.0 * (y.end - y.begin);
-    // The midpoint rule with its second-order term is good to 0.023 h^4 relative: 3e-8 here.
+    // The midpoint rule with its second-order term has a relative error of 0.023 h^4: 3e-8 here.
     constexpr double Small = 1.0 / 32.0;
     if (width > Small || height > Small)
         return solid_angle(x.begin, y.begin, x.end, y.end);
@@ -55,8 +55,8 @@ double small_solid_angle(const Overlap& x, const Overlap& y) {
                 24.0);
 }
 
-/// Six faces to six faces where all cells are rectangles of the same face. `source_of(face, x, y)`
-/// reads, `write(face, x, y, radiance)` writes.
+/// Resamples six faces to six faces if all cells are rectangles of the same face. `source_of(face,
+/// x, y)` reads, `write(face, x, y, radiance)` writes.
 template<typename SourceOf, typename Write>
 void resample_faces(const std::vector<double>& source_borders,
                     const std::vector<double>& destination_borders, const SourceOf& source_of,
@@ -95,17 +95,17 @@ void check(const EnvironmentImage& image) {
                         image.width, image.height, image.pixels.size()));
 }
 
-/// A map's lat-long picture: every pixel gathers the texels under its patch.
+/// Fills a lat-long picture. Every pixel is the mean of the texels under its footprint.
 void fill_lat_long(const CubeMap& map, EnvironmentImage& image) {
     const ImageShape shape{image.layout, image.sampling, image.width, image.height};
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& range) {
-        LatLongPatches patches(shape);
+        LatLongFootprints footprints(shape);
         TexelOverlaps overlaps(map.resolution);
         for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
             for (std::uint32_t x = 0; x < image.width; ++x) {
                 glm::dvec3 sum(0.0);
                 double weights = 0.0;
-                patches.visit(x, y, [&](std::span<const glm::dvec3> corners) {
+                footprints.visit(x, y, [&](std::span<const glm::dvec3> corners) {
                     overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
                                                double weight) {
                         sum += glm::dvec3(map.at(face, column, row)) * weight;
@@ -127,12 +127,12 @@ CubeMap resample(const EnvironmentImage& image, std::uint32_t resolution) {
     if (!has_faces(image.layout))
         return detail::cube_from_projection(image, resolution);
     CubeMap map(resolution);
-    const FaceCells cells(image.layout, image.width, image.height);
+    const FaceSquares squares(image.layout, image.width, image.height);
     resample_faces(
-        cell_borders(cells.resolution(), image.sampling),
+        cell_borders(squares.resolution(), image.sampling),
         cell_borders(resolution, Sampling::TexelCentres),
         [&](Face face, std::uint32_t x, std::uint32_t y) {
-            return image.pixels[cells.pixel(face, x, y)];
+            return image.pixels[squares.pixel(face, x, y)];
         },
         [&](Face face, std::uint32_t x, std::uint32_t y, const glm::vec3& radiance) {
             map.at(face, x, y) = radiance;
@@ -170,13 +170,13 @@ EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width
         detail::fill_projection(map, image);
         return image;
     }
-    const FaceCells cells(layout, width, height);
+    const FaceSquares squares(layout, width, height);
     resample_faces(
         cell_borders(map.resolution, Sampling::TexelCentres),
-        cell_borders(cells.resolution(), sampling),
+        cell_borders(squares.resolution(), sampling),
         [&](Face face, std::uint32_t x, std::uint32_t y) { return map.at(face, x, y); },
         [&](Face face, std::uint32_t x, std::uint32_t y, const glm::vec3& radiance) {
-            image.pixels[cells.pixel(face, x, y)] = radiance;
+            image.pixels[squares.pixel(face, x, y)] = radiance;
         });
     return image;
 }

@@ -2,9 +2,10 @@
 //
 // A direction of longitude l and polar angle p has the coordinates f = 1/2 - l / 2 pi (the image's
 // own x) and y = -cos p. By Archimedes' theorem the solid angle of a region is 2 pi times its area
-// there, and lat-long pixels are plain rectangles. A texel's four edges become curves, which are
-// replaced by chords; neighbouring texels share them, so the texels tile the plane and a pixel's
-// overlaps add up to the pixel exactly.
+// in this plane, and lat-long pixels are plain rectangles.
+//
+// A texel's four edges become curves; chords replace them. Neighbouring texels share the chords, so
+// the texels tile the plane, and the overlaps of a pixel add up to the pixel exactly.
 //
 //     face   f at (u, v)                     y
 //     +Z     1/2 + atan(u) / 2 pi            v / sqrt(1 + u^2 + v^2)
@@ -12,7 +13,7 @@
 //     +Y     1/2 - atan2(u, -v) / 2 pi       1 - cos p
 //     -Y     1/2 - atan2(u,  v) / 2 pi       -1 - cos p
 //
-// On +Y and -Y the height is measured from the pole, where it would lose all its digits otherwise.
+// On +Y and -Y the height is measured from the pole. Otherwise it would lose all its digits there.
 #include "cubemap/resample/resample_lat_long.h"
 
 #include <algorithm>
@@ -38,7 +39,7 @@ bool is_polar(Face face) {
     return face == Face::PositiveY || face == Face::NegativeY;
 }
 
-/// f of the middle of a side face.
+/// Returns f of the middle of a side face.
 double turn_of(Face face) {
     switch (face) {
     case Face::PositiveX:
@@ -54,10 +55,10 @@ double turn_of(Face face) {
 
 /// The texels of one row of a face as polygons in the plane of turns and heights.
 ///
-/// Edges are computed once and shared by the texels on both sides. An edge is one or a few chords,
-/// and a chord that would cut off too much gets a corner in its middle that makes the area under it
-/// exact (spherical excess of the triangle of edge and pole). So polygons have their texel's solid
-/// angle to a few 1e-6, whatever the resolution.
+/// Edges are computed once and shared by the texels on both sides. An edge is one or a few chords.
+/// A chord that would cut off too much gets a corner in its middle, which makes the area under the
+/// edge exact (spherical excess of the triangle of edge and pole). So a polygon has its texel's
+/// solid angle to a few 1e-6 at every resolution.
 class TexelRow {
 public:
     TexelRow(Face face, std::uint32_t resolution, Sampling sampling)
@@ -65,7 +66,7 @@ public:
           borders_(cell_borders(resolution, sampling)),
           negligible_(NegligibleArea * 2.0 / (6.0 * resolution * resolution)) {}
 
-    /// Makes row y the current one; cheaper if the current one is y - 1.
+    /// Makes row y the current row. This is cheaper if row y - 1 is current.
     void move_to(std::uint32_t y) {
         if (y != 0 && y == next_row_)
             std::swap(top_, bottom_);
@@ -77,7 +78,7 @@ public:
         next_row_ = y + 1;
     }
 
-    /// Texel x of the current row.
+    /// Computes the polygon of texel x of the current row.
     void polygon(std::uint32_t x, Polygon& out) {
         out.clear();
         out.push_back(top_.points[x].plane);
@@ -96,25 +97,24 @@ public:
     }
 
 private:
-    /// Chords longer than this get more corners: their ends would say too little of where the edge
-    /// runs between them.
+    /// Longer chords get more corners: their ends say too little about the edge between them.
     static constexpr double ChordsPerRadian = 32.0;
-    /// Area relative to a texel's that chords may cut off.
+    /// Area that chords may cut off, relative to a texel's area.
     static constexpr double NegligibleArea = 1e-6;
 
-    /// A point of the face: where it lies, in the plane, and what the area under an edge is
-    /// computed from.
+    /// A point of the face: its place on the face and in the plane, and values for the area under
+    /// an edge.
     struct Point {
         glm::dvec2 uv{0.0};
         glm::dvec2 plane{0.0};
-        /// Polar faces: (z, x) seen from the opposite pole
+        /// Polar faces: (z, x) seen from the opposite pole.
         glm::dvec2 stereographic{0.0};
-        /// Side faces: of the height from u = 0, in turns
+        /// Side faces: integral of the height from u = 0, in turns.
         double integral = 0.0;
     };
-    /// Edges one after the other: edge i has the inner corners [begins[i], begins[i + 1]).
+    /// A sequence of edges. Edge i has the inner corners [begins[i], begins[i + 1]).
     struct Edges {
-        /// Ends of level edges
+        /// Ends of level edges.
         std::vector<Point> points;
         std::vector<glm::dvec2> corners;
         std::vector<std::size_t> begins;
@@ -141,16 +141,16 @@ private:
                 0.0};
     }
 
-    [[nodiscard]] static bool is_pole(const glm::dvec2& plane) {
-        return plane.y == 0.0;
-    } // on polar faces
+    /// Only for polar faces.
+    [[nodiscard]] static bool is_pole(const glm::dvec2& plane) { return plane.y == 0.0; }
 
-    /// The next longitude in turns on a path: no further than half a turn from the one before.
+    /// Returns the longitude `turn` in turns, moved by whole turns until it is within half a turn
+    /// of the longitude before.
     [[nodiscard]] static double unrolled(double turn, double before) {
         return turn - std::round(turn - before);
     }
 
-    /// The integral of height over turns along the great circle from a to b.
+    /// Returns the integral of height over turns along the great circle from a to b.
     [[nodiscard]] double area_under(const Point& a, const Point& b) const {
         if (!polar_)
             return b.integral - a.integral;
@@ -166,7 +166,7 @@ private:
         return (face_ == Face::PositiveY ? -2.0 : 2.0) * angle / TwoPi;
     }
 
-    /// Adds the corner in the middle of the chord from a to b, if it cuts off more than
+    /// Adds the corner in the middle of the chord from a to b, if the chord cuts off more than
     /// `negligible`.
     void add_middle(const Point& a, const Point& b, double negligible,
                     std::vector<glm::dvec2>& corners) const {
@@ -207,7 +207,7 @@ private:
         }
     }
 
-    /// Edges between the two lines. On side faces they are meridians.
+    /// Makes the edges between the two lines. On side faces these are meridians.
     void make_uprights() {
         uprights_.corners.clear();
         uprights_.begins.assign(1, 0);
@@ -235,8 +235,8 @@ private:
         double turn = raw_.front().x;
         for (std::size_t i = 0; i < raw_.size(); ++i) {
             if (is_pole(raw_[i])) {
-                // Edges into and out of the pole are meridians; the outline runs along the pole
-                // from one to the other.
+                // Edges into and out of the pole are meridians. Between them the outline runs along
+                // the pole.
                 out.emplace_back(turn, 0.0);
                 turn = unrolled(raw_[(i + 1) % raw_.size()].x, turn);
                 out.emplace_back(turn, 0.0);
@@ -245,8 +245,8 @@ private:
                 out.emplace_back(turn, raw_[i].y);
             }
         }
-        // An outline around the pole ends a whole turn from its start; the line of the pole closes
-        // it.
+        // An outline around the pole ends one whole turn from its start. The line of the pole
+        // closes it.
         const glm::dvec2 first = out.front();
         turn = unrolled(first.x, turn);
         if (std::abs(turn - first.x) > 0.5) {
@@ -260,16 +260,16 @@ private:
     double turn_;
     bool polar_;
     std::uint32_t resolution_;
-    /// Of texels in [0, 1]
+    /// Borders of texels in [0, 1].
     std::vector<double> borders_;
-    /// Area that an edge's chords may cut off
+    /// Area that an edge's chords may cut off.
     double negligible_;
     std::uint32_t next_row_ = 0;
     Edges top_, bottom_, uprights_;
     Polygon raw_;
 };
 
-/// The image's row borders as heights, as the face measures them.
+/// Returns the image's row borders as heights in the face's measure.
 std::vector<double> row_heights(const EnvironmentImage& image, Face face) {
     std::vector<double> heights = cell_borders(image.height, image.sampling);
     for (double& border : heights) {
@@ -284,7 +284,7 @@ std::vector<double> row_heights(const EnvironmentImage& image, Face face) {
     return heights;
 }
 
-/// Solid angles of one face's cells, [R * R] row by row.
+/// Returns the solid angles of one face's cells, [R * R] row by row.
 std::vector<double> cell_solid_angles(std::uint32_t resolution, Sampling sampling) {
     if (sampling == Sampling::TexelCentres)
         return texel_solid_angles(resolution);
@@ -319,15 +319,16 @@ CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resoluti
                     for (std::uint32_t x = 0; x < resolution; ++x) {
                         texels.polygon(x, polygon);
                         glm::dvec3 sum(0.0);
-                        cutter.cut(
-                            polygon, columns, rows,
-                            [&](std::size_t column, std::size_t row, const Polygon& piece) {
-                                const double overlap = area(piece);
-                                if (overlap !=
-                                    0.0) // an infinite pixel that only touches must not matter
-                                    sum += glm::dvec3(image.pixels[row * image.width + column]) *
-                                           overlap;
-                            });
+                        cutter.cut(polygon, columns, rows,
+                                   [&](std::size_t column, std::size_t row, const Polygon& piece) {
+                                       const double overlap = area(piece);
+                                       // An infinite pixel that only touches the texel must not
+                                       // matter.
+                                       if (overlap != 0.0)
+                                           sum += glm::dvec3(
+                                                      image.pixels[row * image.width + column]) *
+                                                  overlap;
+                                   });
                         map.at(face, x, y) =
                             sum *
                             (TwoPi / solid_angles[static_cast<std::size_t>(y) * resolution + x]);

@@ -1,4 +1,4 @@
-// Lat-long image to cube map, from exact overlaps. Called through resample().
+// Converts a lat-long image to a cube map from exact overlaps. Called by resample().
 #pragma once
 
 #include "cubemap/cube_map.h"
@@ -6,8 +6,8 @@
 
 namespace relumine::cubemap::detail {
 
-/// Borders: the outermost texels are half as wide as the others, as in a cube with samples on the
-/// borders.
+/// Returns a lat-long image as a cube map. Sampling::Borders makes the outermost texels half as
+/// wide as the others, as in a cube with samples on the borders.
 [[nodiscard]] CubeMap cube_from_lat_long(const EnvironmentImage& image, std::uint32_t resolution,
                                          Sampling sampling = Sampling::TexelCentres);
 

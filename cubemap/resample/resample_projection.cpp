@@ -6,7 +6,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "cubemap/resample/patch.h"
+#include "cubemap/resample/footprint.h"
 #include "cubemap/resample/pixel_shares.h"
 #include "cubemap/resample/projection.h"
 #include "cubemap/spherical_overlap.h"
@@ -15,7 +15,7 @@ namespace relumine::cubemap::detail {
 
 namespace {
 
-/// Sums that become means, in the order in which shares are added.
+/// Sums that become means, added in the order of the shares.
 class Means {
 public:
     explicit Means(std::size_t size) : sums_(size, glm::dvec3(0.0)), weights_(size, 0.0) {}
@@ -54,7 +54,7 @@ CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolu
 void fill_projection(const CubeMap& map, EnvironmentImage& image) {
     const Projection& picture = *projection(image.layout);
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& rows) {
-        PatchPieces pieces(picture, image.width, image.height);
+        ProjectionFootprints pieces(picture, image.width, image.height);
         TexelOverlaps overlaps(map.resolution);
         for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
             for (std::uint32_t x = 0; x < image.width; ++x) {

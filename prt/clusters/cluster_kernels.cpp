@@ -14,11 +14,12 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Sums in float run over at most this many words (1,024 receivers) before they go to double:
-// relative error below 1e-4 of the tolerance test's threshold, which is itself a choice.
+// Float sums run over at most this many words (1,024 receivers) before they go to double. The
+// relative error is below 1e-4 of the tolerance test's threshold, and the threshold is itself a
+// choice.
 constexpr std::size_t WordsPerRun = 16;
 
-/// Bits [first, first + Lanes) of a word as a lane mask.
+/// Returns bits [first, first + Lanes) of a word as a lane mask.
 template<class D>
 hn::Mask<D> mask_of(D d, std::uint64_t word, std::size_t first) {
     const std::uint64_t bits = word >> first;
@@ -44,7 +45,7 @@ void squared_distances(const NormalArrays& normals, const CellSamples& samples, 
             for (const std::uint64_t* lit : samples.lit)
                 any |= lit[word];
             if (any == 0)
-                continue; // 64 receivers that see none of the samples add nothing
+                continue; // 64 receivers that see no sample add nothing
             for (std::size_t lane = 0; lane < WordSize; lane += num_lanes) {
                 const std::size_t at = word * WordSize + lane;
                 const auto nx = hn::LoadU(d, normals.x.data() + at);
@@ -84,7 +85,7 @@ namespace {
 
 HWY_EXPORT(squared_distances);
 
-/// Byte i of entry b is bit i of b: spreads eight bits to eight counters.
+/// Returns a table that spreads eight bits to eight counters: byte i of entry b is bit i of b.
 std::array<std::uint64_t, 256> bytes_from_bits() {
     std::array<std::uint64_t, 256> table{};
     for (std::uint64_t bits = 0; bits < table.size(); ++bits)
@@ -93,7 +94,7 @@ std::array<std::uint64_t, 256> bytes_from_bits() {
     return table;
 }
 
-/// Weighted counts of 16 receivers; each sample gives 16 bits.
+/// Appends the weighted counts of 16 receivers. Each sample gives 16 bits.
 void append_counts(const std::array<std::uint16_t, SamplesPerCell>& lit,
                    const std::array<std::uint8_t, SamplesPerCell>& weights,
                    std::vector<std::uint8_t>& counts) {
@@ -149,7 +150,7 @@ LeafColumn leaf_column(const CellSamples& samples,
             any |= lit[l];
             all &= lit[l];
         }
-        // Lanes after the last receiver agree with everything.
+        // Lanes after the last receiver count as lit, so they never make a block mixed.
         const std::size_t num_lanes = std::min(num_receivers - block * BlockSize, BlockSize);
         all |= 0xffffu << num_lanes & 0xffffu;
         if (any == 0)

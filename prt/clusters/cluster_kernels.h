@@ -16,7 +16,9 @@
 
 namespace relumine::prt {
 
-/// Normals of the receivers, coordinates apart, [num_words * 64] each.
+/// Normals of the receivers, coordinates apart.
+///
+/// Shape:   [num_words * 64] each; zero after the last receiver.
 struct NormalArrays {
     std::vector<float> x, y, z;
     NormalArrays() = default;
@@ -24,19 +26,22 @@ struct NormalArrays {
     [[nodiscard]] std::size_t num_words() const { return x.size() / WordSize; }
 };
 
-/// One cell's samples: directions, and for each the plane of bits "the light from there reaches the
-/// receiver", [num_words].
+/// One cell's nine directions, and for each a plane of bits: the light from there reaches the
+/// receiver.
+///
+/// Shape:   each plane is [num_words].
 struct CellSamples {
     std::array<glm::vec3, SamplesPerCell> directions{};
     std::array<const std::uint64_t*, SamplesPerCell> lit{};
 };
 
-/// ||T_C - T_l||^2 of all nine samples l, with T = V max(n.w, 0) (that is, times pi) and T_C the
-/// weighted mean [JN, Eqs. 9-11]. Sums are in double over fixed runs of receivers.
+/// Returns ||T_C - T_l||^2 for all nine samples l, where T = V max(n.w, 0), which is the transfer
+/// times pi, and T_C is the weighted mean [JN, Eqs. 9-11]. Sums are in double over fixed runs of
+/// receivers.
 [[nodiscard]] std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
                                                                    const CellSamples& samples);
 
-/// The visible counts of the cell for all receivers; `weights` sum to 16.
+/// Returns the visible counts of the cell for all receivers. `weights` sum to 16.
 [[nodiscard]] LeafColumn leaf_column(const CellSamples& samples,
                                      const std::array<std::uint8_t, SamplesPerCell>& weights,
                                      std::size_t num_receivers);

@@ -25,14 +25,14 @@ namespace {
 /// Name of this part in a checkpoint.
 constexpr const char* Part = "clusters";
 
-/// Points that a batch may always add, room or not: those of a few splits.
+/// Points that a batch may always add, with or without room: the points of a few splits.
 constexpr std::size_t MinBatchPoints = 128;
 
 /// Work between two looks at the checkpoint: 64 tasks of the tracer for every thread, less than a
 /// second.
 constexpr std::uint64_t SamplesPerThreadAndStep = std::uint64_t{1} << 26;
 
-/// The largest ||T_C - T_l||^2, T times pi, that a cluster may have [JN, Eq. 11].
+/// Returns the limit on ||T_C - T_l||^2 for a cluster, T times pi [JN, Eq. 11].
 double allowed_squared_distance(const PrecomputeOptions& options, std::size_t num_receivers) {
     const auto n = static_cast<double>(num_receivers);
     const double distance = options.epsilon ? static_cast<double>(*options.epsilon) * n
@@ -41,7 +41,7 @@ double allowed_squared_distance(const PrecomputeOptions& options, std::size_t nu
     return times_pi * times_pi;
 }
 
-/// Allocations and links beside the bytes themselves; what counts when receivers are few.
+/// Allocations and links beside the bytes themselves. They matter when receivers are few.
 constexpr std::uint64_t OverheadOfPlane = 112;
 constexpr std::uint64_t OverheadOfCluster = 256;
 
@@ -57,7 +57,7 @@ double part_of_sphere(const Cell& cell) {
     return cell.size() * cell.size() / cubemap::NumFaces;
 }
 
-/// Depth-first order of cells of any level: by face, then along the Z curve.
+/// Returns a key for the depth-first order of cells of any level: by face, then along the Z curve.
 std::uint64_t depth_first_key(const Cell& cell) {
     std::uint64_t key = static_cast<std::uint64_t>(cell.face);
     for (std::uint32_t level = 0; level < MaxLevel; ++level) {
@@ -91,8 +91,8 @@ Quadtree quadtree_of(const std::vector<Cell>& leaves) {
 } // namespace
 
 Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
-                       const PrecomputeOptions& options)
-    : options_(options), order_(spatial_order(receivers)),
+                       const PrecomputeOptions& options, const PrecomputeContext& context)
+    : options_(options), context_(context), order_(spatial_order(receivers)),
       progress_(options.stop, options.on_progress),
       max_level_(static_cast<std::uint32_t>(std::bit_width(options.face_resolution - 1))),
       allowed_(allowed_squared_distance(options, receivers.size())) {
@@ -109,7 +109,8 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
     planes_.emplace(origins_, normals_, blockers);
 }
 
-/// All cells of the first level to be tested, depth first, so that siblings follow each other.
+/// Pushes all cells of the first level to be tested, depth first, so that siblings follow each
+/// other.
 void Clustering::start() {
     const std::uint32_t first_level = std::min(options_.min_level, max_level_);
     const auto push = [&](const auto& self, const Cell& cell) -> void {
@@ -149,7 +150,7 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
 
 void Clustering::add_cluster(Cluster&& cluster) {
     settled_ += part_of_sphere(cluster.cell);
-    column_bytes_ += bytes_of(cluster.column, options_.column_scale);
+    column_bytes_ += bytes_of(cluster.column, context_.column_scale);
     deepest_ = std::max<std::uint32_t>(deepest_, cluster.cell.level);
     clusters_.push_back(std::move(cluster));
 }
@@ -161,8 +162,8 @@ std::vector<LatticePoint> Clustering::needed_points(const Cell& cell) const {
     return {points.begin(), points.end()};
 }
 
-/// Siblings follow each other in `cells`, so the sixteen new points of a split follow each other
-/// here: one packet.
+/// Siblings follow each other in `cells`. So the sixteen new points of a split follow each other in
+/// the result and make one packet.
 std::vector<LatticePoint> Clustering::needed_points(const std::vector<Cell>& cells) const {
     std::vector<LatticePoint> points;
     for (const Cell& cell : cells) {
@@ -172,9 +173,9 @@ std::vector<LatticePoint> Clustering::needed_points(const std::vector<Cell>& cel
     return points;
 }
 
-/// As many cells as there is room for planes: while half of it is free, of the coarsest level, up
-/// to the brim; else of the finest, up to half of what is left, so that there is room for the
-/// levels below.
+/// Takes as many cells as there is room for planes. While half of the room is free, it takes the
+/// coarsest level and fills all room. Otherwise it takes the finest level and fills half of the
+/// rest, so that the levels below have room.
 void Clustering::take_batch() {
     const std::size_t num_planes = planes_->num_planes();
     const bool has_room = num_planes <= max_planes_ / 2;
@@ -195,8 +196,8 @@ void Clustering::trace_batch() {
     double area = 0.0;
     for (const Cell& cell : batch_)
         area += part_of_sphere(cell);
-    // Most of the time goes into the deepest levels, so a batch's share of the scale is a part of
-    // the sphere that it may settle.
+    // Most of the time goes into the deepest levels. So a batch's share of the progress is the part
+    // of the sphere that it may settle.
     progress_.start_stage(settled_, settled_ + 0.5 * area);
     TraceSteps steps;
     if (options_.checkpoint != nullptr) {
@@ -208,10 +209,9 @@ void Clustering::trace_batch() {
                 save_checkpoint();
         };
     }
-    if (options_.samples_per_step)
-        steps.samples_per_step = *options_.samples_per_step;
-    // A patch is at most four cells wide, which is as far as the new points of four splits of
-    // siblings reach.
+    if (context_.samples_per_step)
+        steps.samples_per_step = *context_.samples_per_step;
+    // A patch is at most four cells wide: the new points of four splits of siblings reach as far.
     const double patch_width = 4 * 2.0 * batch_.front().size();
     planes_->trace(
         needed_points(batch_), patch_width, [this](double part) { progress_.report(part); }, steps);
@@ -239,16 +239,16 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
     return {cell, leaf_column(samples, SampleWeights, origins_.size())};
 }
 
-/// Keeps the clusters, goes on with the children of the rest, and forgets the planes that nothing
-/// needs any more. In slices, so that memory can be watched (a column takes a byte per receiver at
-/// most) and checkpoints left: what is decided leaves the batch.
+/// Keeps the clusters, goes on with the children of the other cells, and forgets the planes that
+/// nothing needs any more. Decided cells leave the batch in slices. So memory can be watched (a
+/// column takes at most a byte per receiver), and checkpoints can be saved between slices.
 void Clustering::decide_batch() {
     const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
     const std::size_t num_words = (order_.size() / BlockSize + 63) / 64;
     LeafColumn empty;
     empty.visible.resize(num_words);
     empty.mixed.resize(num_words);
-    const std::uint64_t min_bytes = bytes_of(empty, options_.column_scale);
+    const std::uint64_t min_bytes = bytes_of(empty, context_.column_scale);
     while (!batch_.empty()) {
         std::vector<Decision> slice(std::min(max_slice, batch_.size()));
         tbb::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
@@ -259,11 +259,11 @@ void Clustering::decide_batch() {
         std::size_t num_clusters = clusters_.size();
         std::size_t num_split = 0;
         for (const Decision& decision : slice) {
-            num_bytes += decision.column ? bytes_of(*decision.column, options_.column_scale) : 0;
+            num_bytes += decision.column ? bytes_of(*decision.column, context_.column_scale) : 0;
             num_clusters += decision.column ? 1 : 0;
             num_split += decision.column ? 0 : 1;
         }
-        // Every cell that waits becomes one cluster at least.
+        // Every waiting cell becomes one cluster at least.
         num_clusters += batch_.size() - slice.size() + pending_.size() + 4 * num_split;
         num_bytes += (num_clusters - clusters_.size() - (slice.size() - num_split)) * min_bytes;
         if (num_bytes > options_.max_column_bytes)
@@ -327,7 +327,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
             save_checkpoint();
         throw;
     }
-    if (checkpoint != nullptr && options_.more_follows && num_saved_ != clusters_.size() &&
+    if (checkpoint != nullptr && context_.more_follows && num_saved_ != clusters_.size() &&
         checkpoint->is_worthwhile())
         save_checkpoint();
     statistics.num_directions = planes_->num_directions();

@@ -1,6 +1,7 @@
-// The clustering behind precompute(): cells of the sphere are tested, kept as clusters or split,
-// until none is left. Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment
-// Lights" [JN], Section 4.
+// The clustering behind precompute(): cells of the sphere are tested, then kept as clusters or
+// split, until none is left.
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights" [JN],
+// Section 4.
 #pragma once
 
 #include <cstddef>
@@ -15,26 +16,29 @@
 #include "prt/clusters/pending_cells.h"
 #include "prt/clusters/visibility_planes.h"
 #include "prt/precompute.h"
+#include "prt/precompute_context.h"
 #include "prt/progress.h"
 
 namespace relumine::prt {
 
-/// Cells are tested in batches: their samples are traced together, then each is decided on its own.
-/// A batch is a whole level, breadth first, where its planes have room in
-/// PrecomputeOptions::plane_bytes; else as much of a level as has, and fine cells come first while
-/// little room is left. What becomes of a cell depends on its nine samples alone, so batches do not
-/// change the result.
+/// Tests cells in batches: the samples of a batch are traced together, then each cell is decided on
+/// its own.
+///
+/// A batch is a whole level, breadth first, while the planes of a level fit into
+/// PrecomputeOptions::plane_bytes. Otherwise a batch is the part of a level that fits, and fine
+/// cells come first while little room is left. A cell's fate depends on its nine samples alone, so
+/// batches do not change the result.
 class Clustering {
 public:
-    /// The arguments must outlive this; checked by precompute().
+    /// The arguments must outlive this object; precompute() has checked them.
     Clustering(const Receivers& receivers, const Blockers& blockers,
-               const PrecomputeOptions& options);
+               const PrecomputeOptions& options, const PrecomputeContext& context);
 
-    /// Once. Leaves the counts of its work in `statistics`.
+    /// Does the work; call it once. Leaves the counts of the work in `statistics`.
     [[nodiscard]] Transfer run(PrecomputeStatistics& statistics);
 
 private:
-    /// A cell that became a cluster, or (column empty) one that is to be split.
+    /// A cell that became a cluster, or a cell to be split, which has no column.
     struct Decision {
         Cell cell;
         std::optional<LeafColumn> column;
@@ -56,29 +60,30 @@ private:
     [[nodiscard]] Transfer result();
 
     const PrecomputeOptions& options_;
+    const PrecomputeContext context_;
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;
     std::vector<glm::vec3> origins_;
     NormalArrays normals_;
     Progress progress_;
-    /// Where a cell is one texel of a 6 x R x R environment
+    /// The level whose cells are texels of a 6 x R x R environment.
     std::uint32_t max_level_;
-    /// The largest ||T_C - T_l||^2, T times pi, of a cluster
+    /// The limit on ||T_C - T_l||^2 for a cluster, T times pi.
     double allowed_;
     std::size_t max_planes_;
 
     std::optional<VisibilityPlanes> planes_;
-    /// In work
+    /// The cells in work.
     std::vector<Cell> batch_;
     PendingCells pending_;
     std::vector<Cluster> clusters_;
-    /// Part of the cube's surface that is clustered
+    /// Fraction of the cube's surface that is clustered.
     double settled_ = 0.0;
-    /// Clusters in the checkpoint
+    /// Clusters in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t column_bytes_ = 0;
     double seconds_saving_ = 0.0;
-    /// Level of a cluster
+    /// The deepest level of any cluster.
     std::uint32_t deepest_ = 0;
 };
 

@@ -12,12 +12,12 @@ namespace relumine::prt {
 
 namespace {
 
-/// Columns and planes of some 100 kB to some MB go into one part: worth a thread, and small beside
-/// the whole.
+/// Columns and planes of some 100 kB to some MB go into one part: large enough for a thread, and
+/// small beside the whole.
 constexpr std::size_t ColumnsPerPart = 16;
 constexpr std::size_t PlanesPerPart = 16;
 
-/// Face, level, x and y in 3, 4, 14 and 14 bits.
+/// Packs face, level, x and y into 3, 4, 14 and 14 bits.
 std::uint64_t number_of(const Cell& cell) {
     return static_cast<std::uint64_t>(cell.face) << 32u |
            static_cast<std::uint64_t>(cell.level) << 28u |

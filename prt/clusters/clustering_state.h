@@ -1,5 +1,5 @@
-// What the clustering knows, as bytes for a checkpoint. Everything else follows from the receivers,
-// blockers and options.
+// The state of the clustering as bytes for a checkpoint. Everything else follows from the
+// receivers, blockers and options.
 #pragma once
 
 #include <cstddef>
@@ -19,19 +19,21 @@ struct Cluster {
     LeafColumn column;
 };
 
-/// Clusters as one record.
+/// Packs clusters into one record.
 [[nodiscard]] std::vector<std::byte> clusters_record(std::span<const Cluster> clusters);
-/// Appends a record's clusters, of `num_receivers` receivers. Throws std::runtime_error for other
-/// bytes.
+/// Appends the clusters of a record, made for `num_receivers` receivers.
+///
+/// Throws:  std::runtime_error for bytes that are no such record.
 void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,
                    std::vector<Cluster>& clusters);
 
-/// The work to be done: cells being tested, cells waiting, and the planes known.
+/// Packs the remaining work: cells being tested, cells waiting, and the known planes.
 [[nodiscard]] std::vector<std::byte> work_state(const std::vector<Cell>& batch,
                                                 const PendingCells& pending,
                                                 const VisibilityPlanes& planes);
-/// Puts it into an empty batch, empty queues and new planes. Throws std::runtime_error for other
-/// bytes.
+/// Unpacks work_state() into an empty batch, empty queues and new planes.
+///
+/// Throws:  std::runtime_error for bytes that are no such state.
 void read_work(std::span<const std::byte> state, std::vector<Cell>& batch, PendingCells& pending,
                VisibilityPlanes& planes);
 

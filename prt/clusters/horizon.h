@@ -10,9 +10,10 @@
 
 namespace relumine::prt {
 
-/// Bit j of rays[i] says that n.w > 0 for receiver first + i and the patch's direction j. The
-/// cosine is (nx wx + ny wy) + nz wz in float, each operation rounded, on every processor: a
-/// cluster's bits never depend on where it was computed.
+/// Sets bit j of rays[i] where n.w > 0 for receiver first + i and the patch's direction j.
+///
+/// The cosine is (nx wx + ny wy) + nz wz in float, each operation rounded, on every processor. So a
+/// cluster's bits never depend on the machine.
 void directions_above_horizon(const NormalArrays& normals, std::size_t first,
                               const DirectionPatch& patch, std::span<std::uint64_t> rays);
 

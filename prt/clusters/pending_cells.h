@@ -11,9 +11,11 @@
 
 namespace relumine::prt {
 
-/// A queue for each level. Coarse cells first is breadth-first order: every sample is traced once,
-/// but a whole level's are in memory. Fine cells first ends a subtree before the next begins:
-/// little memory, but samples on the border between two subtrees are traced for either.
+/// A queue for each level.
+///
+/// Coarse cells first is breadth-first order: every sample is traced once, but the samples of a
+/// whole level are in memory. Fine cells first ends a subtree before the next begins: memory stays
+/// small, but samples on the border of two subtrees are traced for both.
 class PendingCells {
 public:
     enum class Order { CoarseFirst, FineFirst };
@@ -22,11 +24,11 @@ public:
     [[nodiscard]] std::size_t size() const { return size_; }
     void push(const Cell& cell);
 
-    /// Takes cells of one level from the front of its queue, at least one, as long as `fits(cell)`.
-    /// Not when empty.
+    /// Takes cells of one level from the front of its queue: at least one, and more while
+    /// `fits(cell)`. Must not be empty.
     [[nodiscard]] std::vector<Cell> take(Order order, const std::function<bool(const Cell&)>& fits);
 
-    /// All of them; pushed again in this order they make the same queues.
+    /// Returns all cells. Pushed again in this order they make the same queues.
     [[nodiscard]] std::vector<Cell> cells() const;
 
 private:

@@ -20,11 +20,11 @@ struct Cell {
     std::uint32_t x = 0;
     std::uint32_t y = 0;
 
-    /// Children in the order (0,0) (1,0) (0,1) (1,1) of (right, down).
+    /// Returns child i. Order: (0,0) (1,0) (0,1) (1,1) of (right, down).
     [[nodiscard]] Cell child(std::uint32_t i) const {
         return {face, static_cast<std::uint8_t>(level + 1), 2 * x + (i & 1u), 2 * y + (i >> 1u)};
     }
-    /// Length of the cell's side; the whole face has 1.
+    /// Length of the cell's side; a whole face has 1.
     [[nodiscard]] double size() const { return 1.0 / static_cast<double>(1u << level); }
     bool operator==(const Cell&) const = default;
 };
@@ -38,38 +38,39 @@ struct FaceRectangle {
     double t1 = 1.0;
 };
 
-/// Deepest level a cell can have: 2^14 texels along a face's edge.
+/// Deepest level of a cell: 2^14 texels along a face's edge.
 inline constexpr std::uint32_t MaxLevel = 14;
 
-/// Six quadtrees, one per face; the leaves are numbered depth first, face by face, so every subtree
-/// owns a range of leaves. Immutable.
+/// Six quadtrees, one per face; immutable. Leaves are numbered depth first, face by face, so every
+/// subtree owns a range of leaves.
 class Quadtree {
 public:
     /// The tree with no split: six leaves.
     Quadtree();
-    /// From its depth-first split flags, true = split, as split_flags() returns them. Throws
-    /// std::invalid_argument when they end early, go on after the last leaf or go deeper than
-    /// MaxLevel.
+    /// Builds the tree from its depth-first split flags (true = split), as split_flags() returns
+    /// them.
+    ///
+    /// Throws:  std::invalid_argument when the flags end early, go on after the last leaf or go
+    ///          deeper than MaxLevel.
     explicit Quadtree(const std::vector<bool>& split_flags);
 
     [[nodiscard]] std::size_t num_leaves() const { return leaves_.size(); }
     [[nodiscard]] std::span<const Cell> leaves() const { return leaves_; }
     [[nodiscard]] std::vector<bool> split_flags() const;
 
-    /// Appends to `leaf_indices`, in ascending order, the leaves whose cells share area with the
-    /// rectangle. Walks the tree from the face's root [JN, Section 5.2].
+    /// Appends the leaves whose cells share area with the rectangle to `leaf_indices`, in ascending
+    /// order. Walks the tree from the face's root [JN, Section 5.2].
     void find_leaves(const FaceRectangle& rectangle,
                      std::vector<std::uint32_t>& leaf_indices) const;
 
-    /// The leaf whose cell a point lies in; on borders between cells, the one to the right and
-    /// below.
+    /// Returns the leaf whose cell holds a point; on a border, the cell to the right and below.
     [[nodiscard]] std::uint32_t leaf_at(const cubemap::FacePoint& point) const;
 
 private:
     struct Node {
-        /// Index of four consecutive nodes, 0 for a leaf
+        /// Index of four consecutive nodes, 0 for a leaf.
         std::uint32_t first_child = 0;
-        /// Leaf index, where it is one
+        /// Leaf index; meaningful for a leaf only.
         std::uint32_t leaf = 0;
     };
     void build(std::uint32_t node, const Cell& cell, const std::vector<bool>& split_flags,
@@ -77,7 +78,7 @@ private:
     void find(std::uint32_t node, const Cell& cell, const FaceRectangle& rectangle,
               std::vector<std::uint32_t>& leaf_indices) const;
 
-    /// The six roots first
+    /// The six roots come first.
     std::vector<Node> nodes_;
     std::vector<Cell> leaves_;
 };

@@ -22,10 +22,10 @@ namespace {
 /// Receivers of one task: eight words of 64, so that tasks write whole cache lines of each plane.
 /// Their rays through one patch start close together and meet the same blockers.
 constexpr std::size_t WordsPerTask = 8;
-constexpr std::size_t WordsPerBlock = ReceiverBlock::MaxSize / WordSize;
+constexpr std::size_t WordsPerGroup = ReceiverGroup::MaxSize / WordSize;
 
-/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Splitting
-/// the directions, too, keeps all threads busy when the receivers are few.
+/// Patches of one task: with 512 receivers a million rays, about a twentieth of a second. Tasks
+/// also split the directions, which keeps all threads busy when the receivers are few.
 constexpr std::size_t PatchesPerTask = 32;
 
 /// Side of the smallest axis-aligned cube around points.
@@ -47,10 +47,10 @@ private:
 
 } // namespace
 
-struct VisibilityPlanes::Patch {
+struct VisibilityPlanes::TracedPatch {
     DirectionPatch directions;
     std::array<LatticePoint, DirectionPatch::Size> points{};
-    /// From the start of the patch's step on
+    /// Set when the patch's step starts.
     std::array<std::uint64_t*, DirectionPatch::Size> planes{};
 };
 
@@ -58,9 +58,9 @@ VisibilityPlanes::VisibilityPlanes(std::span<const glm::vec3> origins, const Nor
                                    const Blockers& blockers)
     : origins_(origins), normals_(normals), blockers_(blockers) {}
 
-std::vector<VisibilityPlanes::Patch>
+std::vector<VisibilityPlanes::TracedPatch>
 VisibilityPlanes::new_patches(std::span<const LatticePoint> points, double patch_width) const {
-    std::vector<Patch> patches;
+    std::vector<TracedPatch> patches;
     std::unordered_set<LatticePoint> seen;
     Extent extent;
     for (const LatticePoint point : points) {
@@ -75,7 +75,7 @@ VisibilityPlanes::new_patches(std::span<const LatticePoint> points, double patch
             with_point.include(place_on_cube(point));
         }
         extent = with_point;
-        Patch& patch = patches.back();
+        TracedPatch& patch = patches.back();
         patch.points[patch.directions.num_directions] = point;
         patch.directions.add(direction(point));
     }
@@ -85,7 +85,7 @@ VisibilityPlanes::new_patches(std::span<const LatticePoint> points, double patch
 void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_width,
                              const std::function<void(double)>& on_progress,
                              const TraceSteps& steps) {
-    std::vector<Patch> patches = new_patches(points, patch_width);
+    std::vector<TracedPatch> patches = new_patches(points, patch_width);
     const std::uint64_t samples_per_patch =
         std::max<std::size_t>(origins_.size(), 1) * DirectionPatch::Size;
     const auto patches_per_step = static_cast<std::size_t>(std::clamp<std::uint64_t>(
@@ -108,7 +108,8 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_
     }
 }
 
-void VisibilityPlanes::trace_step(std::span<Patch> patches, const std::function<void()>& on_task) {
+void VisibilityPlanes::trace_step(std::span<TracedPatch> patches,
+                                  const std::function<void()>& on_task) {
     const std::size_t num_words = normals_.num_words();
     const std::size_t num_rows = (num_words + WordsPerTask - 1) / WordsPerTask;
     const std::size_t num_columns = (patches.size() + PatchesPerTask - 1) / PatchesPerTask;
@@ -118,14 +119,14 @@ void VisibilityPlanes::trace_step(std::span<Patch> patches, const std::function<
         const std::size_t end = std::min(begin + WordsPerTask, num_words);
         const std::size_t last_patch = std::min((column + 1) * PatchesPerTask, patches.size());
         std::uint64_t num_rays = 0;
-        for (std::size_t word = begin; word < end; word += WordsPerBlock)
+        for (std::size_t word = begin; word < end; word += WordsPerGroup)
             for (std::size_t patch = column * PatchesPerTask; patch < last_patch; ++patch)
-                num_rays += trace_block(word, patches[patch]);
+                num_rays += trace_group(word, patches[patch]);
         num_rays_of_step += num_rays;
         on_task();
     };
     const auto for_each_direction = [&](const auto& action) {
-        for (Patch& patch : patches)
+        for (TracedPatch& patch : patches)
             for (std::size_t j = 0; j < patch.directions.num_directions; ++j)
                 action(patch.points[j], patch.planes[j]);
     };
@@ -160,30 +161,30 @@ std::vector<LatticePoint> VisibilityPlanes::points() const {
     return points;
 }
 
-std::uint64_t VisibilityPlanes::trace_block(std::size_t first_word, const Patch& patch) const {
+std::uint64_t VisibilityPlanes::trace_group(std::size_t first_word,
+                                            const TracedPatch& patch) const {
     const std::size_t first = first_word * WordSize;
-    const std::size_t size = std::min(origins_.size() - first, ReceiverBlock::MaxSize);
-    std::array<std::uint64_t, ReceiverBlock::MaxSize>
-        rays{}; // a word per receiver, bits are directions
-    const std::span<std::uint64_t> of_block(rays.data(), size);
-    directions_above_horizon(normals_, first, patch.directions, of_block);
+    const std::size_t size = std::min(origins_.size() - first, ReceiverGroup::MaxSize);
+    std::array<std::uint64_t, ReceiverGroup::MaxSize> rays{}; // [receiver], a bit per direction
+    const std::span<std::uint64_t> of_group(rays.data(), size);
+    directions_above_horizon(normals_, first, patch.directions, of_group);
     std::uint64_t num_rays = 0;
     glm::vec3 mean_normal(0.0f);
     for (std::size_t i = 0; i < size; ++i) {
-        if (of_block[i] == 0)
+        if (of_group[i] == 0)
             continue;
-        num_rays += static_cast<std::uint64_t>(std::popcount(of_block[i]));
+        num_rays += static_cast<std::uint64_t>(std::popcount(of_group[i]));
         mean_normal +=
             glm::vec3(normals_.x[first + i], normals_.y[first + i], normals_.z[first + i]);
     }
     if (num_rays != 0)
         blockers_.clear_blocked({origins_.subspan(first, size), mean_normal}, patch.directions,
-                                of_block);
+                                of_group);
 
-    for (std::size_t word = 0; word < WordsPerBlock && first_word + word < normals_.num_words();
+    for (std::size_t word = 0; word < WordsPerGroup && first_word + word < normals_.num_words();
          ++word) {
         const std::span<std::uint64_t, WordSize> square(rays.data() + word * WordSize, WordSize);
-        transpose(square); // a word per direction, bits are receivers
+        transpose(square); // now [direction], a bit per receiver
         for (std::size_t j = 0; j < patch.directions.num_directions; ++j)
             patch.planes[j][first_word + word] = square[j];
     }

@@ -18,40 +18,43 @@
 
 namespace relumine::prt {
 
-/// Long work in steps, between which everything that is known is whole.
+/// Splits long work into steps. All known results are complete between two steps.
 struct TraceSteps {
-    /// (receiver, direction) pairs, at least one patch of them
+    /// (receiver, direction) pairs per step; a step has at least one patch.
     std::uint64_t samples_per_step = std::numeric_limits<std::uint64_t>::max();
-    /// Called by the calling thread; may throw to cancel
+    /// Called by the calling thread between steps; may throw to cancel.
     std::function<void()> between = {};
 };
 
-/// The planes that the level in work needs. A bit says "the light from this direction reaches this
-/// receiver": the direction is above the receiver's horizon and not blocked.
+/// The planes that the current level needs. A set bit says that the light from this direction
+/// reaches this receiver: the direction is above the receiver's horizon and not blocked.
 class VisibilityPlanes {
 public:
-    /// origins: ray starts of the receivers in the order of `normals`, [num_receivers]. The
-    /// arguments must outlive this.
+    /// `origins` are the ray starts of the receivers in the order of `normals`, [num_receivers].
+    /// The arguments must outlive this object.
     VisibilityPlanes(std::span<const glm::vec3> origins, const NormalArrays& normals,
                      const Blockers& blockers);
 
-    /// Traces those of the points that are not known yet. Points that lie close together should
-    /// stand close together: neighbours in the list whose places on the cube [-1, 1]^3 fit into a
-    /// box of side `patch_width` share a patch of directions. `on_progress` is called from the
-    /// working threads, many times a second, with the part of the rays that is done (not in order);
-    /// it may throw to cancel. The points of finished steps stay known then, those of the step in
-    /// work do not.
+    /// Traces the points that are not known yet.
+    ///
+    /// Points that lie close together should stand close together: neighbours in the list share a
+    /// patch of directions if their places on the cube [-1, 1]^3 fit into a box of side
+    /// `patch_width`.
+    ///
+    /// The working threads call `on_progress` many times a second with the fraction of the rays
+    /// that is done, in no order. It may throw to cancel. Then the points of finished steps stay
+    /// known; the points of the current step do not.
     void trace(std::span<const LatticePoint> points, double patch_width,
                const std::function<void(double)>& on_progress, const TraceSteps& steps = {});
 
-    /// Forgets all points but those given.
+    /// Forgets all points but the given ones.
     void keep_only(std::span<const LatticePoint> points);
 
     [[nodiscard]] bool knows(LatticePoint point) const { return planes_.contains(point); }
-    /// Of a plane
+    /// Words of a plane.
     [[nodiscard]] std::size_t num_words() const { return normals_.num_words(); }
     [[nodiscard]] std::size_t num_planes() const { return planes_.size(); }
-    /// All known points, ascending.
+    /// Returns all known points, ascending.
     [[nodiscard]] std::vector<LatticePoint> points() const;
     /// Takes over a plane that an earlier run traced, [num_words].
     void restore(LatticePoint point, std::vector<std::uint64_t> plane) {
@@ -63,7 +66,7 @@ public:
         num_rays_ = num_rays;
     }
 
-    /// The plane of a known point, [num_words].
+    /// Returns the plane of a known point, [num_words].
     [[nodiscard]] const std::uint64_t* plane(LatticePoint point) const {
         return planes_.at(point).data();
     }
@@ -72,12 +75,13 @@ public:
     [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }
 
 private:
-    /// Up to 64 new directions and their planes
-    struct Patch;
+    /// Up to 64 new directions and their planes.
+    struct TracedPatch;
 
-    std::vector<Patch> new_patches(std::span<const LatticePoint> points, double patch_width) const;
-    void trace_step(std::span<Patch> patches, const std::function<void()>& on_task);
-    std::uint64_t trace_block(std::size_t first_word, const Patch& patch) const;
+    std::vector<TracedPatch> new_patches(std::span<const LatticePoint> points,
+                                         double patch_width) const;
+    void trace_step(std::span<TracedPatch> patches, const std::function<void()>& on_task);
+    std::uint64_t trace_group(std::size_t first_word, const TracedPatch& patch) const;
 
     std::span<const glm::vec3> origins_;
     const NormalArrays& normals_;

@@ -57,7 +57,7 @@ VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t
     result.visible.resize(num_blocks * result.words_per_block());
     result.mixed.resize(num_blocks * result.words_per_block());
 
-    // Transpose the class bits; every task owns whole blocks.
+    // Transpose the class bits. Every task owns whole blocks.
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_blocks, 64), [&](const auto& blocks) {
         for (std::size_t leaf = 0; leaf < columns.size(); ++leaf) {
             for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
@@ -75,8 +75,8 @@ VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns, std::size_t
     result.counts.resize(num_entries);
     result.index();
 
-    // Scatter each column's counts to their blocks; a (leaf, block) pair has one place, so leaves
-    // can go in parallel.
+    // Scatter each column's counts to their blocks. A (leaf, block) pair has one place, so leaves
+    // can run in parallel.
     tbb::parallel_for(std::size_t{0}, columns.size(), [&](std::size_t leaf) {
         LeafColumn& column = columns[leaf];
         const std::uint8_t* source = column.counts.data();

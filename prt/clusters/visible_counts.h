@@ -14,35 +14,39 @@ inline constexpr std::size_t BlockSize = 16;
 
 /// Visible counts of one cluster for all receivers.
 struct LeafColumn {
-    /// [ceil(num_blocks / 64)] bit b: every receiver of block b counts 16
+    /// [ceil(num_blocks / 64)] bit b is set where every receiver of block b counts 16.
     std::vector<std::uint64_t> visible;
-    /// The same shape; bit b: block b has entries in `counts`
+    /// [ceil(num_blocks / 64)] bit b is set where block b has entries in `counts`.
     std::vector<std::uint64_t> mixed;
-    /// [num_mixed_blocks * 16], in order of blocks
+    /// [num_mixed_blocks * 16] in order of blocks.
     std::vector<std::uint8_t> counts;
 };
 
-/// The count c in 0..16 of every (receiver, leaf) pair, [num_receivers x num_leaves]: the weighted
-/// number of the leaf's nine samples that reach the receiver, so that T_C(x) = c/16 max(n.w, 0)/pi
-/// for albedo 1 [JN, Eq. 10]. Receivers are in spatial order. Most blocks of 16 receivers see all
-/// of a leaf or nothing: two bits say so; only mixed ones store 16 counts.
+/// The count c in 0..16 of every (receiver, leaf) pair, receivers in spatial order.
+///
+/// c is the weighted number of the leaf's nine samples that reach the receiver, so T_C(x) = c/16
+/// max(n.w, 0)/pi for albedo 1 [JN, Eq. 10]. Most blocks of 16 receivers see all of a leaf or
+/// nothing. Two bits say so; only mixed blocks store 16 counts.
 ///
 /// Layout (promised): tiles of 64 blocks; in a tile, words of 64 leaves ascending; in a word, the
-/// tile's blocks; in a block, the word's mixed leaves ascending. So both uses stream: a relighting
-/// through a whole tile while its sums stay in the cache, an edit through the few words it touches,
-/// once per tile.
+/// tile's blocks; in a block, the word's mixed leaves ascending. So both uses stream through
+/// memory. A relighting walks through a whole tile while its sums stay in the cache. An edit walks
+/// through the few words that it touches, once per tile.
 struct VisibleCounts {
     static constexpr std::size_t TileBlocks = 64;
 
     std::size_t num_receivers = 0;
     std::size_t num_leaves = 0;
-    /// [num_blocks * words_per_block], see word(); bit of a leaf: all 16 receivers count 16
+    /// [num_blocks * words_per_block] by word(); a leaf's bit is set where all 16 receivers count
+    /// 16.
     std::vector<std::uint64_t> visible = {};
-    /// The same shape; bit of a leaf: it has 16 entries in `counts`; never set with `visible`
+    /// [num_blocks * words_per_block] by word(); a leaf's bit is set where it has 16 entries in
+    /// `counts`, and then never in `visible`.
     std::vector<std::uint64_t> mixed = {};
-    /// The same shape; mixed (block, leaf) pairs before this word's first leaf
+    /// [num_blocks * words_per_block] by word(): mixed (block, leaf) pairs before the first leaf of
+    /// the word.
     std::vector<std::uint64_t> mixed_before = {};
-    /// [num_mixed * 16]
+    /// [num_mixed * 16] values 0..16.
     std::vector<std::uint8_t> counts = {};
 
     [[nodiscard]] std::size_t num_blocks() const {
@@ -52,11 +56,11 @@ struct VisibleCounts {
     [[nodiscard]] std::size_t num_tiles() const {
         return (num_blocks() + TileBlocks - 1) / TileBlocks;
     }
-    /// First block of a tile; of num_tiles(): the number of blocks.
+    /// Returns the first block of a tile; for num_tiles(), the number of blocks.
     [[nodiscard]] std::size_t tile_begin(std::size_t tile) const {
         return std::min(tile * TileBlocks, num_blocks());
     }
-    /// Where the word of 64 leaves lies that holds leaves 64 w .. 64 w + 63 of a block.
+    /// Returns where the word with leaves 64 w .. 64 w + 63 of a block lies.
     [[nodiscard]] std::size_t word(std::size_t block, std::size_t w) const {
         const std::size_t begin = tile_begin(block / TileBlocks);
         const std::size_t width = tile_begin(block / TileBlocks + 1) - begin;
@@ -64,23 +68,25 @@ struct VisibleCounts {
     }
     [[nodiscard]] std::size_t num_mixed() const { return counts.size() / BlockSize; }
 
-    /// The 16 counts of a mixed (word, bit): word(block, leaf / 64), bit = leaf % 64.
+    /// Returns the 16 counts of a mixed pair: word = word(block, leaf / 64), bit = leaf % 64.
     [[nodiscard]] const std::uint8_t* mixed_counts(std::size_t word, std::uint32_t bit) const {
         const std::uint64_t below = mixed[word] & ((std::uint64_t{1} << bit) - 1);
         return counts.data() +
                (mixed_before[word] + static_cast<std::size_t>(std::popcount(below))) * BlockSize;
     }
 
-    /// c of one pair. Not for hot loops.
+    /// Returns c of one pair. Too slow for hot loops.
     [[nodiscard]] int count(std::size_t receiver_place, std::size_t leaf) const;
 
-    /// Fills mixed_before from mixed; `counts` must have 16 entries for every bit of mixed. Throws
-    /// std::invalid_argument when sizes or bits contradict each other, or a count is above 16.
+    /// Fills mixed_before from mixed. `counts` must have 16 entries for every bit of mixed.
+    ///
+    /// Throws:  std::invalid_argument when sizes or bits contradict each other, or a count is above
+    ///          16.
     void index();
 };
 
-/// Turns columns (one per leaf, in leaf order) into that layout; frees each column's memory as it
-/// goes.
+/// Turns columns (one per leaf, in leaf order) into the layout of VisibleCounts. Frees each
+/// column's memory on the way.
 [[nodiscard]] VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns,
                                                 std::size_t num_receivers);
 

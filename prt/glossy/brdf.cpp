@@ -10,21 +10,21 @@ namespace relumine::prt {
 
 namespace {
 
-/// Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G / (4 n.w n.v)
-/// times n.w: glTF 2.0, Appendix B.3.2. sin2: squared sine of the angle between normal and half
-/// vector; cos^2 alone loses it to cancellation where alpha is small. The quotient is ordered so
-/// that no cosine, however small, makes it infinite.
+/// Returns the Trowbridge-Reitz distribution times the height-correlated Smith visibility V = G /
+/// (4 n.w n.v) times n.w: glTF 2.0, Appendix B.3.2. sin2 is the squared sine of the angle between
+/// normal and half vector; 1 - cos^2 would lose it to cancellation where alpha is small. The order
+/// of the quotient keeps it finite for any cosine, however small.
 float ggx(float alpha, float sin2, float n_w, float n_v) {
     const float a2 = alpha * alpha;
-    const float d = sin2 + (1.0f - sin2) * a2; // cos^2 (a2 - 1) + 1
+    const float d = sin2 + (1.0f - sin2) * a2; // = cos^2 (a2 - 1) + 1
     const float distribution = a2 / (std::numbers::pi_v<float> * d * d);
     const float mask_v = std::sqrt(n_v * n_v * (1.0f - a2) + a2);
     const float mask_w = std::sqrt(n_w * n_w * (1.0f - a2) + a2);
     return distribution * 0.5f / (mask_v + n_v / n_w * mask_w);
 }
 
-/// cos^exponent of the angle with that sine: where it is small, log1p keeps what 1 - sin2 would
-/// round away.
+/// Returns cos^exponent of the angle whose squared sine is sin2. Where sin2 is small, log1p keeps
+/// digits that 1 - sin2 would round away.
 float cosine_power(float sin2, float exponent) {
     if (exponent == 0.0f)
         return 1.0f;
@@ -41,8 +41,7 @@ float blinn_phong_exponent(float exponent) {
     return std::clamp(exponent, 0.0f, 1e6f);
 }
 
-/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)): reflects all light that comes along the normal, and less
-/// of all other.
+/// (e + 2)(e + 4) / (8 pi (2^(-e/2) + e)).
 float blinn_phong_norm(float exponent) {
     const float e = blinn_phong_exponent(exponent);
     return (e + 2.0f) * (e + 4.0f) /
@@ -59,7 +58,7 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
     lobes.diffuse = n_w * std::numbers::inv_pi_v<float>;
     if (surface.highlight == Highlight::None || n_v <= 0.0f)
         return lobes;
-    // Not normalised: |v + w| is 2 v.h.
+    // The half vector is not normalised: |v + w| is 2 v.h.
     const glm::vec3 half = to_eye + w;
     const float length2 = std::max(glm::dot(half, half), 1e-12f);
     const glm::vec3 across = glm::cross(normal, half);

@@ -24,6 +24,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/lobe_refinement.h"
 #include "prt/precompute.h"
+#include "prt/precompute_context.h"
 
 namespace relumine::prt {
 
@@ -32,11 +33,11 @@ namespace {
 /// Name of this part in a checkpoint.
 constexpr const char* Part = "highlights";
 
-/// Work between two looks at the checkpoint: about a second; a block takes some milliseconds.
+/// Work between two looks at the checkpoint: about a second. A block takes some milliseconds.
 constexpr std::size_t BlocksPerThreadAndStep = 256;
 
-/// Blocks of an estimate: their entries differ by a factor of two or so, the mean is good to some
-/// percent.
+/// Blocks of an estimate. The entries of blocks differ by a factor of about two, so the mean is
+/// good to some percent.
 constexpr std::size_t TrialBlocks = 256;
 
 /// One block's entries of one lobe.
@@ -46,8 +47,8 @@ struct BlockEntries {
     std::vector<std::uint8_t> values;
 };
 
-/// Bytes hold the square root: a highlight's foot, shared by many directions, keeps its digits
-/// beside the peak.
+/// Quantises a lobe. Bytes hold the square root: so a highlight's foot, shared by many directions,
+/// keeps its digits beside the peak.
 BlockEntries quantised(const LobeCut& cut) {
     BlockEntries entries;
     entries.cells.reserve(cut.cells.size());
@@ -64,7 +65,7 @@ BlockEntries quantised(const LobeCut& cut) {
     return entries;
 }
 
-/// One block, for a checkpoint.
+/// Writes one block for a checkpoint.
 void add(files::ByteWriter& writer, const BlockEntries& block) {
     writer.add<std::uint64_t>(block.cells.size());
     writer.add_all(std::span(block.cells));
@@ -81,7 +82,7 @@ BlockEntries next_entries(files::ByteReader& reader) {
     return block;
 }
 
-/// Frees the blocks' own arrays as it goes.
+/// Joins the blocks. Frees each block's arrays on the way.
 LobeCuts joined(std::vector<BlockEntries>&& blocks) {
     LobeCuts cuts;
     cuts.begin.push_back(0);
@@ -99,7 +100,8 @@ LobeCuts joined(std::vector<BlockEntries>&& blocks) {
     return cuts;
 }
 
-/// The angle over which a highlight changes, as seen from the light: twice that of the half vector.
+/// Returns the angle over which a highlight changes, as seen from the light: twice the angle of the
+/// half vector.
 float narrowness_of(const Surface& surface) {
     switch (surface.highlight) {
     case Highlight::Ggx:
@@ -112,9 +114,9 @@ float narrowness_of(const Surface& surface) {
     return 0.0f;
 }
 
-/// The tolerance is for highlights of at least this width (roughness 0.3) and falls with what is
-/// narrower: a broad one takes in many lights, whose errors cancel; a narrow one sees one at a
-/// time. Cells of narrow ones are few all the same.
+/// The tolerance holds for highlights of at least this width (roughness 0.3) and falls for narrower
+/// ones. A broad highlight takes in many lights, whose errors cancel; a narrow one sees one light
+/// at a time. Narrow ones still have few cells.
 constexpr float FullToleranceWidth = 0.18f;
 
 float tightened(float tolerance, const BlockToRefine& block) {
@@ -136,7 +138,8 @@ public:
                      const GlossyOptions& options)
         : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options) {}
 
-    GlossyTransfer run(GlossyStatistics& statistics);
+    /// `blocks_per_step`: work between two looks at the checkpoint.
+    GlossyTransfer run(std::size_t blocks_per_step, GlossyStatistics& statistics);
     std::uint64_t estimate();
 
 private:
@@ -147,17 +150,17 @@ private:
     void keep(EntriesOfBlock&& block);
     void take_up();
     void save_checkpoint();
-    void work();
+    void work(std::size_t blocks_per_step);
 
     const Receivers& receivers_;
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
-    /// Finished, from the first on
+    /// Finished blocks, from the first on.
     std::vector<EntriesOfBlock> blocks_;
-    /// Of them
+    /// Entries of the finished blocks.
     std::uint64_t num_entries_ = 0;
-    /// Of them in the checkpoint
+    /// Finished blocks in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t rays_saved_ = 0;
     std::atomic<std::uint64_t> num_rays_ = 0;
@@ -218,7 +221,8 @@ void GlossyPrecompute::keep(EntriesOfBlock&& block) {
     blocks_.push_back(std::move(block));
 }
 
-/// A record is the rays of its blocks, then the blocks.
+/// Takes up the blocks of an earlier run. A record has the number of its blocks' rays, then the
+/// blocks.
 void GlossyPrecompute::take_up() {
     for (const std::vector<std::byte>& record : options_.checkpoint->load(Part, false).records)
         files::unpack(record, [this](std::span<const std::byte> part) {
@@ -252,15 +256,13 @@ void GlossyPrecompute::save_checkpoint() {
     rays_saved_ = num_rays_;
 }
 
-void GlossyPrecompute::work() {
+void GlossyPrecompute::work(std::size_t blocks_per_step) {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
-    const std::size_t per_step = options_.blocks_per_step.value_or(
-        BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency()));
     std::mutex mutex;
     std::size_t num_done = blocks_.size();
     while (blocks_.size() < num_blocks) {
         const std::size_t begin = blocks_.size();
-        std::vector<EntriesOfBlock> step(std::min(per_step, num_blocks - begin));
+        std::vector<EntriesOfBlock> step(std::min(blocks_per_step, num_blocks - begin));
         const std::uint64_t rays_before = num_rays_;
         try {
             tbb::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
@@ -286,12 +288,12 @@ void GlossyPrecompute::work() {
     }
 }
 
-GlossyTransfer GlossyPrecompute::run(GlossyStatistics& statistics) {
+GlossyTransfer GlossyPrecompute::run(std::size_t blocks_per_step, GlossyStatistics& statistics) {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
     if (options_.checkpoint != nullptr)
         take_up();
     try {
-        work();
+        work(blocks_per_step);
     } catch (const TooManyEntries&) {
         if (options_.checkpoint != nullptr)
             save_checkpoint();
@@ -357,7 +359,7 @@ bool has_highlights(const Receivers& receivers) {
 }
 
 float narrowest_roughness(std::uint32_t face_resolution) {
-    // A cell in the middle of a face spans 2 / 2^level in the tangent, where it is widest.
+    // A cell in the middle of a face is widest: it spans 2 / 2^level in the tangent.
     const float cell = 2.0f / static_cast<float>(1u << deepest_level(face_resolution));
     return std::sqrt(std::max(cell, ggx_alpha(0.0f)));
 }
@@ -378,11 +380,23 @@ GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blo
     check(receivers, transfer, options);
     const auto start = std::chrono::steady_clock::now();
     GlossyStatistics local;
-    GlossyTransfer glossy = GlossyPrecompute(receivers, blockers, transfer, options).run(local);
+    const std::size_t blocks_per_step =
+        BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    GlossyTransfer glossy =
+        GlossyPrecompute(receivers, blockers, transfer, options).run(blocks_per_step, local);
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (statistics != nullptr)
         *statistics = local;
     return glossy;
+}
+
+GlossyTransfer precompute_glossy_in_steps(const Receivers& receivers, const Blockers& blockers,
+                                          const Transfer& transfer, const GlossyOptions& options,
+                                          std::size_t blocks_per_step) {
+    check(receivers, transfer, options);
+    GlossyStatistics statistics;
+    return GlossyPrecompute(receivers, blockers, transfer, options)
+        .run(blocks_per_step, statistics);
 }
 
 } // namespace relumine::prt

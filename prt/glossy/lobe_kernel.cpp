@@ -34,7 +34,7 @@ Vector dot(const Vector3& a, const Vector3& b) {
     return hn::MulAdd(a.x, b.x, hn::MulAdd(a.y, b.y, hn::Mul(a.z, b.z)));
 }
 
-/// |a x b|^2: what 1 - cos^2 would lose to cancellation where a highlight is sharp.
+/// Returns |a x b|^2. 1 - cos^2 would lose it to cancellation where a highlight is sharp.
 Vector squared_cross(const Vector3& a, const Vector3& b) {
     const auto x = hn::MulSub(a.y, b.z, hn::Mul(a.z, b.y));
     const auto y = hn::MulSub(a.z, b.x, hn::Mul(a.x, b.z));
@@ -55,8 +55,7 @@ public:
         n_w_ = hn::Max(dot(n, light), hn::Zero(d));
         const Vector3 h(hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z));
         h_h_ = hn::Max(dot(h, h), hn::Set(d, 1e-12f));
-        nxh_ =
-            hn::Div(squared_cross(n, h), h_h_); // sin^2 of the angle between n and the half vector
+        nxh_ = hn::Div(squared_cross(n, h), h_h_); // sin^2 between n and the half vector
         // v.h = |v + w| / 2 for unit vectors.
         const auto one_less =
             hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), hn::Sqrt(h_h_), hn::Set(d, 1.0f)), hn::Zero(d));
@@ -91,7 +90,7 @@ private:
         return hn::Load(Tag(), values.data() + lane_);
     }
 
-    /// D V n.w of glTF 2.0, Appendix B.
+    /// Returns D V n.w of glTF 2.0, Appendix B.
     [[nodiscard]] Vector ggx() const {
         const Tag d;
         const auto one = hn::Set(d, 1.0f);
@@ -111,7 +110,7 @@ private:
 
     [[nodiscard]] Vector blinn_phong() const {
         const Tag d;
-        // log1p keeps what 1 - sin^2 would round away.
+        // log1p keeps digits that 1 - sin^2 would round away.
         const auto sin2 = hn::Min(nxh_, hn::Set(d, 1.0f - 6e-8f));
         const auto log_cos = hn::Mul(hn::Set(d, 0.5f), hn::Log1p(d, hn::Neg(sin2)));
         const auto power = hn::Exp(d, hn::Mul(load(surfaces_.exponent), log_cos));

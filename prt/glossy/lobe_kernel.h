@@ -1,5 +1,5 @@
 // View-dependent lobes of 16 receivers at a time. Vectorised with run-time dispatch;
-// evaluate_lobes() is the plain form.
+// evaluate_lobes() in brdf.h is the plain form.
 #pragma once
 
 #include <array>
@@ -13,19 +13,19 @@
 
 namespace relumine::prt {
 
-/// What the lobes of a block need to know of its receivers, coordinates apart.
+/// The receivers of a block as the lobes need them, coordinates apart.
 struct alignas(64) BlockSurfaces {
     using Floats = std::array<float, BlockSize>;
     std::array<Floats, 3> normal{};
     std::array<Floats, 3> to_eye{};
     Floats normal_dot_eye{};
-    /// GGX
+    /// GGX only.
     Floats alpha_squared{};
-    /// Blinn-Phong
+    /// Blinn-Phong only.
     Floats exponent{};
-    /// Blinn-Phong: the lobe's norm
+    /// Blinn-Phong only: the lobe's norm.
     Floats factor{};
-    /// Bit i: receiver i has this highlight and its eye is above the horizon
+    /// Bit i is set where receiver i has this highlight and its eye is above the horizon.
     std::uint32_t ggx = 0;
     std::uint32_t blinn_phong = 0;
 
@@ -36,12 +36,14 @@ struct alignas(64) BlockSurfaces {
     }
 };
 
-/// The lobe of each receiver for each direction: `values` [directions.size()] of 16. Relative error
-/// below 1e-5 plus 1e-7 of the peak.
+/// Evaluates one lobe of each receiver for each direction.
+///
+/// Shape:   values is [directions.size()] of 16.
+/// Accuracy: relative error below 1e-5 plus 1e-7 of the peak.
 void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
                    std::span<const glm::vec3> directions, std::span<BlockSurfaces::Floats> values);
 
-/// All lobes for one direction, by GlossyLobe.
+/// Evaluates all lobes for one direction, by GlossyLobe.
 void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
                     std::array<BlockSurfaces::Floats, NumGlossyLobes>& values);
 

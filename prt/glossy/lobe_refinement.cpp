@@ -15,11 +15,11 @@ namespace {
 
 using Floats = BlockSurfaces::Floats;
 
-/// Cells begin at this level: nine samples see nothing between them, and visibility is known finer
-/// than that.
+/// Level of the first cells: nine samples see nothing between them, and visibility is known at a
+/// finer level.
 constexpr std::uint32_t FirstLevel = 2;
 
-/// No block needs so many cells; a guard against lobes that are all noise.
+/// A guard against lobes of pure noise; no block needs so many cells.
 constexpr std::size_t MaxCells = 16384;
 
 constexpr std::uint32_t NoLeaf = std::numeric_limits<std::uint32_t>::max();
@@ -29,7 +29,7 @@ constexpr std::size_t GridWidth = 5;
 constexpr std::size_t GridSize = GridWidth * GridWidth;
 static_assert(GridSize - SamplesPerCell == PacketSize);
 
-/// Place in a split's grid of sample l of its child i.
+/// Returns the place of sample l of child i in a split's grid.
 constexpr std::size_t grid_place(std::uint32_t child, std::size_t l) {
     const std::size_t right = child & 1u;
     const std::size_t below = child >> 1u;
@@ -40,7 +40,7 @@ constexpr bool is_new(std::size_t place) {
     return place / GridWidth % 2 == 1 || place % GridWidth % 2 == 1;
 }
 
-/// Place of a sample in a grid of samples, row by row.
+/// Column and row of a sample in a grid of samples, stored row by row.
 double column(std::size_t sample, std::size_t width = 3) {
     return static_cast<double>(sample % width);
 }
@@ -52,22 +52,22 @@ double row(std::size_t sample, std::size_t width = 3) {
 /// A bit for each receiver.
 using Lanes = std::uint16_t;
 
-/// Which receivers see the light at each sample of a cell.
+/// For each sample of a cell, the receivers that see the light there.
 using SampleLanes = std::array<Lanes, SamplesPerCell>;
 
 struct Node {
     Cell cell;
-    /// The transfer's cluster that holds all of the cell, if one does
+    /// The transfer's cluster that holds the whole cell, or NoLeaf.
     std::uint32_t leaf = NoLeaf;
-    /// Receivers that see all of that cluster
+    /// Receivers that see all of that cluster.
     Lanes full = 0;
-    /// Those that see some of it
+    /// Receivers that see some of that cluster.
     Lanes partial = 0;
-    /// Of the partial ones, where there is a leaf
+    /// For the partial receivers, where there is a leaf.
     SampleLanes lit{};
-    /// Dw mean (T - T_C)^2, summed over receivers
+    /// dw mean (T - T_C)^2, summed over receivers.
     double error = 0.0;
-    /// Dw mean of the lobe's square, nothing blocked
+    /// dw mean of the lobe's square, nothing blocked, summed over receivers.
     double power = 0.0;
     Floats mean{};
 };
@@ -89,6 +89,9 @@ private:
 
     void add_first_cells();
     void split(const Node& parent);
+    std::array<Lanes, GridSize> lit_grid(const Node& parent,
+                                         const std::array<glm::vec3, GridSize>& directions,
+                                         const GridValues& values);
     void add(Node node, const std::array<const Floats*, SamplesPerCell>& values);
     void find_leaf(Node& node) const;
     void weigh(Node& node, const std::array<const Floats*, SamplesPerCell>& values) const;
@@ -103,11 +106,11 @@ private:
     const Transfer& transfer_;
     const Blockers& blockers_;
     const RefinementLimits& limits_;
-    /// Largest error first
+    /// A heap, largest error first.
     std::vector<Node> heap_;
-    /// Single texels
+    /// Cells that are single texels.
     std::vector<Node> done_;
-    /// Of all cells
+    /// Sums over all cells.
     double error_ = 0.0;
     double power_ = 0.0;
     std::uint64_t num_rays_ = 0;
@@ -167,6 +170,33 @@ void LobeRefiner::add_first_cells() {
             }
 }
 
+/// Returns the receivers that the light at each point of a split's grid reaches. The cell's own
+/// samples are known; the others are traced.
+std::array<Lanes, GridSize> LobeRefiner::lit_grid(const Node& parent,
+                                                  const std::array<glm::vec3, GridSize>& directions,
+                                                  const GridValues& values) {
+    std::array<Lanes, GridSize> lit{};
+    std::array<glm::vec3, PacketSize> new_directions;
+    std::array<const Floats*, PacketSize> new_values;
+    std::array<std::size_t, PacketSize> places{};
+    std::size_t num_new = 0;
+    std::size_t num_old = 0;
+    for (std::size_t i = 0; i < GridSize; ++i) {
+        if (!is_new(i)) {
+            lit[i] = parent.lit[num_old++];
+            continue;
+        }
+        places[num_new] = i;
+        new_directions[num_new] = directions[i];
+        new_values[num_new++] = &values[i];
+    }
+    std::array<Lanes, PacketSize> new_lit{};
+    trace(new_directions, new_values, parent.partial, new_lit);
+    for (std::size_t i = 0; i < PacketSize; ++i)
+        lit[places[i]] = new_lit[i];
+    return lit;
+}
+
 void LobeRefiner::split(const Node& parent) {
     const double size = 0.25 * parent.cell.size();
     std::array<glm::vec3, GridSize> directions;
@@ -177,28 +207,9 @@ void LobeRefiner::split(const Node& parent) {
     GridValues values;
     evaluate_lobe(block_.surfaces, lobe_, directions, values);
 
-    std::array<Lanes, GridSize> lit{};
-    if (parent.leaf != NoLeaf && parent.partial != 0) {
-        std::array<glm::vec3, PacketSize> new_directions;
-        std::array<const Floats*, PacketSize> new_values;
-        std::array<std::size_t, PacketSize> places{};
-        std::size_t num_new = 0;
-        std::size_t num_old = 0;
-        for (std::size_t i = 0; i < GridSize; ++i) {
-            if (!is_new(i)) {
-                lit[i] = parent.lit[num_old++];
-                continue;
-            }
-            places[num_new] = i;
-            new_directions[num_new] = directions[i];
-            new_values[num_new++] = &values[i];
-        }
-        std::array<Lanes, PacketSize> new_lit{};
-        trace(new_directions, new_values, parent.partial, new_lit);
-        for (std::size_t i = 0; i < PacketSize; ++i)
-            lit[places[i]] = new_lit[i];
-    }
-
+    const std::array<Lanes, GridSize> lit = parent.leaf != NoLeaf && parent.partial != 0
+                                                ? lit_grid(parent, directions, values)
+                                                : std::array<Lanes, GridSize>{};
     for (std::uint32_t i = 0; i < 4; ++i) {
         Node child{.cell = parent.cell.child(i),
                    .leaf = parent.leaf,
@@ -238,13 +249,12 @@ void LobeRefiner::add(Node node, const std::array<const Floats*, SamplesPerCell>
     std::push_heap(heap_.begin(), heap_.end(), smaller_error);
 }
 
-/// Whether a highlight may hide between the samples: the cell is wider than both the highlight and
-/// its distance from it.
+/// Whether a highlight may hide between the samples: the cell is wider than the highlight and wider
+/// than its distance from the highlight.
 bool LobeRefiner::is_too_coarse(const Cell& cell) const {
     if (lobe_ == GlossyLobe::DiffuseGrazing)
         return false;
-    const auto radius = static_cast<float>(
-        1.42 * cell.size()); // half a diagonal in the face's centre, more than anywhere
+    const auto radius = static_cast<float>(1.42 * cell.size()); // half the longest diagonal
     const glm::vec3 centre =
         cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(), (cell.y + 0.5) * cell.size());
     for (std::size_t i = 0; i < block_.origins.size(); ++i)
@@ -254,7 +264,8 @@ bool LobeRefiner::is_too_coarse(const Cell& cell) const {
     return false;
 }
 
-/// Where a cluster holds all of the cell, what the receivers see of it.
+/// Finds the cluster that holds the whole cell, and which receivers see all or some of it. Leaves
+/// the node without a leaf where several clusters share the cell.
 void LobeRefiner::find_leaf(Node& node) const {
     const double size = node.cell.size();
     const std::uint32_t leaf = transfer_.quadtree.leaf_at(
@@ -272,8 +283,9 @@ void LobeRefiner::find_leaf(Node& node) const {
     }
 }
 
-/// The part of the light at each sample that reaches each receiver: 0 or 1 inside a cluster; in a
-/// cell of several clusters the part of the sample's cluster that the receiver sees.
+/// Returns the part of the light at each sample that reaches each receiver. Inside a cluster it is
+/// 0 or 1. In a cell of several clusters it is the part of the sample's cluster that the receiver
+/// sees.
 std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) const {
     std::array<Floats, SamplesPerCell> parts{};
     for (std::size_t l = 0; l < SamplesPerCell; ++l) {
@@ -283,7 +295,7 @@ std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) con
                 parts[l][i] = static_cast<float>(seen >> i & 1u);
             continue;
         }
-        // A hair inside, as samples lie on borders of cells.
+        // Samples lie on borders of cells, so move them a hair inside.
         constexpr double Inside = 1e-6;
         const double size = node.cell.size();
         const double s = (node.cell.x + 0.5 + (0.5 - Inside) * (column(l) - 1.0)) * size;
@@ -298,7 +310,7 @@ std::array<Floats, SamplesPerCell> LobeRefiner::seen_parts(const Node& node) con
     return parts;
 }
 
-/// The cell's mean, error and power from the lobe at its samples.
+/// Sets the cell's mean, error and power from the lobe at its samples.
 void LobeRefiner::weigh(Node& node, const std::array<const Floats*, SamplesPerCell>& values) const {
     const double size = node.cell.size();
     const double solid_angle = cubemap::solid_angle(
@@ -335,8 +347,8 @@ void LobeRefiner::weigh(Node& node, const std::array<const Floats*, SamplesPerCe
     node.error = solid_angle * static_cast<double>(error);
 }
 
-/// Sets the bit of each of `receivers` that the light from each direction reaches; where the lobe
-/// is zero no ray is cast.
+/// For each direction, sets the bits of the `receivers` that its light reaches. Casts no ray where
+/// the lobe is zero.
 void LobeRefiner::trace(std::span<const glm::vec3> directions,
                         std::span<const Floats* const> values, Lanes receivers,
                         std::span<Lanes> lit) {

@@ -15,39 +15,40 @@
 
 namespace relumine::prt {
 
-/// A block of receivers, all that its lobes share.
+/// A block of receivers, with everything that its lobes share.
 struct BlockToRefine {
     BlockSurfaces surfaces = {};
-    /// [1..16] where the receivers' rays start
+    /// [1..16] starts of the receivers' rays.
     std::span<const glm::vec3> origins = {};
-    /// The eye's direction mirrored at each receiver's normal
+    /// The eye's direction mirrored at each receiver's normal.
     std::array<glm::vec3, BlockSize> mirror{};
-    /// Angle over which each receiver's highlight changes, radians; 0 where it has none
+    /// The angle over which each receiver's highlight changes, radians; 0 without a highlight.
     std::array<float, BlockSize> narrowness{};
-    /// Of the transfer
+    /// Index of the block in the transfer.
     std::size_t block = 0;
 };
 
-/// A cell of a block's cut and the lobe's mean over it, visibility included, for each receiver.
+/// A cell of a block's cut, and the mean of the lobe over it for each receiver, visibility
+/// included.
 struct CutCell {
     Cell cell;
     BlockSurfaces::Floats mean{};
 };
 
 struct LobeCut {
-    /// Along the Z curve; without those that transfer nothing
+    /// Along the Z curve, without cells that transfer nothing.
     std::vector<CutCell> cells;
-    /// Sum over receivers of the integral of the lobe's square, nothing blocked
+    /// Sum over receivers of the integral of the lobe's square, nothing blocked.
     double power = 0.0;
     std::uint64_t num_rays = 0;
 };
 
 struct RefinementLimits {
-    /// GlossyOptions::tolerance
+    /// As GlossyOptions::tolerance.
     float tolerance = 0.02f;
-    /// Of a single texel
+    /// The level of single texels.
     std::uint32_t max_level = 10;
-    /// What the tolerance is a part of; 0: the lobe's own power
+    /// The power that the tolerance is relative to; 0: the lobe's own power.
     double reference_power = 0.0;
 };
 

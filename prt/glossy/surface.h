@@ -1,4 +1,4 @@
-// What a receiver's surface does with light.
+// How a receiver's surface reflects light.
 #pragma once
 
 #include <cstdint>
@@ -7,26 +7,26 @@
 
 namespace relumine::prt {
 
-/// The shape of a surface's highlight.
+/// The kind of a surface's highlight.
 enum class Highlight : std::uint8_t {
-    /// Lambert
+    /// Lambert.
     None,
-    /// metallic-roughness as glTF 2.0 defines it (its Appendix B)
+    /// Metallic-roughness as glTF 2.0 defines it in its Appendix B.
     Ggx,
-    /// Normalised Blinn-Phong, of OBJ materials
+    /// Normalised Blinn-Phong, from OBJ materials.
     BlinnPhong,
 };
 
-/// Reflection of one receiver. Colours may change after a precompute, the shape of the highlight
-/// may not.
+/// Reflection of one receiver. Colours may change after a precompute; the kind and shape of the
+/// highlight may not.
 struct Surface {
-    /// Diffuse reflectance, 0..1
+    /// Diffuse reflectance, 0..1.
     glm::vec3 albedo{1.0f};
-    /// GGX: reflectance at normal incidence, F0; Blinn-Phong: Ks
+    /// GGX: F0, the reflectance at normal incidence. Blinn-Phong: Ks.
     glm::vec3 specular{0.0f};
-    /// What `shape` means
+    /// Gives `shape` its meaning.
     Highlight highlight = Highlight::None;
-    /// GGX: glTF's roughness, 0..1 (alpha is its square); Blinn-Phong: the exponent, >= 0
+    /// GGX: glTF's roughness, 0..1 (alpha is its square). Blinn-Phong: the exponent, >= 0.
     float shape = 1.0f;
 
     bool operator==(const Surface&) const = default;

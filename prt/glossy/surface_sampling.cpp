@@ -8,7 +8,7 @@ namespace relumine::prt {
 
 namespace {
 
-/// An attribute of the corners at a point.
+/// Interpolates an attribute of the corners at a point.
 template<class Value>
 Value interpolate(const std::array<Value, 3>& corners, const glm::vec2& barycentric) {
     return corners[0] * (1.0f - barycentric.x - barycentric.y) + corners[1] * barycentric.x +

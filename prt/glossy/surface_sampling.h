@@ -12,19 +12,21 @@
 
 namespace relumine::prt {
 
-/// The surface of a triangle's point: position a + x (b - a) + y (c - a) for barycentric (x, y).
-/// Lambert, albedo 1 where the mesh has no materials. Metallic-roughness: albedo = base (1 -
-/// metallic), F0 = mix(0.04, base, metallic), GGX; Phong: Blinn-Phong where Ks > 0, Lambert
-/// otherwise.
+/// Returns the surface at a triangle's point, position a + x (b - a) + y (c - a) for barycentric
+/// (x, y).
+///
+/// Lambert of albedo 1 where the mesh has no materials. Metallic-roughness materials give GGX with
+/// albedo = base (1 - metallic) and F0 = mix(0.04, base, metallic). Phong materials give
+/// Blinn-Phong where Ks > 0, Lambert otherwise.
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric);
 
-/// Another surface for points of a triangle, given its own: materials from the command line.
+/// Replaces the surface of a triangle's points, given its own: materials from the command line.
 using SurfaceOverride = std::function<Surface(const mesh::TriangleMesh& mesh,
                                               std::uint32_t triangle, const Surface& surface)>;
 
-/// One surface per vertex: at its corner of the lowest triangle that uses it; Lambert, albedo 1 for
-/// vertices without one.
+/// Returns one surface per vertex, taken at its corner of the lowest triangle that uses it. A
+/// vertex without a triangle gets Lambert of albedo 1.
 [[nodiscard]] std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,
                                                    const SurfaceOverride& override_surface = {});
 

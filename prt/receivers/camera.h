@@ -11,37 +11,41 @@ namespace relumine::prt {
 struct Camera {
     glm::vec3 eye{0.0f};
     glm::vec3 target{0.0f};
-    /// vertical
+    /// Vertical field of view.
     float fov_degrees = 35.0f;
     bool operator==(const Camera&) const = default;
 };
 
-/// Axes of a camera; right and up are scaled so that they reach the picture's edges at distance 1.
+/// Axes of a camera. Right and up are scaled to reach the picture's edges at distance 1.
 struct CameraAxes {
     glm::vec3 right, up, forward;
 };
 
-/// `aspect`: width over height. Looking straight up or down, -Z is the picture's up. Throws
-/// std::invalid_argument for a camera without a direction or a field of view outside (0, 180).
+/// Returns the axes of a camera. `aspect` is width over height. A camera that looks straight up or
+/// down has -Z as its picture's up.
+///
+/// Throws:  std::invalid_argument for a camera whose target is its eye, or a field of view outside
+///          (0, 180).
 [[nodiscard]] CameraAxes axes_of(const Camera& camera, float aspect);
 
-/// Most pixels a picture may have on a side, and most samples a pixel on a side.
+/// The most pixels a picture has on a side, and the most samples a pixel has on a side.
 inline constexpr std::uint32_t MaxPictureSize = 16384;
 inline constexpr std::uint32_t MaxSamplesPerAxis = 64;
 
-/// The rays of a picture: n x n per pixel on a regular grid, so that one ray goes through the
-/// pixel's centre for n = 1.
+/// The rays of a picture: n x n per pixel on a regular grid. For n = 1 the ray goes through the
+/// pixel's centre.
 class PictureRays {
 public:
-    /// Throws std::invalid_argument as axes_of() does, and for a size or a number of samples
-    /// outside of the limits above.
+    /// Throws:  std::invalid_argument as axes_of() does, and for a size or a number of samples
+    ///          beyond the limits above.
     PictureRays(const Camera& camera, std::uint32_t width, std::uint32_t height,
                 std::uint32_t samples_per_axis);
 
     [[nodiscard]] std::uint32_t samples_per_pixel() const {
         return samples_per_axis_ * samples_per_axis_;
     }
-    /// Unit direction of sample i of pixel (x, y), counted from the top left; samples row by row.
+    /// Returns the unit direction of sample i of pixel (x, y). Pixels count from the top left;
+    /// samples count row by row.
     [[nodiscard]] glm::vec3 direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const;
 
 private:

@@ -6,7 +6,7 @@ namespace relumine::prt {
 
 namespace {
 
-/// In double: products of a small triangle's edges would vanish in float.
+/// Computes in double: products of a small triangle's edges would vanish in float.
 glm::vec3 unit_or_zero(const glm::dvec3& v) {
     const double length = glm::length(v);
     return length > 0.0 ? glm::vec3(v / length) : glm::vec3(0.0f);
@@ -31,7 +31,7 @@ glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
 
 glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
     const glm::vec3 interpolated = value_at(mesh, mesh.normals, point);
-    // Shorter than this it is rounding of normals that cancel, not a direction.
+    // A shorter vector is the rounding of normals that cancel, not a direction.
     constexpr float Shortest = 1e-4f;
     return glm::length(interpolated) > Shortest ? glm::normalize(interpolated)
                                                 : face_normal(mesh, point.triangle);

@@ -1,4 +1,4 @@
-// A point of a mesh's surface, and what its triangle's vertices say there.
+// A point of a mesh's surface, and values interpolated there.
 #pragma once
 
 #include <cstdint>
@@ -13,19 +13,23 @@ namespace relumine::prt {
 
 struct MeshPoint {
     std::uint32_t triangle = 0;
-    /// Weights of the triangle's second and third vertex, >= 0, sum <= 1
+    /// Weights of the triangle's second and third vertex; each >= 0, their sum <= 1.
     glm::vec2 barycentric{0.0f};
     bool operator==(const MeshPoint&) const = default;
 };
 
-/// A vertex attribute [num_vertices] at a point, linear within its triangle.
+/// Interpolates a vertex attribute at a point, linearly within its triangle.
+///
+/// Shape:   values is [num_vertices].
 [[nodiscard]] glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> values,
                                  const MeshPoint& point);
 
-/// Unit normal of a triangle, counter-clockwise seen from its tip; zero for one without an area.
+/// Returns the unit normal of a triangle whose corners run counter-clockwise seen from the normal's
+/// tip; zero for a triangle without an area.
 [[nodiscard]] glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
 
-/// The vertices' normals interpolated, unit length; the face's where they cancel.
+/// Returns the interpolated vertex normal, unit length; the face's normal where the vertex normals
+/// cancel.
 [[nodiscard]] glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
 } // namespace relumine::prt

@@ -1,5 +1,5 @@
-// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights",
-// Section 3.1: for image relighting the points are those seen in the pixels.
+// Based on: Johan and Nishita, "Efficient Relighting by Clustering Environment Lights", Section
+//           3.1: for image relighting the points are the ones seen in the pixels.
 #include "prt/receivers/pixel_receivers.h"
 
 #include <algorithm>
@@ -19,13 +19,13 @@ struct Seen {
     MeshPoint point;
 };
 
-/// Rays through shared edges may end a rounding error outside of their triangle.
+/// Moves a hit into its triangle: a ray through a shared edge may end a rounding error outside.
 glm::vec2 inside(const glm::vec2& barycentric) {
     const glm::vec2 positive(std::max(barycentric.x, 0.0f), std::max(barycentric.y, 0.0f));
     return positive / std::max(positive.x + positive.y, 1.0f);
 }
 
-/// The normal on the side that the eye is on.
+/// Returns the normal on the eye's side of the surface.
 glm::vec3 normal_towards(const mesh::TriangleMesh& mesh, const MeshPoint& point,
                          const glm::vec3& to_eye) {
     const glm::vec3 normal = shading_normal(mesh, point);
@@ -75,7 +75,7 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
         std::size_t receiver = first[y];
         for (const Seen& seen : rows[y]) {
             const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);
-            // A hit at the eye itself has no direction to it; its normal will do.
+            // A hit at the eye itself has no direction to the eye. It takes its normal.
             const glm::vec3 way = view.camera.eye - position;
             const glm::vec3 to_eye = glm::length(way) > 0.0f
                                          ? glm::normalize(way)

@@ -1,4 +1,4 @@
-// Receivers of image relighting [JN, Section 3.1]: what a fixed camera sees.
+// Receivers of image relighting [JN, Section 3.1]: the points that a fixed camera sees.
 #pragma once
 
 #include "mesh/triangle_mesh.h"
@@ -13,7 +13,7 @@ struct PixelView {
     Camera camera = {};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    /// n x n samples a pixel
+    /// n: each pixel has n x n samples.
     std::uint32_t samples_per_axis = 1;
 };
 
@@ -22,12 +22,16 @@ struct PixelReceivers {
     PixelLayout layout;
 };
 
-/// The first hits of the view's rays, with their direction to the eye and their place on the mesh;
-/// samples that hit nothing are no receivers. The normal is the interpolated vertex normal, turned
-/// over where the eye sees the back of the surface (vertex normals, not the order of a triangle's
-/// corners, say which side is the front). Parallel over rows; one ray per sample. Throws
-/// std::invalid_argument as PictureRays does, for more than MaxLayoutPlaces samples and for a view
-/// that sees nothing of the mesh.
+/// Returns the first hits of the view's rays, with their directions to the eye and their points on
+/// the mesh. A sample that hits nothing makes no receiver.
+///
+/// The normal is the interpolated vertex normal, turned over where the eye sees the back of the
+/// surface. The vertex normals say which side is the front; the order of a triangle's corners does
+/// not.
+///
+/// Cost:    one ray per sample; parallel over rows.
+/// Throws:  std::invalid_argument as PictureRays does, for more than MaxLayoutPlaces samples and
+///          for a view that sees nothing of the mesh.
 [[nodiscard]] PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& rays,
                                              const PixelView& view);
 

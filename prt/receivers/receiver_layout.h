@@ -17,16 +17,16 @@ struct VertexLayout {
     bool operator==(const VertexLayout&) const = default;
 };
 
-/// Receivers are where the rays of a picture first meet the mesh; the other samples see the
-/// background.
+/// Receivers are the points where the rays of a picture first meet the mesh. The other samples see
+/// the background.
 struct PixelLayout {
     Camera camera = {};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    /// n x n samples a pixel
+    /// n: each pixel has n x n samples.
     std::uint32_t samples_per_axis = 1;
-    /// [num_receivers] ascending: the sample of each receiver, counted pixel by pixel, row by row
-    /// from the top, n^2 in a pixel.
+    /// [num_receivers] ascending: the sample of each receiver. Samples count pixel by pixel, row by
+    /// row from the top, n^2 to a pixel.
     std::vector<std::uint32_t> samples = {};
 
     [[nodiscard]] std::size_t samples_per_pixel() const {
@@ -52,14 +52,14 @@ struct TexelLayout {
 
 using ReceiverLayout = std::variant<VertexLayout, PixelLayout, TexelLayout>;
 
-/// More samples or texels than any picture needs (one of 8192 x 8192 with four samples a pixel); it
-/// bounds what is allocated.
+/// A limit on samples and texels, which bounds what is allocated: a picture of 8192 x 8192 with
+/// four samples a pixel, more than any needs.
 inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 
-/// What one receiver is called: "vertex", "pixel sample" or "texel".
+/// Returns the name of one receiver: "vertex", "pixel sample" or "texel".
 [[nodiscard]] std::string receiver_name(const ReceiverLayout& layout);
 
-/// "vertices", "pixels 1024 x 768, 3 x 3 samples each" or "texels 512 x 512".
+/// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each" or "texels 512 x 512".
 [[nodiscard]] std::string description(const ReceiverLayout& layout);
 
 } // namespace relumine::prt

@@ -11,19 +11,21 @@
 #include <tbb/parallel_invoke.h>
 
 #include "prt/clusters/visible_counts.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
 
 namespace {
 
-/// What a turn of the normal by one radian counts, as a part of the scene's extent. Best for bunny
-/// and dragon; half of it or twice as much costs 2 to 3 % more mixed blocks.
+/// Weight of a turn of the normal by one radian, as a part of the scene's extent. Best for bunny
+/// and dragon; half or twice the weight costs 2 to 3 % more mixed blocks.
 constexpr double NormalWeight = 1.0 / 32.0;
 
-/// Receivers of a large group: what `beam_scene` traces at a time.
-constexpr std::size_t LargeGroup = 8 * BlockSize;
+/// Receivers that are traced together, in whole blocks.
+constexpr std::size_t GroupSize = ReceiverGroup::MaxSize;
+static_assert(GroupSize % BlockSize == 0);
 
-/// Below this many receivers a task is not worth its start.
+/// With fewer receivers a task is not worth its start.
 constexpr std::size_t MinTask = 4096;
 
 constexpr std::size_t NumAxes = 6;
@@ -33,7 +35,7 @@ struct Place {
     std::uint32_t receiver = 0;
 };
 
-/// Sum over axes of the extent, times the number of places.
+/// Returns the sum over axes of the extent, times the number of places.
 float spread(std::span<const Place> places) {
     std::array<float, NumAxes> low = places.front().at;
     std::array<float, NumAxes> high = low;
@@ -48,8 +50,8 @@ float spread(std::span<const Place> places) {
     return sum * static_cast<float>(places.size());
 }
 
-/// Puts the `middle` lowest along an axis first. Ties by index, so that the halves do not depend on
-/// the order before.
+/// Puts the `middle` lowest places along an axis first. Ties go by index, so the halves do not
+/// depend on the order before.
 void halve(std::span<Place> places, std::size_t middle, std::size_t axis) {
     std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle),
                      places.end(), [axis](const Place& a, const Place& b) {
@@ -58,13 +60,13 @@ void halve(std::span<Place> places, std::size_t middle, std::size_t axis) {
                      });
 }
 
-void group(std::span<Place> places) {
+void sort_into_groups(std::span<Place> places) {
     if (places.size() <= BlockSize) {
         std::sort(places.begin(), places.end(),
                   [](const Place& a, const Place& b) { return a.receiver < b.receiver; });
         return;
     }
-    const std::size_t unit = places.size() > LargeGroup ? LargeGroup : BlockSize;
+    const std::size_t unit = places.size() > GroupSize ? GroupSize : BlockSize;
     const std::size_t middle = (places.size() + unit - 1) / unit / 2 * unit;
     std::size_t best_axis = 0;
     float best_spread = std::numeric_limits<float>::max();
@@ -78,10 +80,10 @@ void group(std::span<Place> places) {
     }
     halve(places, middle, best_axis);
     const auto low = [&] {
-        group(places.first(middle));
+        sort_into_groups(places.first(middle));
     };
     const auto high = [&] {
-        group(places.subspan(middle));
+        sort_into_groups(places.subspan(middle));
     };
     if (places.size() > MinTask) {
         tbb::parallel_invoke(low, high);
@@ -117,8 +119,8 @@ std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {
     };
     const auto num_receiving = static_cast<std::size_t>(
         std::stable_partition(places.begin(), places.end(), receives) - places.begin());
-    group(std::span(places).first(num_receiving));
-    group(std::span(places).subspan(num_receiving));
+    sort_into_groups(std::span(places).first(num_receiving));
+    sort_into_groups(std::span(places).subspan(num_receiving));
 
     std::vector<std::uint32_t> order(places.size());
     std::transform(places.begin(), places.end(), order.begin(),

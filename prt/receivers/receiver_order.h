@@ -1,4 +1,4 @@
-// The order in which receivers are kept: those that see alike next to each other.
+// The order of receivers in memory: receivers with similar visibility stand next to each other.
 #pragma once
 
 #include <cstdint>
@@ -8,15 +8,18 @@
 
 namespace relumine::prt {
 
-/// An order that puts receivers next to each other which are near in space and face alike: place ->
-/// receiver index, [num_receivers]. Blocks of 16 that begin at multiples of 16 are the groups,
-/// blocks of 128 the next larger ones; within 16, by index. Receivers with a zero normal come last.
-/// Deterministic; parallel (TBB). O(n log n): 0.1 s for 100,000 receivers.
+/// Returns an order in which neighbours are near in space and face alike.
 ///
-/// Groups come from halving the receivers again and again, across the one of six axes (position,
-/// and normal times 1/32 of the scene's extent) that leaves the two most compact halves. Against
-/// Morton order of the positions, blocks of the bunny whose receivers see different parts of a
-/// cluster are a third fewer: most differ by their horizons, that is by their normals.
+/// Shape:   [num_receivers] receiver index by place.
+/// Order:   blocks are the runs of 16 from place 0 on, whose counts are kept together; groups are
+///          the runs of 128, which are traced together. Within a block, by index. Receivers with a
+///          zero normal come last.
+/// Cost:    O(n log n): 0.1 s for 100,000 receivers. Parallel (TBB), deterministic.
+///
+/// The receivers are halved again and again. There are six axes: position, and normal times 1/32 of
+/// the scene's extent. Each cut is across the axis that leaves the two most compact halves. On the
+/// bunny a third fewer blocks have receivers that see different parts of a cluster than with Morton
+/// order of positions: most such receivers differ by their horizons, which the normals tell apart.
 [[nodiscard]] std::vector<std::uint32_t> spatial_order(const Receivers& receivers);
 
 } // namespace relumine::prt

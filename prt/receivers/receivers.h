@@ -15,28 +15,32 @@ namespace relumine::prt {
 
 /// Points with normals. A receiver with a zero normal (an unreferenced vertex) receives nothing.
 struct Receivers {
-    /// [num_receivers]
+    /// [num_receivers] in the mesh's unit.
     std::vector<glm::vec3> positions;
-    /// [num_receivers], unit length or zero
+    /// [num_receivers] unit length or zero.
     std::vector<glm::vec3> normals;
-    /// [num_receivers], unit length; or empty: seen from anywhere, diffuse
+    /// [num_receivers] unit directions to the eye; empty: diffuse receivers, seen from anywhere.
     std::vector<glm::vec3> to_eye = {};
-    /// [num_receivers]; or empty: Lambert, albedo 1
+    /// [num_receivers]; empty: Lambert of albedo 1.
     std::vector<Surface> surfaces = {};
-    /// [num_receivers] where on the mesh; or empty: its vertices
+    /// [num_receivers] points on the mesh; empty: receivers are its vertices.
     std::vector<MeshPoint> points = {};
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
 };
 
-/// One receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section 3.1].
+/// Returns one receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section
+/// 3.1].
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
 
-/// Gives every receiver its direction to an eye; one that is in the eye looks up.
+/// Gives every receiver its direction to an eye. A receiver at the eye itself gets +Y.
 void look_from(Receivers& receivers, const glm::vec3& eye);
 
-/// The mesh's colours at the receivers [num_receivers]: interpolated at their points, or those of
-/// the vertices. Throws std::invalid_argument for a mesh without colours.
+/// Returns the mesh's colours at the receivers: interpolated at their points, or the vertices'
+/// colours.
+///
+/// Shape:   [num_receivers].
+/// Throws:  std::invalid_argument for a mesh without colours.
 [[nodiscard]] std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh,
                                                const Receivers& receivers);
 

@@ -19,8 +19,8 @@ double cross(const glm::dvec2& a, const glm::dvec2& b) {
     return a.x * b.y - a.y * b.x;
 }
 
-/// A triangle in the atlas: texel coordinates, x to the right, y down, texel (x, y) is [x, x + 1] x
-/// [y, y + 1].
+/// A triangle in the atlas, in texel coordinates: x to the right, y down. Texel (x, y) is [x, x +
+/// 1] x [y, y + 1].
 class Chart {
 public:
     Chart(const mesh::TriangleMesh& mesh, std::uint32_t triangle, const AtlasSize& size) {
@@ -35,7 +35,8 @@ public:
             longest = std::max(longest, glm::dot(edge, edge));
         }
         area_ = cross(corners_[1] - corners_[0], corners_[2] - corners_[0]);
-        // Thinner than a billionth of its length: what is left of an area is rounding of the uvs.
+        // A triangle thinner than a billionth of its length has an area only by rounding of the
+        // uvs.
         is_flat_ = !(std::abs(area_) > 1e-9 * longest);
     }
 
@@ -47,7 +48,7 @@ public:
         return glm::max(glm::max(corners_[0], corners_[1]), corners_[2]);
     }
 
-    /// Weights of the three corners at a point.
+    /// Returns the weights of the three corners at a point.
     [[nodiscard]] glm::dvec3 weights(const glm::dvec2& p) const {
         return glm::dvec3(cross(corners_[1] - p, corners_[2] - p),
                           cross(corners_[2] - p, corners_[0] - p),
@@ -55,8 +56,8 @@ public:
                area_;
     }
 
-    /// Whether the triangle and the inside of a texel, whose box its own box shares an area with,
-    /// have a point in common: no edge has all of the texel on its outer side.
+    /// Whether the triangle and the inside of a texel have a point in common: no edge has the whole
+    /// texel on its outer side. The texel's box must share an area with the triangle's box.
     [[nodiscard]] bool touches(double x, double y) const {
         const double side = area_ > 0.0 ? 1.0 : -1.0;
         for (std::size_t i = 0; i < 3; ++i) {
@@ -66,15 +67,15 @@ public:
             const glm::dvec2 inward = side * glm::dvec2(-edge.y, edge.x);
             const glm::dvec2 corner(x + (inward.x > 0.0 ? 1.0 : 0.0),
                                     y + (inward.y > 0.0 ? 1.0 : 0.0));
-            // Rounding of uvs in float must not make a neighbour of a chart that ends on a texel's
-            // border.
+            // A chart that ends on a texel's border must not touch the next texel by rounding of
+            // uvs in float.
             if (!(glm::dot(inward, corner - from) > 1e-5 * glm::length(edge)))
                 return false;
         }
         return true;
     }
 
-    /// The point on the triangle's border nearest to p: its weights and squared distance.
+    /// Returns the nearest point to p on the triangle's border: its weights and squared distance.
     [[nodiscard]] std::pair<glm::dvec3, double> nearest_on_border(const glm::dvec2& p) const {
         std::pair<glm::dvec3, double> best{{}, std::numeric_limits<double>::infinity()};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -96,26 +97,26 @@ public:
 
 private:
     std::array<glm::dvec2, 3> corners_{};
-    /// Twice, signed
+    /// Twice the area, signed.
     double area_ = 0.0;
     bool is_flat_ = false;
 };
 
 enum class Owner : std::uint8_t {
     None,
-    /// Touched, the centre is outside
+    /// A triangle touches the texel, but its centre is outside.
     Border,
-    /// The centre is on an edge: also of the triangle behind it
+    /// The centre is on an edge: it is also on the edge of the triangle behind.
     Edge,
-    /// The centre is inside one triangle
+    /// The centre is inside one triangle.
     Inside,
-    /// Inside several
+    /// The centre is inside several triangles.
     Overlapping,
 };
 
 struct Texel {
     MeshPoint point;
-    /// Squared, of a Border
+    /// Squared distance from the centre; for Border only.
     float distance = std::numeric_limits<float>::infinity();
     Owner owner = Owner::None;
 };
@@ -143,7 +144,7 @@ private:
         const glm::dvec2 end(size_.width, size_.height);
         const glm::dvec2 low = chart.low();
         const glm::dvec2 high = chart.high();
-        // Beyond the rounding of uvs in float.
+        // Farther out than the rounding of uvs in float.
         const glm::dvec2 slack = 1e-5 * end;
         if (low.x < -slack.x || low.y < -slack.y || high.x > end.x + slack.x ||
             high.y > end.y + slack.y)
@@ -163,7 +164,7 @@ private:
         const glm::dvec3 weights = chart.weights(centre);
         const double least = std::min({weights.x, weights.y, weights.z});
         if (least >= 0.0) {
-            // What is nearer to an edge may be inside the triangle behind it, too, by rounding.
+            // A centre nearer to an edge may also be inside the triangle behind it, by rounding.
             constexpr double Strictly = 1e-6;
             const bool strictly = least > Strictly;
             if (texel.owner < Owner::Edge) {

@@ -16,20 +16,20 @@ struct AtlasSize {
     std::uint32_t height = 0;
 };
 
-/// More texels than any lightmap has (8192 x 8192); it bounds what is allocated.
+/// A limit on texels, which bounds what is allocated: 8192 x 8192, more than any lightmap has.
 inline constexpr std::size_t MaxTexels = std::size_t{1} << 26;
 
-/// How the uvs fit the atlas.
+/// How well the uvs fit the atlas.
 struct AtlasReport {
-    /// Texels whose centre is inside several triangles
+    /// Texels whose centre is inside several triangles.
     std::size_t num_overlapping = 0;
-    /// The first of them, row by row from the top
+    /// The first overlapping texel, row by row from the top.
     std::uint32_t first_overlap = 0;
-    /// Texels that a chart touches but whose centre it leaves out
+    /// Texels that a chart touches without covering their centre.
     std::size_t num_borders = 0;
-    /// Triangles without an area in uv; they get no texels
+    /// Triangles without an area in uv, which get no texels.
     std::size_t num_flat = 0;
-    /// Triangles that reach beyond 0..1; cut off there
+    /// Triangles that reach beyond 0..1 and are cut off there.
     std::size_t num_outside = 0;
 };
 
@@ -39,12 +39,16 @@ struct TexelReceivers {
     AtlasReport report;
 };
 
-/// One receiver for each texel that shares an area with a triangle in uv: where the texel's centre
-/// is inside a triangle, that point of the mesh (of several triangles the first); else the nearest
-/// point of those triangles (of the first, where they are equally near). The normal is the
-/// interpolated vertex normal. O(texels in the boxes around the triangles). Throws
-/// std::invalid_argument for a mesh without uvs, a size of 0, above MaxPictureSize a side or
-/// MaxTexels in all, and for uvs that touch no texel.
+/// Returns one receiver for each texel that shares an area with a triangle in uv.
+///
+/// Where the texel's centre is inside a triangle, the receiver is that point of the mesh; the first
+/// of several triangles counts. Elsewhere the receiver is the nearest point of the triangles that
+/// touch the texel; the first of equally near ones counts. The normal is the interpolated vertex
+/// normal.
+///
+/// Cost:    O(texels in the boxes around the triangles).
+/// Throws:  std::invalid_argument for a mesh without uvs; for a size of 0, above MaxPictureSize a
+///          side or above MaxTexels in all; for uvs that touch no texel.
 [[nodiscard]] TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& size);
 
 } // namespace relumine::prt

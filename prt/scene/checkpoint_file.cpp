@@ -22,17 +22,18 @@ namespace {
 
 constexpr const char* RunName = "run.json";
 
-/// In front of a state.
+/// Stands in front of a state.
 struct StateHead {
-    /// Bytes of the log that belong to the state
-    std::uint64_t mark = 0x6574617453505052; // "RPPState"
+    /// Bytes "RPPState".
+    std::uint64_t mark = 0x6574617453505052;
+    /// Bytes of the log that belong to the state.
     std::uint64_t log_size = 0;
     std::uint64_t size = 0;
-    /// xxHash64 of the state, seeded with log_size
+    /// xxHash64 of the state, seeded with log_size.
     std::uint64_t checksum = 0;
 };
 
-/// Work of less than this is not worth a file.
+/// Less work than this is not worth a file.
 constexpr double WorthwhileSeconds = 5.0;
 
 } // namespace
@@ -51,7 +52,7 @@ CheckpointFile::CheckpointFile(const fs::path& output, Fingerprint fingerprint, 
     if (!lock())
         throw std::runtime_error(fmt::format(
             "{}: expected a checkpoint of a run that ended, got one in use", folder_.string()));
-    // Killed before its first save was whole.
+    // The earlier run was killed before its first save was complete.
     if (!fs::exists(file(RunName)))
         return;
     check_fingerprint();
@@ -60,7 +61,7 @@ CheckpointFile::CheckpointFile(const fs::path& output, Fingerprint fingerprint, 
 
 CheckpointFile::~CheckpointFile() = default;
 
-/// The error to throw; what is there is no checkpoint of this work then.
+/// Returns the error to throw. From then on the folder holds no checkpoint of this work.
 std::runtime_error CheckpointFile::damaged(const std::string& name) {
     is_ours_ = false;
     return std::runtime_error(fmt::format(
@@ -98,8 +99,8 @@ bool CheckpointFile::lock() {
     return lock_ != nullptr;
 }
 
-/// Removes what a checkpoint consists of and nothing else; what makes it one, the fingerprint,
-/// first.
+/// Removes the files of a checkpoint and nothing else. The fingerprint, which makes it a
+/// checkpoint, goes first.
 void CheckpointFile::clear() {
     fs::remove(file(RunName));
     std::vector<fs::path> names;
@@ -112,7 +113,7 @@ void CheckpointFile::clear() {
         fs::remove(name);
 }
 
-/// Makes the folder this run's.
+/// Takes the folder for this run.
 void CheckpointFile::claim() {
     if (is_ours_)
         return;
@@ -197,7 +198,7 @@ bool CheckpointFile::save(const std::string& part, std::span<const std::byte> re
         }
         is_saved = true;
     } catch (const std::exception& error) {
-        // The work goes on; the next save may find room. It brings the record again.
+        // The work goes on: the next save may find room. It brings the record again.
         if (log_size)
             log(part).cut(*log_size);
         if (options_.on_problem)
@@ -214,7 +215,7 @@ void CheckpointFile::remove() {
     try {
         logs_.clear();
         clear();
-        fs::remove(folder_, none); // stays when it holds files of someone else
+        fs::remove(folder_, none); // stays if it holds other files
     } catch (const fs::filesystem_error& error) {
         if (options_.on_problem)
             options_.on_problem(

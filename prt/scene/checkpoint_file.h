@@ -1,4 +1,4 @@
-// Checkpoints on disk, in a folder beside the scene file to be.
+// Checkpoints on disk, in a folder beside the future scene file.
 #pragma once
 
 #include <chrono>
@@ -23,27 +23,31 @@ class FolderLock;
 
 namespace relumine::prt {
 
-/// The folder OUT.prt.checkpoint: `run.json`, the fingerprint; for each part `PART.log`, its
-/// records, and `PART.state`, which says how much of the log belongs to it. A log only grows and a
+/// The folder OUT.prt.checkpoint. One process at a time uses it.
+///
+/// `run.json` holds the fingerprint. Each part has its records in `PART.log` and its state in
+/// `PART.state`; the state also says how much of the log belongs to it. A log only grows and a
 /// state is replaced whole, so a crash at any moment leaves the last checkpoint or the one before.
-/// It appears with the first save. One process at a time uses it.
+/// The folder appears with the first save.
 class CheckpointFile final : public Checkpoint {
 public:
     struct Options {
-        /// Take up what the folder holds; else it is cleared at the first save
+        /// Takes up what the folder holds. Otherwise the first save clears the folder.
         bool resume = false;
-        /// Between two saves
+        /// Time between two saves.
         std::chrono::duration<double> interval{20.0};
-        /// A save failed, or another process is at work
+        /// Called when a save failed, or another process is at work.
         std::function<void(const std::string&)> on_problem = {};
     };
 
-    /// Nothing is written yet. With `resume`: throws std::runtime_error "FOLDER: expected X, got Y"
-    /// when the checkpoint there belongs to other work, is damaged or in use. There may be none.
+    /// Writes nothing yet. With `resume`, a folder that does not exist is no error.
+    ///
+    /// Throws:  std::runtime_error "FOLDER: expected X, got Y" with `resume`, when the checkpoint
+    ///          belongs to other work, is damaged or in use.
     CheckpointFile(const std::filesystem::path& output, Fingerprint fingerprint, Options options);
     ~CheckpointFile() override;
 
-    /// "out.prt.checkpoint" for "out.prt".
+    /// Returns "out.prt.checkpoint" for "out.prt".
     [[nodiscard]] static std::filesystem::path folder_for(const std::filesystem::path& output);
 
     [[nodiscard]] Saved load(const std::string& part, bool with_state) override;
@@ -52,9 +56,10 @@ public:
     [[nodiscard]] bool save(const std::string& part, std::span<const std::byte> record,
                             std::span<const std::byte> state) override;
 
-    /// Whether there is something to resume from. No more when load() found it damaged.
+    /// Whether there is something to resume from. False once load() found damage.
     [[nodiscard]] bool exists() const { return is_ours_; }
-    /// The work is done: the folder goes, an older run's, too, unless another process uses it.
+    /// Removes the folder when the work is done, also the folder of an older run. A folder that
+    /// another process uses stays.
     void remove();
 
 private:
@@ -75,9 +80,9 @@ private:
     Options options_;
     std::unique_ptr<files::FolderLock> lock_;
     std::map<std::string, std::unique_ptr<files::AppendLog>> logs_;
-    /// The folder holds this work
+    /// The folder holds this work.
     bool is_ours_ = false;
-    /// Another process has the folder
+    /// Another process has the folder.
     bool gave_up_ = false;
     Clock::time_point last_;
 };

@@ -11,9 +11,9 @@ namespace relumine::prt {
 
 namespace {
 
-/// Of the algorithm and of what a checkpoint holds; to be raised when a change of either makes old
-/// checkpoints worthless.
-constexpr int Version = 1;
+/// Version of the algorithm and of a checkpoint's content. Raise it when a change of either makes
+/// old checkpoints worthless.
+constexpr int FingerprintVersion = 1;
 
 class Hash {
 public:
@@ -28,7 +28,7 @@ private:
     std::uint64_t hash_ = 0;
 };
 
-/// Surfaces have padding, whose bytes are anything.
+/// Takes the fields that count; a Surface in memory has padding with random bytes.
 std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
     std::vector<float> numbers;
     numbers.reserve(surfaces.size() * 2);
@@ -44,7 +44,7 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
 Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& receivers,
                         const PrecomputeOptions& options, std::optional<float> glossy_tolerance) {
     Fingerprint result = {
-        {"version", fmt::format("{}", Version)},
+        {"version", fmt::format("{}", FingerprintVersion)},
         {"mesh", Hash().add(blockers.positions).add(blockers.triangles).text()},
         {"receivers", Hash().add(receivers.positions).add(receivers.normals).text()},
         {"number of receivers", fmt::format("{}", receivers.size())},

@@ -1,4 +1,5 @@
-// What the result of a precompute depends on, so that work is only gone on with where it belongs.
+// The inputs that the result of a precompute depends on. A checkpoint is taken up only where they
+// match.
 #pragma once
 
 #include <optional>
@@ -11,11 +12,11 @@
 
 namespace relumine::prt {
 
-/// Names and values in a fixed order; equal for equal results. Neither the engine nor the threads
-/// nor the memory are in it.
+/// Names and values in a fixed order; equal for equal results. The ray engine, the threads and the
+/// memory limits are left out.
 using Fingerprint = std::vector<std::pair<std::string, std::string>>;
 
-/// `glossy_tolerance` only where highlights follow.
+/// Returns the fingerprint of a run. Give `glossy_tolerance` only where highlights follow.
 [[nodiscard]] Fingerprint fingerprint(const mesh::TriangleMesh& blockers,
                                       const Receivers& receivers, const PrecomputeOptions& options,
                                       std::optional<float> glossy_tolerance);

@@ -18,8 +18,8 @@ std::string name_of(std::size_t lobe, char part) {
     return fmt::format("{}_{}", Names[lobe], part);
 }
 
-/// All first bytes, then all second ones: numbers that resemble each other compress four times
-/// better so.
+/// Stores all first bytes, then all second bytes, and so on: similar numbers then compress four
+/// times better.
 template<typename Number>
 std::vector<std::byte> byte_planes(const std::vector<Number>& numbers) {
     const std::vector<std::byte> bytes = bytes_of(numbers);
@@ -43,7 +43,7 @@ std::vector<Number> from_byte_planes(const SectionReader& reader, const std::str
     return numbers;
 }
 
-/// Each cell less the one before, modulo 2^32: neighbours on the Z curve differ by little.
+/// Returns each cell minus the one before, modulo 2^32: neighbours on the Z curve differ by little.
 std::vector<std::uint32_t> differences(std::vector<std::uint32_t> cells) {
     for (std::size_t i = cells.size(); i-- > 1;)
         cells[i] -= cells[i - 1];
@@ -56,7 +56,7 @@ std::vector<std::uint32_t> sums(std::vector<std::uint32_t> cells) {
     return cells;
 }
 
-/// Cells of one block: known levels, ascending along the Z curve, none inside another.
+/// Whether the cells of one block have known levels, ascend along the Z curve, and do not overlap.
 bool is_a_cut(std::span<const std::uint32_t> cells) {
     std::uint64_t end = 0;
     for (const std::uint32_t cell : cells) {

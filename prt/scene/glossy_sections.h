@@ -9,11 +9,13 @@ namespace relumine::prt {
 
 void add_glossy_sections(Sections& sections, const GlossyTransfer& glossy);
 
-/// Whether the file has them.
+/// Whether the file has glossy sections.
 [[nodiscard]] bool has_glossy(const SectionReader& reader);
 
-/// All checked: shapes, cells that exist, in order and apart, finite scales.
-/// Fails as SectionReader does.
+/// Reads the glossy part and checks all of it: shapes, cells that exist, in order and apart, finite
+/// scales.
+///
+/// Throws:  as SectionReader.
 [[nodiscard]] GlossyTransfer read_glossy(const SectionReader& reader, std::size_t num_blocks);
 
 } // namespace relumine::prt

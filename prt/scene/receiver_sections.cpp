@@ -35,7 +35,7 @@ nlohmann::json json_of(const TexelLayout& layout) {
     return {{"kind", "texels"}, {"width", layout.width}, {"height", layout.height}};
 }
 
-/// Which places of a layout have a receiver.
+/// Returns the bits of the places that have a receiver.
 std::vector<std::byte> mask(const std::vector<std::uint32_t>& places, std::size_t num_places) {
     std::vector<bool> bits(num_places);
     for (const std::uint32_t place : places)
@@ -90,7 +90,7 @@ void add_layout(Sections& sections, const Layout& layout, const Receivers& recei
     sections["r_barycentric"] = bytes_of(barycentric);
 }
 
-/// Field by field: a Surface in memory has padding.
+/// Stores field by field: a Surface in memory has padding.
 void add_surfaces(Sections& sections, const std::vector<Surface>& surfaces) {
     std::vector<glm::vec3> albedo, specular;
     std::vector<std::uint8_t> highlight;
@@ -148,7 +148,7 @@ std::vector<MeshPoint> read_points(const SectionReader& reader, std::size_t coun
     if (std::any_of(triangles.begin(), triangles.end(),
                     [&](auto t) { return t >= mesh.num_triangles(); }))
         reader.fail("r_triangles", "indices of triangles");
-    // Rounding of weights that end at an edge.
+    // Allows for rounding of weights that end at an edge.
     constexpr float Slack = 1e-4f;
     if (!std::all_of(barycentric.begin(), barycentric.end(), [](const glm::vec2& b) {
             return b.x >= 0.0f && b.y >= 0.0f && b.x + b.y <= 1.0f + Slack;
@@ -160,7 +160,7 @@ std::vector<MeshPoint> read_points(const SectionReader& reader, std::size_t coun
     return points;
 }
 
-/// Sizes as they may be, before anything is done with them.
+/// Returns a size, checked before anything is done with it.
 std::uint32_t size_of(const nlohmann::json& json) {
     const std::uint32_t size = natural(json);
     if (size < 1 || size > MaxPictureSize)
@@ -184,7 +184,7 @@ ReceiverLayout layout_of(const nlohmann::json& json) {
                        .width = size_of(json.at("width")),
                        .height = size_of(json.at("height")),
                        .samples_per_axis = natural(json.at("samples_per_axis"))};
-    // Refuses a camera without a direction and sizes out of bounds.
+    // Throws for a camera without a direction, and for sizes out of bounds.
     static_cast<void>(
         PictureRays(layout.camera, layout.width, layout.height, layout.samples_per_axis));
     if (layout.num_samples() > MaxLayoutPlaces)

@@ -9,18 +9,24 @@
 
 namespace relumine::prt {
 
-/// Adds what the mesh alone does not tell: nothing for plain vertices; surfaces and directions to
-/// the eye where there are any; for pixels and texels also the layout, positions, normals and
-/// points. Throws std::invalid_argument for arrays of different lengths or a layout that does not
-/// fit them.
+/// Adds what the mesh alone does not tell. Plain vertices add nothing. Surfaces and directions to
+/// the eye are added where there are any. Pixels and texels also add their layout, positions,
+/// normals and points.
+///
+/// Throws:  std::invalid_argument for arrays of different lengths, or a layout that does not fit
+///          them.
 void add_receiver_sections(Sections& sections, const Receivers& receivers,
                            const ReceiverLayout& layout);
 
-/// The layout alone, its places checked to be as many as the receivers. Without its sections:
-/// vertices. Fails as SectionReader does.
+/// Reads the layout alone; a file without its sections has vertices. Checks that there are as many
+/// places as receivers.
+///
+/// Throws:  as SectionReader.
 [[nodiscard]] ReceiverLayout read_layout(const SectionReader& reader);
 
-/// The receivers of a layout, all checked: for vertices the mesh's.
+/// Reads the receivers of a layout and checks all of them. Receivers on vertices are the mesh's.
+///
+/// Throws:  as SectionReader.
 [[nodiscard]] Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layout,
                                        const mesh::TriangleMesh& mesh);
 

@@ -40,7 +40,7 @@ private:
 };
 
 bool is_unit_or_zero(const glm::vec3& v) {
-    constexpr float Slack = 1e-3f; // of a mesh file's printed digits
+    constexpr float Slack = 1e-3f; // for a mesh file's printed digits
     return v == glm::vec3(0.0f) || std::abs(glm::length(v) - 1.0f) <= Slack;
 }
 

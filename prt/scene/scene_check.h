@@ -1,4 +1,4 @@
-// `relumine info FILE.prt --check`: whether a scene file is what a precompute writes.
+// `relumine info FILE.prt --check`: whether a scene file is one that a precompute writes.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,11 @@
 
 namespace relumine::prt {
 
-/// More than load_scene() asks of a scene in order to work with it: normals and directions to the
-/// eye of length one or zero, uvs finite, colours not negative, settings that a precompute accepts,
-/// a tree as deep as they say, a floor that fits the mesh. `path` is for messages. Throws
-/// std::runtime_error "path: expected X, got Y" for the first thing that is not so.
+/// Checks more than load_scene() needs: normals and directions to the eye have length one or zero,
+/// uvs are finite, colours are not negative, a precompute accepts the settings, the tree is as deep
+/// as they say, the floor fits the mesh. `path` is for messages.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y" for the first failure.
 void check_scene(const Scene& scene, const std::filesystem::path& path);
 
 } // namespace relumine::prt

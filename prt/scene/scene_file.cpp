@@ -13,13 +13,14 @@
 #include "files/output_file.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/receiver_sections.h"
+#include "prt/scene/scene_sections.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
 
 namespace {
 
-/// Split flags with their number in front.
+/// Packs split flags with their number in front.
 std::vector<std::byte> counted(const std::vector<bool>& flags) {
     std::vector<std::byte> bytes = bytes_of(std::vector{static_cast<std::uint32_t>(flags.size())});
     const std::vector<std::byte> bits = packed(flags);
@@ -44,7 +45,7 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
         json["view"] = {view.eye.x,    view.eye.y,    view.eye.z,      view.target.x,
                         view.target.y, view.target.z, view.fov_degrees};
     }
-    // A file name need not be UTF-8; JSON must be.
+    // A file name need not be UTF-8, but JSON must be.
     const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
     return bytes_of(std::vector<char>(text.begin(), text.end()));
 }

@@ -9,58 +9,58 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
-#include "prt/scene/section_file.h"
 #include "prt/transfer.h"
 
 namespace relumine::prt {
 
-/// How a transfer was made; kept in the file, so that a result can be traced back to its source.
+/// How a transfer was made. The file keeps it, so that a result can be traced back to its source.
 struct SceneSettings {
-    /// RMS form, 1/sr; see PrecomputeOptions
+    /// RMS form, 1/sr; see PrecomputeOptions.
     float tolerance = 0.0f;
-    /// Set where the paper's form was used instead
+    /// Set where the paper's form was used instead.
     std::optional<float> epsilon = {};
     std::uint32_t min_level = 0;
     std::uint32_t face_resolution = 0;
-    /// In the mesh's unit
+    /// In the mesh's unit.
     float bias = 0.0f;
-    /// n of an n x n floor that was added, 0 for none
+    /// n of an added floor of n x n vertices; 0 for none.
     std::uint32_t floor_vertices = 0;
-    /// File name of the mesh, without folders
+    /// File name of the mesh, without folders.
     std::string source = {};
-    /// xxHash64 of the mesh file's bytes, 0 when it came from no file
+    /// xxHash64 of the mesh file's bytes; 0 for a mesh that came from no file.
     std::uint64_t source_hash = 0;
-    /// GlossyOptions::tolerance, where there is a glossy part
+    /// GlossyOptions::tolerance; set where there is a glossy part.
     std::optional<float> glossy_tolerance = {};
-    /// The eye that highlights of vertices are for
+    /// The eye that the highlights of vertices are for.
     std::optional<Camera> view = {};
 };
 
-/// All that relighting and drawing needs.
+/// Everything that relighting and drawing need.
 struct Scene {
     mesh::TriangleMesh mesh;
-    /// Of the receivers
+    /// The transfer of the receivers.
     Transfer transfer;
     SceneSettings settings;
-    /// What is lit; load_scene() fills it in for vertices, too
+    /// The lit points. load_scene() fills them in for vertices, too.
     Receivers receivers = {};
-    /// What they are
+    /// What the receivers are.
     ReceiverLayout layout = {};
 };
 
-/// Writes the scene; whole or not at all. Returns the file's size in bytes. Throws
-/// std::runtime_error naming the path, std::invalid_argument when mesh, receivers, layout and
-/// transfer do not belong together. Positions and normals of receivers on vertices are the mesh's.
+/// Writes the scene, whole or not at all. Returns the file's size in bytes. Positions and normals
+/// of receivers on vertices are taken from the mesh.
+///
+/// Throws:  std::runtime_error that names the path; std::invalid_argument when mesh, receivers,
+///          layout and transfer do not belong together.
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a scene and checks all of it: sizes against the file before anything is allocated,
-/// checksums, indices, the tree, the counts. Throws std::runtime_error "path: expected X, got Y".
+/// checksums, indices, the tree, the counts.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
-/// The same of a file's sections as read_sections() gives them; `path` is for messages.
-[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
-
-/// xxHash64 of a file's bytes.
+/// Returns the xxHash64 of a file's bytes.
 [[nodiscard]] std::uint64_t file_hash(const std::filesystem::path& path);
 
 } // namespace relumine::prt

@@ -21,7 +21,7 @@ namespace relumine::prt {
 
 namespace {
 
-// The file's structures are memory images; a big-endian reader would have to swap them.
+// The file's structures are memory images. A big-endian reader would have to swap them.
 static_assert(std::endian::native == std::endian::little, ".prt files are little-endian");
 
 constexpr std::array<char, 8> Magic = {'R', 'E', 'L', 'U', 'M', 'I', 'N', 'E'};
@@ -29,8 +29,8 @@ constexpr std::uint32_t Version = 2;
 constexpr std::uint32_t ByteOrderMark = 0x01020304;
 constexpr std::uint32_t MaxSections = 64;
 
-// Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second; level 12
-// gains 6 % more in five.
+// Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second. Level 12
+// saves 6 % more and takes five seconds.
 constexpr int CompressionLevel = 6;
 
 struct Header {
@@ -40,21 +40,21 @@ struct Header {
     std::uint64_t file_size;
     std::uint32_t num_sections;
     std::uint32_t reserved;
-    /// Of the header up to here and the section table
+    /// xxHash64 of the header up to here and of the section table.
     std::uint64_t checksum;
 };
 static_assert(sizeof(Header) == 40);
 
 struct SectionEntry {
-    /// Padded with zeros
+    /// Padded with zeros.
     std::array<char, 16> name;
-    /// From the start of the file
+    /// From the start of the file.
     std::uint64_t offset;
-    /// compressed
+    /// Compressed.
     std::uint64_t stored_size;
-    /// uncompressed
+    /// Uncompressed.
     std::uint64_t size;
-    /// Of the stored bytes
+    /// xxHash64 of the stored bytes.
     std::uint64_t checksum;
 };
 static_assert(sizeof(SectionEntry) == 48);
@@ -124,13 +124,14 @@ private:
             fail("a matching checksum", "a damaged section table");
         std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
         for (const SectionEntry& entry : table) {
-            // One after the other, so that they are inside the file and every byte belongs to one.
+            // Sections follow each other without gaps, so they are inside the file and every byte
+            // belongs to one.
             const bool inside = entry.offset == end && entry.stored_size <= bytes_.size() - end;
             end += inside ? entry.stored_size : 0;
-            // The size is believed only after the section's checksum; this bounds it all the same.
+            // The size is believed only after the section's checksum, and bounded even then.
             if (!inside || entry.size / files::MaxCompressionRatio > entry.stored_size)
                 fail("sections inside the file", "a damaged section table");
-            const std::string own_name = name(entry); // goes into messages
+            const std::string own_name = name(entry); // A name goes into messages.
             if (!std::all_of(own_name.begin(), own_name.end(),
                              [](char c) { return c > ' ' && c <= '~'; }))
                 fail("names of sections", "a damaged section table");
@@ -150,7 +151,7 @@ private:
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
         if (ZSTD_getFrameContentSize(stored, entry.stored_size) != entry.size)
             fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
-        // What is hardly believable is allocated as it comes, so that a lie costs nothing.
+        // An unlikely size is allocated as the data comes, so that a lie costs nothing.
         constexpr std::uint64_t Cheap = std::uint64_t{1} << 26, BelievableRatio = 256;
         if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
             return content_piecewise(entry, Cheap);

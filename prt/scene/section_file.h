@@ -14,13 +14,16 @@ namespace relumine::prt {
 /// Sections by name (1 to 16 ASCII letters), each a string of bytes.
 using Sections = std::map<std::string, std::vector<std::byte>>;
 
-/// Writes them compressed (zstd), with sizes and xxHash64 checksums; whole or not at all. Returns
-/// the file's size. Throws std::runtime_error naming the path.
+/// Writes sections compressed (zstd), with sizes and xxHash64 checksums; whole or not at all.
+/// Returns the file's size.
+///
+/// Throws:  std::runtime_error that names the path.
 std::uint64_t write_sections(const std::filesystem::path& path, const Sections& sections);
 
-/// Reads them back. A file that is truncated, longer than it says, of another version or byte
-/// order, or changed in any bit that matters is refused before its sizes are believed. Throws
-/// std::runtime_error "path: expected X, got Y".
+/// Reads a file of sections. Refuses a file that is truncated, longer than it says, of another
+/// version or byte order, or changed in any bit that matters, before its sizes are believed.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Sections read_sections(const std::filesystem::path& path);
 
 } // namespace relumine::prt

@@ -17,7 +17,7 @@
 
 namespace relumine::prt {
 
-/// An array as a section stores it.
+/// Returns an array as a section stores it.
 template<typename Element>
 [[nodiscard]] std::vector<std::byte> bytes_of(const std::vector<Element>& elements) {
     static_assert(std::is_trivially_copyable_v<Element>);
@@ -27,10 +27,10 @@ template<typename Element>
     return bytes;
 }
 
-/// Split flags or masks, eight to a byte, lowest bit first.
+/// Packs split flags or masks, eight to a byte, lowest bit first.
 [[nodiscard]] std::vector<std::byte> packed(const std::vector<bool>& flags);
 
-/// Sections by name; every message names the file and the section.
+/// Sections by name. Every message names the file and the section.
 class SectionReader {
 public:
     /// `path` is for messages.
@@ -40,10 +40,10 @@ public:
     [[noreturn]] void fail(std::string_view section, std::string_view expected) const;
 
     [[nodiscard]] bool has(const std::string& name) const { return sections_.contains(name); }
-    /// The section's bytes. Fails where there is none.
+    /// Returns the section's bytes. Fails where there is none.
     [[nodiscard]] const std::vector<std::byte>& bytes(const std::string& name) const;
 
-    /// As many elements as there are.
+    /// Returns all elements of a section.
     template<typename Element>
     [[nodiscard]] std::vector<Element> elements(const std::string& name) const {
         const std::vector<std::byte>& stored = bytes(name);
@@ -55,7 +55,7 @@ public:
         return result;
     }
 
-    /// Exactly `count` elements; none where an optional section is absent.
+    /// Returns exactly `count` elements, or none where an optional section is absent.
     template<typename Element>
     [[nodiscard]] std::vector<Element> elements(const std::string& name, std::size_t count,
                                                 bool optional = false) const {
@@ -67,7 +67,7 @@ public:
         return result;
     }
 
-    /// Exactly `count` bits and zeros up to the byte's end.
+    /// Returns exactly `count` bits. The rest of the last byte must be zero.
     [[nodiscard]] std::vector<bool> bits(const std::string& name, std::size_t count) const;
 
 private:
@@ -75,8 +75,9 @@ private:
     Sections sections_;
 };
 
-/// Numbers of a JSON object, which the JSON library would cast without a look at the range. They
-/// throw std::out_of_range.
+/// Numbers of a JSON object, checked for range, which the JSON library's casts are not.
+///
+/// Throws:  std::out_of_range for a number beyond the type.
 [[nodiscard]] std::uint32_t natural(const nlohmann::json& json);
 [[nodiscard]] float real(const nlohmann::json& json);
 

@@ -26,17 +26,12 @@ constexpr std::size_t Width = TriangleTree::Width;
 /// that ray and edge span. The ray hits the triangle when all three have the sign of normal .
 /// (corner - o), which says from which side the receiver looks.
 ///
-/// Error bounds, u = 2^-24, D = largest |corner - o|, L = longest edge, by components. Corners and
-/// origins are exact. D and L are off by u of themselves; a component of the cross product is at
-/// most 2 L D and off by 8 u L D; |w| has components of at most 2, off by u; the sum of three
-/// products adds 9 roundings of at most 10 L D. Together less than 120 u L D; the same bound holds
-/// for the errors of Embree's edge functions near a triangle, so that beyond twice that both must
-/// agree. Far beside it Embree's may be off by more, as it rounds corner - o first; RayScene drops
-/// such hits. The normal is at most 2 L^2 and off by 8 u L^2, its product with D off by less than
-/// 40 u L^2 D.
+/// Rounding errors and their bounds: docs/error-bounds.md, rows B1 to B5.
 constexpr float EdgeTolerance = 240.0f * Rounding;
 constexpr float SideTolerance = 80.0f * Rounding;
 constexpr float Smallest = 1e-35f; // products below are lost
+constexpr float LostRoundings = 192.0f;
+constexpr float TooNearRoundings = 4096.0f;
 
 /// From so many rays for each triangle of a leaf on, rays side by side are faster than triangles
 /// side by side. Measured.
@@ -44,9 +39,10 @@ constexpr std::uint32_t RaysPerTriangle = 6;
 
 /// Tests the rays of one receiver against a leaf's triangles: all triangles at a time, ray by ray.
 template<class D>
-void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const PatchPlane& patch,
-               const glm::vec3& origin, std::uint64_t touching, std::uint64_t& rays,
-               std::uint64_t& doubts) {
+void test_triangles_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_t lane,
+                                 const PatchPlane& patch, const glm::vec3& origin,
+                                 std::uint64_t touching, std::uint64_t& rays,
+                                 std::uint64_t& doubts) {
     using Vector = hn::Vec<D>;
     const auto axis_m = static_cast<std::size_t>(patch.axis);
     const std::size_t axes[3] = {axis_m, (axis_m + 1) % 3, (axis_m + 2) % 3};
@@ -114,8 +110,9 @@ void test_leaf(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const Patc
 
 /// The same for few triangles before many rays: all rays at a time, triangle by triangle.
 template<class D>
-void test_triangle(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const PatchPlane& patch,
-                   const glm::vec3& origin, std::uint64_t& rays, std::uint64_t& doubts) {
+void test_rays_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_t lane,
+                            const PatchPlane& patch, const glm::vec3& origin, std::uint64_t& rays,
+                            std::uint64_t& doubts) {
     glm::vec3 corner[3], to_corner[3];
     glm::vec3 farthest(0.0f);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -129,7 +126,8 @@ void test_triangle(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const 
     const float tolerance = EdgeTolerance * product + Smallest;
     const float side = glm::dot(glm::cross(edge[0], edge[1]), to_corner[0]);
     if (!(std::abs(side) > SideTolerance * product * leaf.longest[lane] + Smallest)) {
-        test_leaf(d, leaf, lane / hn::Lanes(d) * hn::Lanes(d), patch, origin, rays, rays, doubts);
+        test_triangles_side_by_side(d, leaf, lane / hn::Lanes(d) * hn::Lanes(d), patch, origin,
+                                    rays, rays, doubts);
         return;
     }
     hn::Vec<D> moment[3][3];
@@ -157,6 +155,12 @@ void test_triangle(D d, const TriangleTree::Leaf& leaf, std::size_t lane, const 
     doubts |= maybes;
 }
 
+/// One over the distances of boxes from a receiver, and what rounding may lose of a quotient.
+template<class V>
+struct BoxDistances {
+    V per_near, per_far, slack;
+};
+
 /// Columns or rows of the patch that 16 boxes cover as one receiver sees them, along one axis.
 /// Boxes that begin behind the receiver or too close for a division cover all.
 template<class D>
@@ -164,17 +168,17 @@ struct Cover {
     hn::Vec<hn::RebindToSigned<D>> first, last;
 };
 template<class D, class V>
-Cover<D> covered_bins(D d, V low, V high, V per_near, V per_far, V slack, float begin,
-                      float bins_per_unit) {
+HWY_INLINE Cover<D> covered_bins(D d, V low, V high, const BoxDistances<V>& boxes, float begin,
+                                 float bins_per_unit) {
     const hn::RebindToSigned<D> di;
     const auto zero = hn::Zero(d);
     // The least quotient: a negative numerator over the least distance, a positive one over the
     // greatest.
-    const V least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), per_near, per_far));
-    const V most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), per_far, per_near));
+    const V least = hn::Mul(low, hn::IfThenElse(hn::Lt(low, zero), boxes.per_near, boxes.per_far));
+    const V most = hn::Mul(high, hn::IfThenElse(hn::Lt(high, zero), boxes.per_far, boxes.per_near));
     const V scale = hn::Set(d, bins_per_unit);
-    const V from = hn::Mul(hn::Sub(hn::Sub(least, slack), hn::Set(d, begin)), scale);
-    const V to = hn::Mul(hn::Sub(hn::Add(most, slack), hn::Set(d, begin)), scale);
+    const V from = hn::Mul(hn::Sub(hn::Sub(least, boxes.slack), hn::Set(d, begin)), scale);
+    const V to = hn::Mul(hn::Sub(hn::Add(most, boxes.slack), hn::Set(d, begin)), scale);
     // Clamped to one bin beyond either end, which says: outside.
     const V below = hn::Set(d, -1.0f);
     const V above = hn::Set(d, static_cast<float>(PatchPlane::NumBins));
@@ -182,80 +186,111 @@ Cover<D> covered_bins(D d, V low, V high, V per_near, V per_far, V slack, float 
             hn::ConvertTo(di, hn::Floor(hn::Min(hn::Max(to, below), above)))};
 }
 
+/// The leaves of a shaft as one receiver sees them, a vector of leaves at a time.
+template<class D>
+class LeafView {
+    using Vector = hn::Vec<D>;
+
+public:
+    HWY_INLINE LeafView(const PatchPlane& patch, const Shaft& shaft, const ShaftLeaves& leaves,
+                        const glm::vec3& o)
+        : patch_(patch), leaves_(leaves) {
+        const D d;
+        // The receiver's own cone: the shaft's planes, moved to its origin.
+        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
+            offsets_[k] = hn::Set(d, glm::dot(shaft.normals[k], o) - shaft.margins[k]);
+        o_m_ = hn::Set(d, patch.sign * o[patch.axis]);
+        o_s_ = hn::Set(d, o[(patch.axis + 1) % 3]);
+        o_t_ = hn::Set(d, o[(patch.axis + 2) % 3]);
+        lost_ = hn::Set(d, LostRoundings * Rounding * shaft.reach + Smallest);
+        too_near_ = hn::Set(d, TooNearRoundings * Rounding * shaft.reach + 64.0f * Smallest);
+    }
+
+    /// Which of the leaves from i on reach into the receiver's cone.
+    HWY_INLINE std::uint32_t in_cone(std::size_t i) const {
+        const D d;
+        auto mask = hn::Ge(hn::LoadU(d, leaves_.supports[0].data() + i), offsets_[0]);
+        for (std::size_t k = 1; k < Shaft::NumPlanes; ++k)
+            mask = hn::And(mask, hn::Ge(hn::LoadU(d, leaves_.supports[k].data() + i), offsets_[k]));
+        return bits_of(d, mask);
+    }
+
+    /// Finds which columns and rows of the patch the boxes of the leaves from i on cover. Returns
+    /// the boxes that are outside of all.
+    HWY_INLINE std::uint32_t cover(std::size_t i) {
+        const D d;
+        const hn::RebindToSigned<D> di;
+        const auto relative = [&](std::size_t row, Vector from) {
+            return hn::Sub(hn::LoadU(d, leaves_.boxes[row].data() + i), from);
+        };
+        const Vector near = relative(0, o_m_);
+        const auto in_front = hn::Gt(near, too_near_);
+        const Vector per_near = hn::Div(hn::Set(d, 1.0f), near);
+        const Vector per_far = hn::Div(hn::Set(d, 1.0f), relative(1, o_m_));
+        const BoxDistances<Vector> distances{per_near, per_far, hn::Mul(lost_, per_near)};
+        const auto columns = covered_bins(d, relative(2, o_s_), relative(3, o_s_), distances,
+                                          patch_.s0, patch_.bins_per_s);
+        const auto rows = covered_bins(d, relative(4, o_t_), relative(5, o_t_), distances,
+                                       patch_.t0, patch_.bins_per_t);
+        const auto first = hn::Zero(di);
+        const auto last = hn::Set(di, PatchPlane::NumBins - 1);
+        const auto in_front_i = hn::RebindMask(di, in_front);
+        hn::Store(hn::IfThenElse(in_front_i, hn::Max(columns.first, first), first), di,
+                  s_first_.data());
+        hn::Store(hn::IfThenElse(in_front_i, hn::Min(columns.last, last), last), di,
+                  s_last_.data());
+        hn::Store(hn::IfThenElse(in_front_i, hn::Max(rows.first, first), first), di,
+                  t_first_.data());
+        hn::Store(hn::IfThenElse(in_front_i, hn::Min(rows.last, last), last), di, t_last_.data());
+        // Outside in one of the four ways: no ray.
+        const auto beside = hn::Or(hn::Or(hn::Gt(columns.first, last), hn::Gt(first, columns.last)),
+                                   hn::Or(hn::Gt(rows.first, last), hn::Gt(first, rows.last)));
+        return bits_of(di, hn::And(beside, in_front_i));
+    }
+
+    /// The patch's rays in the columns and rows of box `lane`.
+    HWY_INLINE std::uint64_t touching(std::size_t lane) const {
+        const auto at = [&](const std::array<std::uint64_t, PatchPlane::NumBins>& table,
+                            const std::array<std::int32_t, Width>& bins) {
+            return table[static_cast<std::size_t>(bins[lane])];
+        };
+        return at(patch_.from_s, s_first_) & at(patch_.until_s, s_last_) &
+               at(patch_.from_t, t_first_) & at(patch_.until_t, t_last_);
+    }
+
+private:
+    const PatchPlane& patch_;
+    const ShaftLeaves& leaves_;
+    Vector offsets_[Shaft::NumPlanes];
+    Vector o_m_, o_s_, o_t_, lost_, too_near_;
+    alignas(64) std::array<std::int32_t, Width> s_first_, s_last_, t_first_, t_last_;
+};
+
 std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch, const Shaft& shaft,
                             const ShaftLeaves& leaves, const glm::vec3& origin,
                             std::uint64_t& rays) {
     const hn::CappedTag<float, Width> d;
-    const hn::RebindToSigned<decltype(d)> di;
-    using Vector = hn::Vec<decltype(d)>;
-    const glm::vec3 o = origin - tree.centre;
-    // The receiver's own cone: the shaft's planes, moved to its origin.
-    Vector offsets[Shaft::NumPlanes];
-    for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-        offsets[k] = hn::Set(d, glm::dot(shaft.normals[k], o) - shaft.margins[k]);
-    const Vector o_m = hn::Set(d, patch.sign * o[patch.axis]);
-    const Vector o_s = hn::Set(d, o[(patch.axis + 1) % 3]);
-    const Vector o_t = hn::Set(d, o[(patch.axis + 2) % 3]);
-    // A difference of coordinates is off by 4 roundings of the reach, and the exact tracer may hit
-    // what is 56 off, as for the shaft's margins; a quotient (of at most 2) by three times that
-    // over the distance.
-    const Vector lost = hn::Set(d, 192.0f * Rounding * shaft.reach + Smallest);
-    const Vector too_near = hn::Set(d, 4096.0f * Rounding * shaft.reach + 64.0f * Smallest);
-
+    LeafView<hn::CappedTag<float, Width>> view(patch, shaft, leaves, origin - tree.centre);
     std::uint64_t doubts = 0;
     for (std::size_t i = 0; i < leaves.size; i += hn::Lanes(d)) {
-        auto mask = hn::Ge(hn::LoadU(d, leaves.supports[0].data() + i), offsets[0]);
-        for (std::size_t k = 1; k < Shaft::NumPlanes; ++k)
-            mask = hn::And(mask, hn::Ge(hn::LoadU(d, leaves.supports[k].data() + i), offsets[k]));
-        std::uint32_t bits = bits_of(d, mask);
+        std::uint32_t bits = view.in_cone(i);
         if (bits == 0)
             continue;
-        // Which columns and rows of the patch each box covers.
-        const auto relative = [&](std::size_t row, Vector from) {
-            return hn::Sub(hn::LoadU(d, leaves.boxes[row].data() + i), from);
-        };
-        const Vector near = relative(0, o_m);
-        const auto in_front = hn::Gt(near, too_near);
-        const Vector per_near = hn::Div(hn::Set(d, 1.0f), near);
-        const Vector per_far = hn::Div(hn::Set(d, 1.0f), relative(1, o_m));
-        const Vector slack = hn::Mul(lost, per_near);
-        const auto columns = covered_bins(d, relative(2, o_s), relative(3, o_s), per_near, per_far,
-                                          slack, patch.s0, patch.bins_per_s);
-        const auto rows = covered_bins(d, relative(4, o_t), relative(5, o_t), per_near, per_far,
-                                       slack, patch.t0, patch.bins_per_t);
-        const auto first = hn::Zero(di);
-        const auto last = hn::Set(di, PatchPlane::NumBins - 1);
-        const auto in_front_i = hn::RebindMask(di, in_front);
-        // Outside in one of the four ways: no ray.
-        const auto beside = hn::Or(hn::Or(hn::Gt(columns.first, last), hn::Gt(first, columns.last)),
-                                   hn::Or(hn::Gt(rows.first, last), hn::Gt(first, rows.last)));
-        bits &= ~bits_of(di, hn::And(beside, in_front_i));
-        alignas(64) std::array<std::int32_t, Width> s_first, s_last, t_first, t_last;
-        hn::Store(hn::IfThenElse(in_front_i, hn::Max(columns.first, first), first), di,
-                  s_first.data());
-        hn::Store(hn::IfThenElse(in_front_i, hn::Min(columns.last, last), last), di, s_last.data());
-        hn::Store(hn::IfThenElse(in_front_i, hn::Max(rows.first, first), first), di,
-                  t_first.data());
-        hn::Store(hn::IfThenElse(in_front_i, hn::Min(rows.last, last), last), di, t_last.data());
+        bits &= ~view.cover(i);
         for (; bits != 0; bits &= bits - 1) {
             const auto lane = static_cast<std::size_t>(std::countr_zero(bits));
-            const auto at = [&](const std::array<std::uint64_t, PatchPlane::NumBins>& table,
-                                const std::array<std::int32_t, Width>& bins) {
-                return table[static_cast<std::size_t>(bins[lane])];
-            };
-            const std::uint64_t touching = at(patch.from_s, s_first) & at(patch.until_s, s_last) &
-                                           at(patch.from_t, t_first) & at(patch.until_t, t_last) &
-                                           rays;
+            const std::uint64_t touching = view.touching(lane) & rays;
             if (touching == 0)
                 continue;
             const TriangleTree::Leaf& leaf =
                 tree.leaves[static_cast<std::size_t>(leaves.leaves[i + lane])];
             if (static_cast<std::uint32_t>(std::popcount(touching)) > RaysPerTriangle * leaf.size)
                 for (std::size_t triangle = 0; triangle < leaf.size; ++triangle)
-                    test_triangle(d, leaf, triangle, patch, origin, rays, doubts);
+                    test_rays_side_by_side(d, leaf, triangle, patch, origin, rays, doubts);
             else
                 for (std::size_t first_lane = 0; first_lane < leaf.size; first_lane += hn::Lanes(d))
-                    test_leaf(d, leaf, first_lane, patch, origin, touching & rays, rays, doubts);
+                    test_triangles_side_by_side(d, leaf, first_lane, patch, origin, touching & rays,
+                                                rays, doubts);
             if (rays == 0)
                 return 0;
         }

@@ -12,8 +12,8 @@
 
 namespace relumine::prt {
 
-/// Clears the rays of one receiver that a triangle blocks for certain. Returns those of the rest
-/// that are not certain to miss all of them. `origin` is in the mesh's coordinates.
+/// Clears the rays of one receiver that a triangle blocks for certain. Returns the remaining rays
+/// that may hit one of the triangles. `origin` is in the mesh's coordinates.
 [[nodiscard]] std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch,
                                           const Shaft& shaft, const ShaftLeaves& leaves,
                                           const glm::vec3& origin, std::uint64_t& rays);

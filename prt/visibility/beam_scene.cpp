@@ -20,12 +20,12 @@
 namespace relumine::prt {
 namespace {
 
-/// Coordinates beyond which triple products overflow, in this file's tests or in the exact
-/// tracer's, whose answers are then its own.
+/// Beyond this coordinate triple products overflow, in this file's tests or in the exact tracer's.
+/// Then the exact tracer answers alone.
 constexpr float LargestReach = 1e12f;
 
-/// Rays that are in doubt are Embree's, with their whole packets: its answer for a ray right
-/// through an edge may depend on the packet's other rays.
+/// Asks the exact tracer for rays in doubt, with their whole packets: Embree's answer for a ray
+/// right through an edge may depend on the packet's other rays.
 void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch,
          std::uint64_t doubts, std::uint64_t asked, std::uint64_t& rays) {
     for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
@@ -38,27 +38,27 @@ void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& p
     }
 }
 
-/// A word for each receiver, bits are directions; or, for each 64 receivers, a word for each
-/// direction.
-using RayWords = std::array<std::uint64_t, ReceiverBlock::MaxSize>;
+/// A word for each receiver with a bit per direction; or, for each 64 receivers, a word for each
+/// direction with a bit per receiver.
+using RayWords = std::array<std::uint64_t, ReceiverGroup::MaxSize>;
 
-/// Turns one into the other.
+/// Turns one form of RayWords into the other.
 void transpose_squares(RayWords& words) {
     for (std::size_t first = 0; first < words.size(); first += DirectionPatch::Size)
         transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first,
                                                                  DirectionPatch::Size));
 }
 
-/// Around the rays that are asked for.
-Shaft shaft_of_rays(const ReceiverBlock& block, const PatchPlane& plane, const TriangleTree& tree,
+/// Returns the shaft around the rays that are asked for.
+Shaft shaft_of_rays(const ReceiverGroup& group, const PatchPlane& plane, const TriangleTree& tree,
                     float reach, std::span<const std::uint64_t> rays) {
-    Shaft shaft = shaft_of(plane, block.mean_normal, reach);
+    Shaft shaft = shaft_of(plane, group.mean_normal, reach);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         if (rays[i] == 0)
             continue;
-        shaft.origins_low = glm::min(shaft.origins_low, block.origins[i]);
-        shaft.origins_high = glm::max(shaft.origins_high, block.origins[i]);
-        const glm::vec3 origin = block.origins[i] - tree.centre;
+        shaft.origins_low = glm::min(shaft.origins_low, group.origins[i]);
+        shaft.origins_high = glm::max(shaft.origins_high, group.origins[i]);
+        const glm::vec3 origin = group.origins[i] - tree.centre;
         for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
             shaft.offsets[k] =
                 std::min(shaft.offsets[k], glm::dot(shaft.normals[k], origin) - shaft.margins[k]);
@@ -66,20 +66,20 @@ Shaft shaft_of_rays(const ReceiverBlock& block, const PatchPlane& plane, const T
     return shaft;
 }
 
-/// Where directions meet more leaves on average, as those of receivers far apart do, the exact
-/// tracer is faster. Measured.
+/// With more leaves per ray on average, as for receivers far apart, the exact tracer is faster.
+/// Measured.
 constexpr std::size_t LeavesPerRay = 4;
 
-/// One direction after the other, all receivers at once; those that are left when it does not pay
-/// are the exact tracer's.
-void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverBlock& block,
-                        const BlockOrigins& origins, const DirectionPatch& patch,
+/// Traces one direction after the other, all receivers at once. Where this does not pay, the exact
+/// tracer gets the remaining directions.
+void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverGroup& group,
+                        const GroupOrigins& origins, const DirectionPatch& patch,
                         const PatchPlane& plane, std::span<std::uint64_t> rays) {
-    static_assert(std::tuple_size_v<ReceiverBits> * DirectionPatch::Size == ReceiverBlock::MaxSize);
+    static_assert(std::tuple_size_v<ReceiverBits> * DirectionPatch::Size == ReceiverGroup::MaxSize);
     RayWords lit{}, doubts{};
     std::copy(rays.begin(), rays.end(), lit.begin());
     transpose_squares(lit);
-    std::size_t num_leaves = 0, num_rays = ReceiverBlock::MaxSize;
+    std::size_t num_leaves = 0, num_rays = ReceiverGroup::MaxSize;
     for (std::size_t j = 0; j < patch.num_directions; ++j) {
         ReceiverBits active;
         for (std::size_t word = 0; word < active.size(); ++word)
@@ -91,8 +91,7 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
                 doubts[word * DirectionPatch::Size + j] = active[word];
             continue;
         }
-        const ParallelResult result =
-            test_parallel_rays(tree, patch, plane, j, block.mean_normal, origins, active);
+        const ParallelResult result = test_parallel_rays(tree, {patch, plane, j}, origins, active);
         num_leaves += result.num_leaves;
         for (std::size_t word = 0; word < active.size(); ++word) {
             num_rays += static_cast<std::size_t>(std::popcount(active[word]));
@@ -104,7 +103,7 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
     transpose_squares(doubts);
     for (std::size_t i = 0; i < rays.size(); ++i) {
         const std::uint64_t asked = std::exchange(rays[i], lit[i]);
-        ask(exact, block.origins[i], patch, doubts[i], asked, rays[i]);
+        ask(exact, group.origins[i], patch, doubts[i], asked, rays[i]);
     }
 }
 
@@ -132,21 +131,21 @@ std::uint32_t BeamScene::occluded(const glm::vec3& origin, const DirectionPacket
     return impl_->exact.occluded(origin, directions, active);
 }
 
-void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                               std::span<std::uint64_t> rays) const {
     const auto& [tree, exact, crowded_shaft] = *impl_;
     if (rays.empty())
         return;
     const PatchPlane plane = patch_plane(patch);
-    const BlockOrigins origins(block, tree);
+    const GroupOrigins origins(group, tree);
     if (!plane.narrow || !(origins.reach < LargestReach)) {
-        exact.clear_blocked(block, patch, rays);
+        exact.clear_blocked(group, patch, rays);
         return;
     }
     thread_local ShaftLeaves leaves;
-    const Shaft shaft = shaft_of_rays(block, plane, tree, origins.reach, rays);
+    const Shaft shaft = shaft_of_rays(group, plane, tree, origins.reach, rays);
     if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
-        clear_by_direction(tree, exact, block, origins, patch, plane, rays);
+        clear_by_direction(tree, exact, group, origins, patch, plane, rays);
         return;
     }
     if (leaves.size == 0)
@@ -156,8 +155,8 @@ void BeamScene::clear_blocked(const ReceiverBlock& block, const DirectionPatch& 
             continue;
         const std::uint64_t asked = rays[i];
         const std::uint64_t doubts =
-            clear_certain(tree, plane, shaft, leaves, block.origins[i], rays[i]);
-        ask(exact, block.origins[i], patch, doubts, asked, rays[i]);
+            clear_certain(tree, plane, shaft, leaves, group.origins[i], rays[i]);
+        ask(exact, group.origins[i], patch, doubts, asked, rays[i]);
     }
 }
 

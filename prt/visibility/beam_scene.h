@@ -11,8 +11,8 @@
 
 namespace relumine::prt {
 
-/// Answers for a block of receivers and a patch of directions together what another ray tracer
-/// answers ray by ray.
+/// Answers for a group of receivers and a patch of directions together, with the answers that
+/// another tracer gives ray by ray.
 ///
 ///            patch of directions
 ///              \   |   /
@@ -22,29 +22,31 @@ namespace relumine::prt {
 ///     ----+--o-o-o-o-o----
 ///          receivers
 ///
-/// The rays of a block of receivers through a patch of directions fill a shaft. Six planes bound
-/// it: a triangle outside of one of them blocks none of the rays. One walk of a tree of triangles
+/// The rays of a group of receivers through a patch of directions fill a shaft. Six planes bound
+/// it: a triangle outside of one plane blocks none of the rays. One walk of a tree of triangles
 /// finds the few triangles that may block a ray. Most shafts meet nothing: 8,192 rays are decided
 /// at once. A triangle in the shaft is tested receiver by receiver: first against the receiver's
 /// own cone, then with the edge functions of 64 rays at a time.
 ///
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result
 /// is beyond its bound. A ray hits a triangle for certain, misses all of them for certain, or is in
-/// doubt (it passes an edge within some 1e-6 of its length), and then `exact` is asked. So are wide
-/// patches.
+/// doubt, because it passes an edge within some 1e-6 of its length. `exact` is asked for rays in
+/// doubt and for wide patches.
 ///
-/// A shaft of a fixed angle holds the more triangles the finer the mesh is, while a block of
-/// receivers shrinks with them. So a crowded patch is traced direction by direction, all receivers
-/// of the block together (parallel_rays.h), which costs much the same for any number of triangles
-/// but for the depth of the tree.
+/// A shaft of a fixed angle holds more triangles on a finer mesh, while a group of receivers
+/// shrinks there. So a crowded patch is traced direction by direction, all receivers of the group
+/// together (parallel_rays.h). The cost hardly depends on the number of triangles then, except for
+/// the depth of the tree.
 class BeamScene final : public Blockers {
 public:
-    /// Leaves of up to 16 triangles in a shaft, beyond which directions are traced one by one.
+    /// Leaves of up to 16 triangles in a shaft; with more, directions are traced one by one.
     /// Measured (docs/performance.md).
     static constexpr std::size_t CrowdedShaft = 2048;
 
-    /// `exact` traces the same mesh's triangles and must outlive this; the mesh may go. About 250
-    /// bytes per triangle. `crowded_shaft`, at most the default, changes no answer.
+    /// `exact` traces the triangles of the same mesh and must outlive this object; the mesh need
+    /// not. `crowded_shaft`, at most the default, changes no answer.
+    ///
+    /// Memory:  about 250 bytes per triangle.
     BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
               std::size_t crowded_shaft = CrowdedShaft);
     ~BeamScene() override;
@@ -53,7 +55,7 @@ public:
 
     [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                          std::uint32_t active) const override;
-    void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+    void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                        std::span<std::uint64_t> rays) const override;
 
 private:

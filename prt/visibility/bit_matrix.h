@@ -1,4 +1,4 @@
-// Words of bits, a receiver or direction each, and how rows of them become columns.
+// Words of bits, one bit per receiver or direction, and the transpose of a square of bits.
 #pragma once
 
 #include <cstddef>

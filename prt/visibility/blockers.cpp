@@ -6,7 +6,7 @@ namespace relumine::prt {
 
 void DirectionPatch::add(const glm::vec3& direction) {
     const std::size_t first = num_directions++;
-    // A first direction fills all lanes, so that they never are wild numbers.
+    // The first direction fills all lanes, so that no lane holds a wild number.
     const std::size_t end = first == 0 ? Size : first + 1;
     for (std::size_t j = first; j < end; ++j)
         packets[j / PacketSize].set(j % PacketSize, direction);
@@ -17,14 +17,14 @@ void DirectionPatch::add(const glm::vec3& direction) {
     }
 }
 
-void Blockers::clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+void Blockers::clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                              std::span<std::uint64_t> rays) const {
     for (std::size_t p = 0; p < DirectionPatch::NumPackets; ++p)
         for (std::size_t i = 0; i < rays.size(); ++i) {
             const auto active = static_cast<std::uint32_t>(rays[i] >> (p * PacketSize) & 0xffffu);
             if (active == 0)
                 continue;
-            const std::uint64_t blocked = occluded(block.origins[i], patch.packets[p], active);
+            const std::uint64_t blocked = occluded(group.origins[i], patch.packets[p], active);
             rays[i] &= ~(blocked << (p * PacketSize));
         }
 }

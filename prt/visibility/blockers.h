@@ -13,8 +13,8 @@ namespace relumine::prt {
 /// Rays of a packet: directions that one receiver looks into together.
 inline constexpr std::size_t PacketSize = 16;
 
-/// Directions of a packet in the layout that the ray kernels read, unit vectors. Unused lanes
-/// repeat the first direction.
+/// Unit directions of a packet in the layout that the ray kernels read. Unused lanes repeat the
+/// first direction.
 struct alignas(64) DirectionPacket {
     std::array<float, PacketSize> x{};
     std::array<float, PacketSize> y{};
@@ -28,8 +28,8 @@ struct alignas(64) DirectionPacket {
     }
 };
 
-/// Up to 64 directions inside one narrow cone; direction j is lane j % 16 of packet j / 16. Lanes
-/// that are not used repeat the patch's first direction.
+/// Up to 64 directions inside one narrow cone. Direction j is lane j % 16 of packet j / 16. Unused
+/// lanes repeat the patch's first direction.
 struct DirectionPatch {
     static constexpr std::size_t NumPackets = 4;
     static constexpr std::size_t Size = NumPackets * PacketSize;
@@ -42,38 +42,39 @@ struct DirectionPatch {
         const DirectionPacket& packet = packets[j / PacketSize];
         return {packet.x[j % PacketSize], packet.y[j % PacketSize], packet.z[j % PacketSize]};
     }
-    /// One more direction; not when full.
+    /// Adds one more direction. Must not be full.
     void add(const glm::vec3& direction);
 };
 
 /// Receivers that lie close together.
-struct ReceiverBlock {
+struct ReceiverGroup {
     static constexpr std::size_t MaxSize = 128;
 
-    /// [at most MaxSize] where their rays start
+    /// [at most MaxSize] starts of the receivers' rays.
     std::span<const glm::vec3> origins;
-    /// A hint: roughly where they face, any length
+    /// A hint: roughly where the receivers face, of any length.
     glm::vec3 mean_normal{0.0f};
 };
 
-/// What stands between receivers and lights. RayScene answers for meshes; tests answer with closed
+/// The geometry between receivers and lights. RayScene answers for meshes; tests answer with closed
 /// forms.
+///
+/// Threads: all queries may run from many threads at once.
 class Blockers {
 public:
     Blockers() = default;
     virtual ~Blockers() = default;
 
-    /// Bit i is set where the ray from `origin` in direction i is blocked; only directions in
-    /// `active` are traced. Fastest when the directions lie close together. Called from many
-    /// threads at once.
+    /// Returns a mask whose bit i is set where the ray from `origin` in direction i is blocked.
+    /// Traces only the directions in `active`. Fastest for directions that lie close together.
     [[nodiscard]] virtual std::uint32_t occluded(const glm::vec3& origin,
                                                  const DirectionPacket& directions,
                                                  std::uint32_t active) const = 0;
 
-    /// Bit j of rays[i], which asks for the ray from the block's receiver i in the patch's
-    /// direction j, is cleared where that ray is blocked. Same answers as occluded(), which is what
-    /// it asks here. Called from many threads at once.
-    virtual void clear_blocked(const ReceiverBlock& block, const DirectionPatch& patch,
+    /// Clears bit j of rays[i] where the ray from receiver i in the patch's direction j is
+    /// blocked. A bit that is clear asks for nothing. The answers are the same as from occluded(),
+    /// which this default asks.
+    virtual void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                                std::span<std::uint64_t> rays) const;
 
 protected:
@@ -83,8 +84,8 @@ protected:
     Blockers& operator=(Blockers&&) = default;
 };
 
-/// Which of a packet's `candidates` reach a receiver: above its horizon, n.w > 0 in float, and not
-/// blocked.
+/// Returns the lanes of `candidates` whose light reaches a receiver: above its horizon (n.w > 0 in
+/// float) and not blocked.
 [[nodiscard]] inline std::uint32_t lit_lanes(const Blockers& blockers, const glm::vec3& origin,
                                              const glm::vec3& normal,
                                              const DirectionPacket& directions,
@@ -99,8 +100,8 @@ protected:
     return above == 0 ? 0 : above & ~blockers.occluded(origin, directions, above);
 }
 
-/// Where a receiver's rays start: lifted off its surface along the normal, so that the surface does
-/// not block itself.
+/// Returns where a receiver's rays start: lifted off its surface along the normal, so that the
+/// surface does not block itself.
 [[nodiscard]] inline glm::vec3 ray_origin(const glm::vec3& position, const glm::vec3& normal,
                                           float bias) {
     return position + bias * normal;

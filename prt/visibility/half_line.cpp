@@ -32,8 +32,8 @@ double squared_distance_from_origin(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::dot(nearest, nearest);
 }
 
-/// Whether the part of an edge that is not behind the half-line's start stays farther than
-/// `distance` from the whole line.
+/// Whether an edge stays farther than `distance` from the half-line's whole line. The part of the
+/// edge more than `distance` behind the start does not count.
 bool edge_passes_by(glm::dvec3 a, glm::dvec3 b, const glm::dvec3& w, double distance) {
     const double ahead_a = glm::dot(a, w) + distance;
     const double ahead_b = glm::dot(b, w) + distance;
@@ -54,7 +54,7 @@ bool passes_by(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w, do
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double height = glm::dot(normal, corners[0]);
     if (go_round(corners, w) && height * glm::dot(normal, w) >= 0.0)
-        return false; // it hits
+        return false; // the half-line hits the triangle
     // The start may be close to the middle of the triangle, far from its edges.
     if (height * height <= distance * distance * glm::dot(normal, normal) &&
         go_round(corners, normal))

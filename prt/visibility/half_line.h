@@ -7,9 +7,9 @@
 
 namespace relumine::prt {
 
-/// Whether the half-line from the coordinates' origin along the unit vector `w` stays farther than
-/// `distance` from a triangle. What lies obliquely behind the start is close up to sqrt(2) times
-/// that.
+/// Whether a half-line stays farther than `distance` from a triangle. The half-line goes from the
+/// coordinates' origin along the unit vector `w`. A point obliquely behind the start counts as
+/// close up to sqrt(2) times `distance`.
 [[nodiscard]] bool passes_by(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w,
                              double distance);
 

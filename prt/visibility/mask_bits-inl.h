@@ -14,7 +14,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace relumine::prt::HWY_NAMESPACE {
 
-/// Bit i is lane i, of up to 32.
+/// Returns the lanes of a mask as bits: bit i is lane i, of up to 32.
 template<class D>
 std::uint32_t bits_of(D d, hwy::HWY_NAMESPACE::Mask<D> mask) {
     std::uint8_t bytes[8] = {};

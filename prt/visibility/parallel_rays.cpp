@@ -26,30 +26,24 @@ namespace relumine::prt::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t Width = TriangleTree::Width;
-constexpr std::size_t MaxReceivers = ReceiverBlock::MaxSize;
+constexpr std::size_t MaxReceivers = ReceiverGroup::MaxSize;
 
 /// Beyond so many leaves in one direction the exact tracer is faster. Measured.
 constexpr std::size_t MostLeaves = 1024;
 
-/// Bounds as those of beam_kernels.cpp, with u = 2^-24, L = longest edge and D = the largest
-/// distance of a corner from the middle plus that of the farthest origin, by components. |s|, |t|
-/// <= 2 and off by 2 u. A moved coordinate is at most 3 D and off by 8 u D, a moved edge at most 3
-/// L and off by 8 u L. The constant's two products are off by 48 u L D each and a rounding of 9 L
-/// D, their difference by one of 18 L D; the two products with the origin by as much, their sums by
-/// one of 27 and one of 36 L D, and as many again where products are not fused: less than 400 u L
-/// D. What the exact tracer adds is less than 120 u L D: see beam_kernels.cpp.
+/// Rounding errors and their bounds: docs/error-bounds.md, rows P1 to P5.
 constexpr float EdgeTolerance = 520.0f * Rounding;
-/// The normal is at most 2 L^2 and off by 8 u L^2; its product with a corner or an origin off by
-/// less than 60 u L^2 D, the difference by 12 more; the exact tracer's by less than 40.
 constexpr float SideTolerance = 180.0f * Rounding;
 constexpr float Smallest = 1e-35f; // products below are lost
+constexpr float OutlineRoundings = 128.0f;
+constexpr float DirectionSlack = 8.0f * Rounding; // of s and t
 
-/// A leaf's triangles as seen along the rays, about the middle of the block.
+/// A leaf's triangles projected along the rays, about the middle of the group.
 ///
 /// The rays' direction is w = sign * axis + s * axis_s + t * axis_t. Every point is moved along w
 /// to the plane where its coordinate `axis` is 0; its other two coordinates stay, and triple
 /// products with w become products of two edges in that plane.
-struct SeenLeaf {
+struct ProjectedLeaf {
     using Row = std::array<float, Width>;
     /// Around each triangle
     alignas(64) Row s_low, s_high, t_low, t_high;
@@ -73,8 +67,8 @@ struct Direction {
 };
 
 template<class D>
-void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
-         const BlockOrigins& origins, SeenLeaf& seen) {
+void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
+             const GroupOrigins& origins, ProjectedLeaf& projected) {
     using Vector = hn::Vec<D>;
     const Vector along_s = hn::Set(d, direction.sign * direction.s);
     const Vector along_t = hn::Set(d, direction.sign * direction.t);
@@ -95,7 +89,7 @@ void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
         reach = hn::Add(reach, hn::Set(d, origins.radius));
         const Vector longest = hn::Load(d, leaf.longest.data() + lane);
         const Vector product = hn::Mul(longest, reach);
-        const auto store = [&](Vector v, SeenLeaf::Row& row) {
+        const auto store = [&](Vector v, ProjectedLeaf::Row& row) {
             hn::Store(v, d, row.data() + lane);
         };
 
@@ -105,114 +99,118 @@ void see(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
             moved_t[k] = hn::NegMulAdd(along_t, from_middle[k][0], from_middle[k][2]);
             const Vector edge_s = hn::Mul(sign, hn::NegMulAdd(along_s, edge[k][0], edge[k][1]));
             const Vector edge_t = hn::Mul(sign, hn::NegMulAdd(along_t, edge[k][0], edge[k][2]));
-            store(edge_s, seen.edge_s[k]);
-            store(edge_t, seen.edge_t[k]);
-            store(hn::MulSub(moved_s[k], edge_t, hn::Mul(moved_t[k], edge_s)), seen.constant[k]);
+            store(edge_s, projected.edge_s[k]);
+            store(edge_t, projected.edge_t[k]);
+            store(hn::MulSub(moved_s[k], edge_t, hn::Mul(moved_t[k], edge_s)),
+                  projected.constant[k]);
         }
-        store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)), seen.certain);
-        // Both sides are off by 8 u D, and the exact tracer may hit what is 16 roundings of its
-        // distance off, 3 sqrt(3) times that when moved.
-        const Vector lost = hn::MulAdd(reach, hn::Set(d, 128.0f * Rounding), hn::Set(d, Smallest));
-        store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_low);
-        store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost), seen.s_high);
-        store(hn::Sub(hn::Min(hn::Min(moved_t[0], moved_t[1]), moved_t[2]), lost), seen.t_low);
-        store(hn::Add(hn::Max(hn::Max(moved_t[0], moved_t[1]), moved_t[2]), lost), seen.t_high);
+        store(hn::MulAdd(product, hn::Set(d, EdgeTolerance), hn::Set(d, Smallest)),
+              projected.certain);
+        const Vector lost =
+            hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding), hn::Set(d, Smallest));
+        store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), projected.s_low);
+        store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost),
+              projected.s_high);
+        store(hn::Sub(hn::Min(hn::Min(moved_t[0], moved_t[1]), moved_t[2]), lost), projected.t_low);
+        store(hn::Add(hn::Max(hn::Max(moved_t[0], moved_t[1]), moved_t[2]), lost),
+              projected.t_high);
 
         Vector height = hn::Zero(d);
         for (std::size_t a = 0; a < 3; ++a) {
             const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
             const Vector normal =
                 hn::MulSub(edge[0][b], edge[1][c], hn::Mul(edge[0][c], edge[1][b]));
-            store(normal, seen.normal[a]);
+            store(normal, projected.normal[a]);
             height = hn::MulAdd(normal, from_middle[0][a], height);
         }
-        store(height, seen.height);
+        store(height, projected.height);
         store(
             hn::MulAdd(hn::Mul(product, longest), hn::Set(d, SideTolerance), hn::Set(d, Smallest)),
-            seen.side_certain);
+            projected.side_certain);
     }
 }
 
-/// The receivers of a block as the rays see them, in groups of as many as a vector has lanes.
-struct SeenReceivers {
-    using Row = BlockOrigins::Row;
+/// The receivers of a group projected along the rays, in bundles of as many as a vector has lanes.
+struct ProjectedReceivers {
+    using Row = GroupOrigins::Row;
     /// From the middle, along axis, axis_s, axis_t
     std::array<const float*, 3> origin;
     /// Moved along the rays
     alignas(64) Row s, t;
-    /// Of each group that has rays: what holds its s and t, and the planes of its own shaft.
+    /// Of each bundle that has rays: what holds its s and t, and the planes of its own shaft.
     Row s_low, s_high, t_low, t_high;
-    /// Infinite where a group has no rays left
+    /// Infinite where a bundle has no rays left
     std::array<Row, Shaft::NumPlanes> offsets;
 };
 
 template<class D>
 hn::Mask<D> mask_of(D d, const ReceiverBits& bits, std::size_t first) {
-    const std::uint64_t of_group = bits[first / WordSize] >> (first % WordSize);
+    const std::uint64_t of_bundle = bits[first / WordSize] >> (first % WordSize);
     std::uint8_t bytes[8];
-    std::memcpy(bytes, &of_group, sizeof bytes);
+    std::memcpy(bytes, &of_bundle, sizeof bytes);
     return hn::LoadMaskBits(d, bytes);
 }
 
-/// Also sets the shaft's offsets to those of all groups.
+/// Also sets the shaft's offsets to those of all bundles.
 template<class D>
-void see(D d, const Direction& direction, const BlockOrigins& origins, const ReceiverBits& active,
-         Shaft& shaft, SeenReceivers& seen) {
+void project(D d, const Direction& direction, const GroupOrigins& origins,
+             const ReceiverBits& active, Shaft& shaft, ProjectedReceivers& projected) {
     using Vector = hn::Vec<D>;
     const Vector infinity = hn::Set(d, std::numeric_limits<float>::infinity());
     const Vector along_s = hn::Set(d, direction.sign * direction.s);
     const Vector along_t = hn::Set(d, direction.sign * direction.t);
     for (std::size_t a = 0; a < 3; ++a)
-        seen.origin[a] = origins.from_middle[direction.axes[a]].data();
-    for (auto& row : seen.offsets)
+        projected.origin[a] = origins.from_middle[direction.axes[a]].data();
+    for (auto& row : projected.offsets)
         row.fill(std::numeric_limits<float>::infinity());
     for (std::size_t first = 0; first < MaxReceivers; first += hn::Lanes(d)) {
         const auto mask = mask_of(d, active, first);
         if (hn::AllFalse(d, mask))
             continue;
-        const std::size_t group = first / hn::Lanes(d);
+        const std::size_t bundle = first / hn::Lanes(d);
         const auto least = [&](Vector v) {
             return hn::GetLane(hn::MinOfLanes(d, hn::IfThenElse(mask, v, infinity)));
         };
-        const Vector o = hn::Load(d, seen.origin[0] + first);
-        const Vector s = hn::NegMulAdd(along_s, o, hn::Load(d, seen.origin[1] + first));
-        const Vector t = hn::NegMulAdd(along_t, o, hn::Load(d, seen.origin[2] + first));
-        hn::Store(s, d, seen.s.data() + first);
-        hn::Store(t, d, seen.t.data() + first);
-        seen.s_low[group] = least(s);
-        seen.s_high[group] = -least(hn::Neg(s));
-        seen.t_low[group] = least(t);
-        seen.t_high[group] = -least(hn::Neg(t));
+        const Vector o = hn::Load(d, projected.origin[0] + first);
+        const Vector s = hn::NegMulAdd(along_s, o, hn::Load(d, projected.origin[1] + first));
+        const Vector t = hn::NegMulAdd(along_t, o, hn::Load(d, projected.origin[2] + first));
+        hn::Store(s, d, projected.s.data() + first);
+        hn::Store(t, d, projected.t.data() + first);
+        projected.s_low[bundle] = least(s);
+        projected.s_high[bundle] = -least(hn::Neg(s));
+        projected.t_low[bundle] = least(t);
+        projected.t_high[bundle] = -least(hn::Neg(t));
         for (std::size_t k = 0; k < Shaft::NumPlanes; ++k) {
             Vector along = hn::Zero(d);
             for (std::size_t a = 0; a < 3; ++a)
                 along = hn::MulAdd(hn::Set(d, shaft.normals[k][static_cast<int>(a)]),
                                    hn::Load(d, origins.from_centre[a].data() + first), along);
-            seen.offsets[k][group] = least(along) - shaft.margins[k];
-            shaft.offsets[k] = std::min(shaft.offsets[k], seen.offsets[k][group]);
+            projected.offsets[k][bundle] = least(along) - shaft.margins[k];
+            shaft.offsets[k] = std::min(shaft.offsets[k], projected.offsets[k][bundle]);
         }
     }
 }
 
-/// Tests the rays of a group against a leaf's triangles. Bit i of `rays` is the group's receiver i;
-/// clears those that are blocked for certain, and returns those that are in doubt.
+/// Tests the rays of a bundle against a leaf's triangles. Bit i of `rays` is the bundle's receiver
+/// i; clears those that are blocked for certain, and returns those that are in doubt.
 template<class D>
-std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& seen,
-                        const Direction& direction, const BlockOrigins& origins,
-                        const SeenReceivers& receivers, std::size_t group, std::uint32_t& rays) {
+std::uint32_t test_bundle(D d, const TriangleTree::Leaf& leaf, const ProjectedLeaf& projected,
+                          const Direction& direction, const GroupOrigins& origins,
+                          const ProjectedReceivers& receivers, std::size_t bundle,
+                          std::uint32_t& rays) {
     using Vector = hn::Vec<D>;
     std::uint32_t near = 0;
     for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
-        const auto row = [&](const SeenLeaf::Row& values) {
+        const auto row = [&](const ProjectedLeaf::Row& values) {
             return hn::Load(d, values.data() + lane);
         };
-        const auto s = hn::And(hn::Ge(hn::Set(d, receivers.s_high[group]), row(seen.s_low)),
-                               hn::Ge(row(seen.s_high), hn::Set(d, receivers.s_low[group])));
-        const auto t = hn::And(hn::Ge(hn::Set(d, receivers.t_high[group]), row(seen.t_low)),
-                               hn::Ge(row(seen.t_high), hn::Set(d, receivers.t_low[group])));
+        const auto s = hn::And(hn::Ge(hn::Set(d, receivers.s_high[bundle]), row(projected.s_low)),
+                               hn::Ge(row(projected.s_high), hn::Set(d, receivers.s_low[bundle])));
+        const auto t = hn::And(hn::Ge(hn::Set(d, receivers.t_high[bundle]), row(projected.t_low)),
+                               hn::Ge(row(projected.t_high), hn::Set(d, receivers.t_low[bundle])));
         near |= bits_of(d, hn::And(s, t)) << lane;
     }
-    const std::size_t first = group * hn::Lanes(d);
+    const std::size_t first = bundle * hn::Lanes(d);
     const Vector origin[3] = {hn::Load(d, receivers.origin[0] + first),
                               hn::Load(d, receivers.origin[1] + first),
                               hn::Load(d, receivers.origin[2] + first)};
@@ -221,16 +219,16 @@ std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& see
     std::uint32_t doubts = 0;
     for (near &= (1u << leaf.size) - 1; near != 0; near &= near - 1) {
         const auto triangle = static_cast<std::size_t>(std::countr_zero(near));
-        const auto all = [&](const SeenLeaf::Row& values) {
+        const auto all = [&](const ProjectedLeaf::Row& values) {
             return hn::Set(d, values[triangle]);
         };
-        Vector side = all(seen.height);
+        Vector side = all(projected.height);
         for (std::size_t a = 0; a < 3; ++a)
-            side = hn::NegMulAdd(all(seen.normal[a]), origin[a], side);
+            side = hn::NegMulAdd(all(projected.normal[a]), origin[a], side);
         const auto edge_function = [&](std::size_t k) {
-            const Vector e =
-                hn::MulAdd(all(seen.edge_s[k]), origin_t,
-                           hn::NegMulAdd(all(seen.edge_t[k]), origin_s, all(seen.constant[k])));
+            const Vector e = hn::MulAdd(
+                all(projected.edge_s[k]), origin_t,
+                hn::NegMulAdd(all(projected.edge_t[k]), origin_s, all(projected.constant[k])));
             return hn::Xor(
                 e, hn::And(side, hn::SignBit(d))); // turned so that a hit's are all positive
         };
@@ -238,9 +236,9 @@ std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& see
         const Vector e1 = edge_function(1);
         const Vector e2 = edge_function(2);
         const Vector least = hn::Min(hn::Min(e0, e1), e2);
-        const Vector certain = all(seen.certain);
+        const Vector certain = all(projected.certain);
         const auto maybe = hn::Ge(least, hn::Neg(certain));
-        const auto edge_on = hn::Not(hn::Gt(hn::Abs(side), all(seen.side_certain)));
+        const auto edge_on = hn::Not(hn::Gt(hn::Abs(side), all(projected.side_certain)));
         if (hn::AllFalse(d, hn::Or(maybe, edge_on)))
             continue;
         const std::uint32_t hits = bits_of(d, hn::AndNot(edge_on, hn::Gt(least, certain)));
@@ -263,62 +261,62 @@ std::uint32_t test_leaf(D d, const TriangleTree::Leaf& leaf, const SeenLeaf& see
     return doubts & rays;
 }
 
-/// Tests a leaf with all groups of receivers whose own shafts it reaches into.
+/// Tests a leaf with all bundles of receivers whose own shafts it reaches into.
 template<class D>
-void test_groups(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& found,
-                 const Direction& direction, const BlockOrigins& origins, SeenReceivers& receivers,
-                 ReceiverBits& lit, ReceiverBits& doubtful) {
+void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& found,
+                  const Direction& direction, const GroupOrigins& origins,
+                  ProjectedReceivers& receivers, ReceiverBits& lit, ReceiverBits& doubtful) {
     const std::size_t num_lanes = hn::Lanes(d);
-    const std::size_t num_groups = MaxReceivers / num_lanes;
+    const std::size_t num_bundles = MaxReceivers / num_lanes;
     const std::uint64_t lanes = (std::uint64_t{1} << num_lanes) - 1;
-    bool is_seen = false;
-    SeenLeaf seen;
-    for (std::size_t first_group = 0; first_group < num_groups; first_group += num_lanes) {
-        auto inside = hn::FirstN(d, num_groups - first_group);
+    bool is_projected = false;
+    ProjectedLeaf projected;
+    for (std::size_t first_bundle = 0; first_bundle < num_bundles; first_bundle += num_lanes) {
+        auto inside = hn::FirstN(d, num_bundles - first_bundle);
         for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-            inside = hn::And(inside, hn::Le(hn::LoadU(d, receivers.offsets[k].data() + first_group),
-                                            hn::Set(d, found.supports[k])));
+            inside =
+                hn::And(inside, hn::Le(hn::LoadU(d, receivers.offsets[k].data() + first_bundle),
+                                       hn::Set(d, found.supports[k])));
         for (std::uint32_t bits = bits_of(d, inside); bits != 0; bits &= bits - 1) {
-            if (!is_seen)
-                see(d, leaf, direction, origins, seen);
-            is_seen = true;
-            const std::size_t group =
-                first_group + static_cast<std::size_t>(std::countr_zero(bits));
-            const std::size_t word = group * num_lanes / WordSize;
-            const std::size_t shift = group * num_lanes % WordSize;
+            if (!is_projected)
+                project(d, leaf, direction, origins, projected);
+            is_projected = true;
+            const std::size_t bundle =
+                first_bundle + static_cast<std::size_t>(std::countr_zero(bits));
+            const std::size_t word = bundle * num_lanes / WordSize;
+            const std::size_t shift = bundle * num_lanes % WordSize;
             const auto asked = static_cast<std::uint32_t>(lit[word] >> shift & lanes);
             std::uint32_t rays = asked;
             const std::uint64_t doubts =
-                test_leaf(d, leaf, seen, direction, origins, receivers, group, rays);
+                test_bundle(d, leaf, projected, direction, origins, receivers, bundle, rays);
             lit[word] &= ~(std::uint64_t{asked & ~rays} << shift);
             doubtful[word] |= doubts << shift;
             if (rays == 0) // it needs no more leaves
-                receivers.offsets[0][group] = std::numeric_limits<float>::infinity();
+                receivers.offsets[0][bundle] = std::numeric_limits<float>::infinity();
         }
     }
 }
 
-ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                  const PatchPlane& patch, std::size_t j,
-                                  const glm::vec3& mean_normal, const BlockOrigins& origins,
-                                  const ReceiverBits& active) {
+ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
+                                  const GroupOrigins& origins, const ReceiverBits& active) {
     const hn::CappedTag<float, Width> d;
+    const PatchPlane& patch = of_patch.plane;
+    const std::size_t j = of_patch.index;
     const auto axis = static_cast<std::size_t>(patch.axis);
     const Direction direction{.axes = {axis, (axis + 1) % 3, (axis + 2) % 3},
                               .sign = patch.sign,
                               .s = patch.s[j],
                               .t = patch.t[j],
-                              .unit = directions.direction(j)};
-    constexpr float Slack = 8.0f * Rounding; // of s and t
+                              .unit = of_patch.patch.direction(j)};
     Shaft shaft = shaft_of({.axis = patch.axis,
                             .sign = patch.sign,
-                            .s0 = patch.s[j] - Slack,
-                            .s1 = patch.s[j] + Slack,
-                            .t0 = patch.t[j] - Slack,
-                            .t1 = patch.t[j] + Slack},
-                           mean_normal, origins.reach);
-    SeenReceivers receivers;
-    see(d, direction, origins, active, shaft, receivers);
+                            .s0 = patch.s[j] - DirectionSlack,
+                            .s1 = patch.s[j] + DirectionSlack,
+                            .t0 = patch.t[j] - DirectionSlack,
+                            .t1 = patch.t[j] + DirectionSlack},
+                           origins.mean_normal, origins.reach);
+    ProjectedReceivers receivers;
+    project(d, direction, origins, active, shaft, receivers);
     thread_local ShaftBoxes boxes;
     if (!find_boxes(tree, shaft, MostLeaves, boxes))
         return {.blocked = {}, .doubtful = active, .num_leaves = boxes.found.size()};
@@ -326,8 +324,8 @@ ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch
     ReceiverBits doubtful{};
     for (const std::uint64_t key : boxes.order) {
         const ShaftBoxes::Found& found = boxes.found[key & 0xffffffff];
-        test_groups(d, tree.leaves[static_cast<std::size_t>(found.leaf)], found, direction, origins,
-                    receivers, lit, doubtful);
+        test_bundles(d, tree.leaves[static_cast<std::size_t>(found.leaf)], found, direction,
+                     origins, receivers, lit, doubtful);
     }
     ParallelResult result{.num_leaves = boxes.found.size()};
     for (std::size_t i = 0; i < lit.size(); ++i) {
@@ -347,17 +345,17 @@ namespace {
 HWY_EXPORT(test_parallel_rays);
 } // namespace
 
-BlockOrigins::BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree)
-    : all(block.origins), reach(tree.extent) {
-    glm::vec3 low = block.origins.front();
+GroupOrigins::GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree)
+    : all(group.origins), mean_normal(group.mean_normal), reach(tree.extent) {
+    glm::vec3 low = group.origins.front();
     glm::vec3 high = low;
-    for (const glm::vec3& origin : block.origins) {
+    for (const glm::vec3& origin : group.origins) {
         low = glm::min(low, origin);
         high = glm::max(high, origin);
     }
     middle = 0.5f * (low + high);
-    for (std::size_t i = 0; i < ReceiverBlock::MaxSize; ++i) {
-        const glm::vec3& origin = block.origins[i < block.origins.size() ? i : 0];
+    for (std::size_t i = 0; i < ReceiverGroup::MaxSize; ++i) {
+        const glm::vec3& origin = group.origins[i < group.origins.size() ? i : 0];
         for (int axis = 0; axis < 3; ++axis) {
             const auto a = static_cast<std::size_t>(axis);
             from_centre[a][i] = origin[axis] - tree.centre[axis];
@@ -368,12 +366,9 @@ BlockOrigins::BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree)
     }
 }
 
-ParallelResult test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                                  const PatchPlane& patch, std::size_t j,
-                                  const glm::vec3& mean_normal, const BlockOrigins& origins,
-                                  const ReceiverBits& active) {
-    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, directions, patch, j, mean_normal,
-                                                    origins, active);
+ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
+                                  const GroupOrigins& origins, const ReceiverBits& active) {
+    return HWY_DYNAMIC_DISPATCH(test_parallel_rays)(tree, of_patch, origins, active);
 }
 
 } // namespace relumine::prt

@@ -1,4 +1,4 @@
-// Testing the rays of a block of receivers in one direction against the triangles before them.
+// Testing the rays of a group of receivers in one direction against the triangles before them.
 // Vectorised with run-time dispatch.
 #pragma once
 
@@ -15,51 +15,62 @@
 
 namespace relumine::prt {
 
-/// Where a block's rays start, in the layout that the kernel reads. Receivers beyond the block's
-/// size repeat its first.
-struct BlockOrigins {
-    using Row = std::array<float, ReceiverBlock::MaxSize>;
+/// The starts of a group's rays, in the layout that the kernel reads. Lanes after the last receiver
+/// repeat the first one.
+struct GroupOrigins {
+    using Row = std::array<float, ReceiverGroup::MaxSize>;
 
-    BlockOrigins(const ReceiverBlock& block, const TriangleTree& tree);
+    GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree);
 
-    /// x, y, z from the tree's centre
+    /// x, y, z from the tree's centre.
     alignas(64) std::array<Row, 3> from_centre;
-    /// From the middle of the block
+    /// x, y, z from the middle of the group.
     alignas(64) std::array<Row, 3> from_middle;
-    /// As they are
+    /// In the mesh's coordinates.
     std::span<const glm::vec3> all;
+    /// As in the group.
+    glm::vec3 mean_normal{0.0f};
     glm::vec3 middle{0.0f};
-    /// Largest coordinate from the middle
+    /// Largest coordinate from the middle.
     float radius = 0.0f;
-    /// Largest coordinate of the tree's triangles and the origins, from the tree's centre
+    /// Largest coordinate of the tree's triangles and the origins, from the tree's centre.
     float reach = 0.0f;
 };
 
-/// One bit for each receiver of a block.
-using ReceiverBits = std::array<std::uint64_t, ReceiverBlock::MaxSize / 64>;
+/// One bit for each receiver of a group.
+using ReceiverBits = std::array<std::uint64_t, ReceiverGroup::MaxSize / 64>;
+
+/// One direction of a patch.
+struct PatchDirection {
+    const DirectionPatch& patch;
+    /// The plane of the same patch.
+    const PatchPlane& plane;
+    std::size_t index = 0;
+};
 
 struct ParallelResult {
-    /// For certain
+    /// Receivers whose ray is blocked for certain.
     ReceiverBits blocked{};
-    /// Of the rest, those that are not certain to miss everything
+    /// Remaining receivers whose ray may hit something.
     ReceiverBits doubtful{};
-    /// That the rays may meet
+    /// Leaves that the rays may meet.
     std::size_t num_leaves = 0;
 };
 
-/// Tests the rays of `active` receivers in the patch's direction j. Seen along it, receivers are
+/// Tests the rays of `active` receivers in one direction. Seen along the direction, receivers are
 /// points and triangles stay triangles:
 ///
-///          . . .             16 receivers at a time are compared with one edge at a time, two
-///          products each. Receivers that are
-///      /\ . . . .            neighbours on a fine mesh look at the same few triangles, however
-///      fine it is, while a patch
-///     /__\ . . .             of directions meets more and more.
+///          . . .
+///      /\ . . . .
+///     /__\ . . .
 ///
-/// Rays among too many triangles are all in doubt.
-[[nodiscard]] ParallelResult
-test_parallel_rays(const TriangleTree& tree, const DirectionPatch& directions,
-                   const PatchPlane& patch, std::size_t j, const glm::vec3& mean_normal,
-                   const BlockOrigins& origins, const ReceiverBits& active);
+/// 16 receivers at a time are compared with one edge at a time, two products each. Receivers that
+/// are neighbours on a fine mesh look at the same few triangles, however fine the mesh is. A patch
+/// of directions meets more triangles on a finer mesh. Among too many triangles all rays are in
+/// doubt.
+[[nodiscard]] ParallelResult test_parallel_rays(const TriangleTree& tree,
+                                                const PatchDirection& of_patch,
+                                                const GroupOrigins& origins,
+                                                const ReceiverBits& active);
 
 } // namespace relumine::prt

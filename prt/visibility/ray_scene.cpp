@@ -22,7 +22,7 @@ namespace {
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
-/// Embree drops triangles with coordinates beyond this (its FLT_LARGE) without a word.
+/// Embree silently drops triangles with coordinates beyond this limit (its FLT_LARGE).
 constexpr float LargestCoordinate = 1.844e18f;
 
 struct DeviceDeleter {
@@ -49,8 +49,7 @@ bool has_no_area(const mesh::TriangleMesh& mesh, const mesh::Triangle& triangle)
                       glm::dvec3(mesh.positions[triangle[2]]) - corner) == glm::dvec3(0.0);
 }
 
-/// Copies an array into a geometry buffer, which Embree pads as its kernels need, and tells where
-/// it is.
+/// Copies an array into a geometry buffer, padded as Embree's kernels need it. Returns the buffer.
 template<typename Element>
 const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
                            const std::vector<Element>& elements) {
@@ -61,16 +60,18 @@ const Element* fill_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat f
     return static_cast<const Element*>(buffer);
 }
 
-/// What Embree has of a mesh.
+/// Embree's copy of a mesh.
 struct Buffers {
     const glm::vec3* positions = nullptr;
     const mesh::Triangle* triangles = nullptr;
 };
 
-/// Embree moves corners by a rounding of their distance d and compares noise with noise where a ray
-/// runs along a triangle's plane: it then finds hits far beside the triangle, as far as the boxes
-/// of its tree go. Such a hit would be a shadow that nothing casts. What is left are hits that are
-/// no farther off than a ray's own rounding.
+/// Drops hits that lie beside their triangle.
+///
+/// Embree moves corners by a rounding of their distance d. Where a ray runs along a triangle's
+/// plane it compares noise with noise. It then finds hits far beside the triangle, up to the boxes
+/// of its tree. Such a hit would be a shadow that nothing casts. The remaining hits are no farther
+/// off than a ray's own rounding.
 void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
     constexpr double Roundings = 16.0 * 0x1p-24;
     const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
@@ -98,7 +99,7 @@ void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
 } // namespace
 
 struct RayScene::Impl {
-    /// At the place that Embree was told
+    /// Embree holds its address.
     Buffers buffers;
     DeviceHandle device;
     SceneHandle scene;
@@ -120,9 +121,9 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl
     rtcSetSceneFlags(impl_->scene.get(), RTC_SCENE_FLAG_ROBUST);
 
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-    // A triangle without area blocks nothing, but Embree's edge functions, all zero, say "hit" to
-    // rays that pass beside it in a plane with it. It gets a corner that is no number, with which
-    // Embree drops it; the others keep their numbers.
+    // A triangle without area blocks nothing. But Embree's edge functions are all zero for it, and
+    // say "hit" to rays that pass beside it in a plane with it. It gets a corner that is not a
+    // number, so Embree drops it. The other triangles keep their numbers.
     std::vector<glm::vec3> positions = mesh.positions;
     std::vector<mesh::Triangle> triangles = mesh.triangles;
     const auto nowhere = static_cast<std::uint32_t>(positions.size());
@@ -221,7 +222,7 @@ float automatic_bias(const mesh::TriangleMesh& blockers) {
     float largest = 0.0f;
     for (int axis = 0; axis < 3; ++axis)
         largest = std::max({largest, std::abs(bounds.min[axis]), std::abs(bounds.max[axis])});
-    // A sum is rounded by up to half a spacing on each axis; the second half of the four is for the
+    // A sum is rounded by up to half a spacing on each axis. The other half of the four is for the
     // triangles' own rounding.
     return std::max(1e-4f * bounds.diagonal(),
                     4.0f * std::numeric_limits<float>::epsilon() * largest);

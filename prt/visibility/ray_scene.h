@@ -13,23 +13,26 @@
 
 namespace relumine::prt {
 
-/// Where a ray meets the mesh first.
+/// The point where a ray first meets the mesh.
 struct Hit {
     std::uint32_t triangle = 0;
-    /// Weights of the triangle's second and third vertex
+    /// Weights of the triangle's second and third vertex.
     glm::vec2 barycentric{0.0f};
-    /// In units of the ray direction's length
+    /// In units of the ray direction's length.
     float distance = 0.0f;
 };
 
-/// Triangles prepared for ray queries. Immutable; all queries may run from any number of threads at
-/// once. Triangles block from both sides. Rays are traced watertight (Embree's robust mode: no ray
-/// slips through a shared edge).
+/// Triangles prepared for ray queries; immutable. Triangles block from both sides. Rays are traced
+/// watertight (Embree's robust mode): no ray slips through a shared edge.
+///
+/// Threads: all queries may run from any number of threads at once.
 class RayScene final : public Blockers {
 public:
-    /// Builds the accelerator: O(n log n), about 100 bytes per triangle. The mesh may go
-    /// afterwards. Throws std::runtime_error when Embree fails (out of memory, say) or a triangle's
-    /// coordinates are beyond its range of 1.8e18.
+    /// Builds the accelerator. The mesh need not outlive this object.
+    ///
+    /// Cost:    O(n log n), about 100 bytes per triangle.
+    /// Throws:  std::runtime_error when Embree fails (out of memory, for example), or a triangle's
+    ///          coordinates are beyond its range of 1.8e18.
     explicit RayScene(const mesh::TriangleMesh& mesh);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;
@@ -49,10 +52,12 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// The bias used where none is given: 1e-4 of the blockers' bounding-box diagonal. That is a
-/// thousand times the spacing of floats at the box's size, and well below the edge length of a mesh
-/// of a million triangles. Far from the origin, where floats are so sparse that such a bias would
-/// be rounded away and every surface would block its own light, it is four of their spacings.
+/// Returns the bias to use where none is given: 1e-4 of the blockers' bounding-box diagonal. It is
+/// a thousand times the spacing of floats at the box's size, and well below the edge length of a
+/// mesh of a million triangles.
+///
+/// Far from the origin floats are so sparse that such a bias would be rounded away, and every
+/// surface would block its own light. There the bias is four spacings of floats.
 [[nodiscard]] float automatic_bias(const mesh::TriangleMesh& blockers);
 
 } // namespace relumine::prt

@@ -15,6 +15,11 @@ namespace {
 /// scene.
 constexpr float WidestPatch = 1.1f;
 
+/// Rounding errors and their bounds: docs/error-bounds.md, rows S1 to S3.
+constexpr float DirectionSlack = 8.0f * Rounding; // of s and t
+constexpr float GroundSlack = 32.0f * Rounding;
+constexpr float MarginRoundings = 96.0f;
+
 /// Sum of the absolute components.
 float norm_1(const glm::vec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
@@ -55,12 +60,10 @@ PatchPlane patch_plane(const DirectionPatch& patch) {
     }
     plane.narrow = std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) < WidestPatch &&
                    std::max({plane.s1, -plane.s0, plane.t1, -plane.t0}) < 2.0f;
-    // The quotients are off by a rounding of themselves.
-    constexpr float Slack = 8.0f * Rounding;
-    plane.s0 -= Slack;
-    plane.s1 += Slack;
-    plane.t0 -= Slack;
-    plane.t1 += Slack;
+    plane.s0 -= DirectionSlack;
+    plane.s1 += DirectionSlack;
+    plane.t0 -= DirectionSlack;
+    plane.t1 += DirectionSlack;
     plane.bins_per_s = bins_per_unit(plane.s0, plane.s1);
     plane.bins_per_t = bins_per_unit(plane.t0, plane.t1);
     for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
@@ -104,16 +107,12 @@ Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal, float 
         float least = std::numeric_limits<float>::infinity();
         for (const glm::vec3& corner : shaft.corners)
             least = std::min(least, glm::dot(normal, corner));
-        constexpr float Slack = 32.0f * Rounding; // of that product
-        const float turn = std::max(0.0f, Slack - least);
+        const float turn = std::max(0.0f, GroundSlack - least);
         shaft.normals.back() = normal + turn * vector(1, 0, 0);
     }
     for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-        // Moving to the tree's centre rounds once, the products and sums three times, on both
-        // sides: 8. The exact tracer may hit what is 16 roundings of its distance off, which is 2
-        // sqrt(3) of the reach at most: 56. The bound is still far below the usual bias.
-        shaft.margins[k] =
-            96.0f * Rounding * norm_1(shaft.normals[k]) * reach + std::numeric_limits<float>::min();
+        shaft.margins[k] = MarginRoundings * Rounding * norm_1(shaft.normals[k]) * reach +
+                           std::numeric_limits<float>::min();
     shaft.offsets.fill(std::numeric_limits<float>::infinity());
     shaft.origins_low = glm::vec3(std::numeric_limits<float>::infinity());
     shaft.origins_high = -shaft.origins_low;

@@ -1,4 +1,4 @@
-// The rays of a block of receivers through a patch of directions: a rectangle before the receivers,
+// The rays of a group of receivers through a patch of directions: a rectangle before the receivers,
 // and six planes around the rays.
 #pragma once
 
@@ -12,56 +12,56 @@
 
 namespace relumine::prt {
 
-/// Roundings to the nearest float are off by at most this part of the result.
+/// Rounding to the nearest float is off by at most this part of the result.
 inline constexpr float Rounding = 0x1p-24f;
 
-/// What holds a patch of directions on a plane before the receivers: each is a multiple of sign *
-/// axis + s * axis_s + t * axis_t.
+/// The rectangle around a patch of directions on a plane before the receivers. Each direction is a
+/// multiple of sign * axis + s * axis_s + t * axis_t.
 struct PatchRectangle {
-    /// Along which all directions go; the other two are (axis + 1) % 3 and (axis + 2) % 3
+    /// The axis that all directions go along. axis_s is (axis + 1) % 3, axis_t is (axis + 2) % 3.
     int axis = 0;
     float sign = 1.0f;
     float s0 = 0.0f, s1 = 0.0f, t0 = 0.0f, t1 = 0.0f;
 };
 
-/// The directions of a patch in their rectangle: direction j is at s[j], t[j].
+/// The directions of a patch in their rectangle. Direction j is at s[j], t[j].
 struct PatchPlane : PatchRectangle {
-    /// All directions have a positive component along the axis, and lie in a small rectangle
+    /// All directions have a positive component along the axis, and lie in a small rectangle.
     bool narrow = false;
     alignas(64) std::array<float, DirectionPatch::Size> s{}, t{};
 
-    /// The rectangle in columns and rows; for each, the directions in it or before it, in it or
-    /// after it.
+    /// The rectangle is cut into columns along s and rows along t. For each column or row: the
+    /// directions up to it (until) and from it on (from), itself included.
     static constexpr int NumBins = 32;
     float bins_per_s = 0.0f, bins_per_t = 0.0f;
     std::array<std::uint64_t, NumBins> until_s{}, from_s{}, until_t{}, from_t{};
 };
 
-/// Half-spaces normal . x >= offset that hold all rays of a block through a patch, in the tree's
+/// Half-spaces normal . x >= offset that hold all rays of a group through a patch, in the tree's
 /// coordinates: normal . w >= 0 for all directions w, and normal . o >= offset for all origins o.
 struct Shaft {
     static constexpr std::size_t NumPlanes = 6;
     std::array<glm::vec3, NumPlanes> normals;
     std::array<float, NumPlanes> offsets;
-    /// Bounds of the error of normal . (x - o) in float
+    /// Bounds of the error of normal . (x - o) in float.
     std::array<float, NumPlanes> margins;
-    /// Of the patch's rectangle: all directions are sums of these with positive factors
+    /// Corners of the patch's rectangle. Every direction is a sum of them with positive factors.
     std::array<glm::vec3, 4> corners;
-    /// A box around the origins, in the mesh's coordinates
+    /// A box around the origins, in the mesh's coordinates.
     glm::vec3 origins_low{0.0f}, origins_high{0.0f};
-    /// Largest coordinate of leaves and origins, in the tree's
+    /// Largest coordinate of leaves and origins, in the tree's coordinates.
     float reach = 0.0f;
     int axis = 0;
     float sign = 1.0f;
 };
 
-/// The rectangle of a patch. Not narrow where directions have no axis in common; the rest is not
-/// set then.
+/// Returns the rectangle of a patch. Where the directions share no axis, `narrow` is false and the
+/// other fields mean nothing.
 [[nodiscard]] PatchPlane patch_plane(const DirectionPatch& patch);
 
-/// The planes around a rectangle for receivers that face `mean_normal` (a hint), before their
-/// origins are known: offsets are at infinity. `reach` is the largest coordinate of triangles and
-/// origins.
+/// Returns the planes around a rectangle before the origins are known: all offsets are at infinity.
+/// `mean_normal` is a hint where the receivers face. `reach` is the largest coordinate of triangles
+/// and origins.
 [[nodiscard]] Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal,
                              float reach);
 

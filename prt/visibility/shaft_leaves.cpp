@@ -49,6 +49,10 @@ std::uint32_t children_inside(const TriangleTree::Node& node, const Shaft& shaft
     return inside;
 }
 
+/// Rounding errors and their bounds: docs/error-bounds.md, rows S4 and S5.
+constexpr double HeightRoundings = 64.0;
+constexpr double AwayRoundings = 32.0;
+
 /// Whether all rays of the shaft run away from the triangle's plane, which then says more than a
 /// large triangle's box does.
 bool leaves_plane(const TriangleTree::Leaf& leaf, std::size_t lane, const Shaft& shaft) {
@@ -62,18 +66,15 @@ bool leaves_plane(const TriangleTree::Leaf& leaf, std::size_t lane, const Shaft&
     const glm::dvec3 half = 0.5 * (glm::dvec3(shaft.origins_high) - glm::dvec3(shaft.origins_low));
     const double height = glm::dot(normal, middle - corner[0]);
     const double spread = glm::dot(glm::abs(normal), half);
-    // Embree sees the receiver's side of the plane in float; a ray that runs along the plane must
-    // not be judged.
     const double size = std::abs(normal.x) + std::abs(normal.y) + std::abs(normal.z);
     const double longest = static_cast<double>(leaf.longest[lane]);
-    const double margin = 64.0 * static_cast<double>(Rounding) * (size + longest * longest) *
-                          static_cast<double>(shaft.reach);
+    const double rounding = static_cast<double>(Rounding) * (size + longest * longest);
+    const double margin = HeightRoundings * rounding * static_cast<double>(shaft.reach);
     if (!(std::abs(height) > spread + margin))
         return false;
     const double side = height > 0.0 ? 1.0 : -1.0;
     return std::all_of(shaft.corners.begin(), shaft.corners.end(), [&](const glm::vec3& w) {
-        return side * glm::dot(normal, glm::dvec3(w)) >
-               32.0 * static_cast<double>(Rounding) * (size + longest * longest);
+        return side * glm::dot(normal, glm::dvec3(w)) > AwayRoundings * rounding;
     });
 }
 

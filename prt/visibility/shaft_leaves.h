@@ -11,18 +11,19 @@
 
 namespace relumine::prt {
 
-/// The leaves in a shaft, from near to far, by their triangles. Kept from shaft to shaft for its
-/// memory.
+/// The leaves in a shaft from near to far, found by their triangles. Reuse the object for the next
+/// shaft to keep its memory.
 struct ShaftLeaves {
     static constexpr std::size_t MaxSize = 2048;
     static constexpr std::size_t Padding = 16;
     using Row = std::array<float, MaxSize + Padding>;
 
     std::size_t size = 0;
-    /// max over a leaf's triangles of normal . x, for each plane; [size], then lanes that are
-    /// outside of everything
+    /// [size] for each plane: the maximum of normal . x over a leaf's triangles. The lanes after
+    /// `size` are outside of everything.
     std::array<Row, Shaft::NumPlanes> supports;
-    /// the boxes in the patch's axes: low and high along `axis` (times its sign), along s, along t
+    /// [size] the boxes in the patch's axes: low and high along `axis` (times its sign), along s,
+    /// along t.
     std::array<Row, 6> boxes;
     std::array<std::int32_t, MaxSize + Padding> leaves;
 
@@ -31,34 +32,35 @@ struct ShaftLeaves {
         std::uint32_t lane = 0;
         std::int32_t leaf = 0;
     };
-    /// Before their triangles are looked at
+    /// Candidates, before their triangles are looked at.
     std::vector<Found> found;
-    /// Sorted from near to far; the lower 32 bits are places in `found`
+    /// Sorted from near to far. The lower 32 bits are indices into `found`.
     std::vector<std::uint64_t> order;
     std::vector<std::int32_t> stack;
 };
 
-/// Finds the leaves of which no plane says that all their triangles are outside. False when they
-/// are more than `most` (at most MaxSize), without having looked at all of them.
+/// Collects the leaves that may lie inside the shaft: for each of its six planes, at least one
+/// triangle is on the inner side. Returns false for more than `most` leaves (at most MaxSize); some
+/// leaves have not been looked at then.
 [[nodiscard]] bool find_leaves(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
                                ShaftLeaves& leaves);
 
-/// The leaves in a shaft, from near to far, by their boxes alone, which is faster where many shafts
-/// are looked into. Kept for its memory, too.
+/// The leaves in a shaft from near to far, found by their boxes alone. Faster than ShaftLeaves for
+/// many shafts. Reuse the object to keep its memory.
 struct ShaftBoxes {
     struct Found {
-        /// Max over the box of normal . x, for each plane
+        /// For each plane, the maximum of normal . x over the box.
         std::array<float, Shaft::NumPlanes> supports;
         std::int32_t leaf = 0;
     };
     std::vector<Found> found;
-    /// Sorted from near to far; the lower 32 bits are places in `found`
+    /// Sorted from near to far. The lower 32 bits are indices into `found`.
     std::vector<std::uint64_t> order;
     std::vector<std::int32_t> stack;
 };
 
-/// Finds the leaves whose boxes are not outside of one of the planes. False when they are more than
-/// `most`.
+/// Collects the leaves whose boxes reach to the inner side of every plane. Returns false for more
+/// than `most` leaves.
 [[nodiscard]] bool find_boxes(const TriangleTree& tree, const Shaft& shaft, std::size_t most,
                               ShaftBoxes& boxes);
 

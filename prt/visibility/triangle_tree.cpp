@@ -40,7 +40,7 @@ struct Item {
 struct Part {
     std::span<Item> items;
     Box box;
-    /// A leaf that no cut makes better
+    /// A leaf that no cut improves.
     bool is_settled = false;
     [[nodiscard]] bool fits_leaf() const { return items.size() <= Width; }
 };
@@ -52,8 +52,8 @@ Part part_of(std::span<Item> items) {
     return part;
 }
 
-/// Where to cut a part in two: the best of 15 planes on each axis by the surface area heuristic,
-/// counted in whole leaves.
+/// Cuts a part in two at the best of 15 planes on each axis. The surface area heuristic counts
+/// whole leaves.
 std::pair<Part, Part> split(const Part& part) {
     constexpr int NumBins = 16;
     Box middles;
@@ -104,7 +104,7 @@ std::pair<Part, Part> split(const Part& part) {
         }
     }
     auto middle = part.items.begin() + static_cast<std::ptrdiff_t>(part.items.size() / 2);
-    if (best_cut > 0) // otherwise all lie in one place: halves
+    if (best_cut > 0) // otherwise all lie in one place: cut into halves
         middle = std::stable_partition(part.items.begin(), part.items.end(), [&](const Item& item) {
             return bin_of(item, best_axis) < best_cut;
         });
@@ -118,7 +118,8 @@ public:
             TriangleTree& tree)
         : positions_(positions), triangles_(triangles), tree_(tree) {}
 
-    /// The node over a part; cuts the biggest piece until there are sixteen or none is worth a cut.
+    /// Adds the node over a part and returns its index. Cuts the biggest piece until there are
+    /// sixteen, or none is worth a cut.
     std::int32_t node(const Part& whole) {
         std::vector<Part> parts = {whole};
         while (parts.size() < Width) {
@@ -131,7 +132,7 @@ public:
             if (biggest->is_settled)
                 break;
             const auto [first, second] = split(*biggest);
-            // Triangles that would fit one leaf part only where they are of very different size.
+            // Triangles that fit into one leaf are cut only if their sizes differ much.
             if (biggest->fits_leaf() && std::min(first.box.half_area(), second.box.half_area()) >
                                             0.005 * biggest->box.half_area()) {
                 biggest->is_settled = true;

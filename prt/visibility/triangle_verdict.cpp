@@ -7,15 +7,8 @@
 
 namespace relumine::prt {
 
-/// The errors of double precision do not count: what is left in doubt is what the rounding of the
-/// exact tracer may turn.
-///
-/// Its error bounds (Embree's robust triangles), u = 2^-24, v = corner - o of length d at most, l
-/// the longest edge, p = |v x w| the distance of a corner from the ray's line. v is off by u d,
-/// which turns an edge function (v x v') . w by u d (p + p'). The edge is off by u of itself, as is
-/// the sum of its corners, their cross product by 3 u l d, its product with w by 3 more: 8 u l d. A
-/// hit may be outside by 2 u times the sum of the edge functions: 2 u l^2. The side, (v x v') .
-/// v'', is off by 3 u l d^2 for the corners and 6 u l^2 d for the rest. All are doubled.
+/// Rounding errors of the exact tracer and their bounds: docs/error-bounds.md, rows V1 to V5. The
+/// errors of double precision do not count beside them.
 Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3& origin,
               const glm::vec3& w) {
     glm::dvec3 v[3];

@@ -9,10 +9,11 @@
 
 namespace relumine::prt {
 
-/// What the exact tracer says of a ray and a triangle, as far as its rounding errors let one know.
+/// The answer of the exact tracer for a ray and a triangle, as far as bounds of its rounding errors
+/// tell.
 enum class Verdict { Miss, Hit, Doubt };
 
-/// The ray from `origin` into the unit direction `w`, and triangle `lane` of a leaf.
+/// Judges the ray from `origin` in the unit direction `w` against triangle `lane` of a leaf.
 [[nodiscard]] Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane,
                             const glm::vec3& origin, const glm::vec3& w);
 

@@ -14,11 +14,11 @@ namespace relumine::relight {
 
 namespace {
 
-/// What stands before the numbers. `shape` as Python writes it: "(7, 3)".
+/// Returns the bytes before the numbers. `shape` is as Python writes it: "(7, 3)".
 std::string npy_header(const std::string& shape) {
     static_assert(std::endian::native == std::endian::little &&
                   sizeof(glm::vec3) == 3 * sizeof(float));
-    // Magic, version, length of the description; the data begins at a multiple of 64 bytes (NEP 1).
+    // Magic, version, length of the description. The data begins at a multiple of 64 bytes (NEP 1).
     constexpr std::size_t PrefixSize = 10;
     constexpr std::size_t Alignment = 64;
     std::string description =
@@ -71,10 +71,10 @@ void NpyFrames::commit() {
 
 namespace {
 
-/// What the file's description says: a Python dictionary of three entries in any order.
+/// The file's description: a Python dictionary of three entries in any order.
 struct Description {
     bool is_double = false;
-    /// With the last axis
+    /// With the last axis.
     std::vector<std::size_t> shape;
 };
 
@@ -138,7 +138,7 @@ VectorArray load_npy(const std::filesystem::path& path) {
 
     const std::size_t element = description.is_double ? sizeof(double) : sizeof(float);
     const std::size_t got = bytes.size() - begin - length;
-    std::size_t count = 1; // of numbers, where that many can be in a file
+    std::size_t count = 1; // numbers in the array
     for (const std::size_t axis : description.shape) {
         if (axis != 0 && count > std::numeric_limits<std::size_t>::max() / element / axis)
             throw std::runtime_error(

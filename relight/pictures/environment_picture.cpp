@@ -7,21 +7,24 @@
 #include <filesystem>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "cubemap/doctor/bright_spot.h"
 #include "cubemap/doctor/sky_angles.h"
+#include "cubemap/luminance.h"
 #include "cubemap/resample/resample.h"
 #include "relight/pictures/picture.h"
+#include "relight/pictures/tone_map.h"
 
 namespace relumine::relight {
 
 namespace {
 
-constexpr int Width = 1024, Height = 512;
-/// Size of a letter's dots.
+constexpr int MapWidth = 1024, MapHeight = 512;
+/// Pixels of a letter's dot, on a side.
 constexpr int Dot = 2;
 
 struct Glyph {
@@ -46,25 +49,25 @@ public:
     explicit Canvas(relight::Picture& picture) : picture_(picture) {}
 
     void put(int x, int y, const glm::vec3& colour, float opacity = 1.0f) {
-        if (x < 0 || y < 0 || x >= Width || y >= Height)
+        if (x < 0 || y < 0 || x >= MapWidth || y >= MapHeight)
             return;
         glm::vec3& pixel =
-            picture_.pixels[static_cast<std::size_t>(y) * Width + static_cast<std::size_t>(x)];
+            picture_.pixels[static_cast<std::size_t>(y) * MapWidth + static_cast<std::size_t>(x)];
         pixel = glm::mix(pixel, colour, opacity);
     }
 
-    /// A rectangle's pixels.
+    /// Fills a rectangle's pixels.
     void box(int x0, int y0, int x1, int y1, const glm::vec3& colour, float opacity) {
         for (int y = y0; y < y1; ++y)
             for (int x = x0; x < x1; ++x)
                 put(x, y, colour, opacity);
     }
 
-    /// Centred at (x, y) and moved into the picture.
+    /// Draws letters centred at (x, y), moved into the picture.
     void text(int x, int y, std::string_view letters, const glm::vec3& colour) {
         const int width = static_cast<int>(letters.size()) * 6 * Dot + Dot, height = 9 * Dot;
-        const int left = std::clamp(x - width / 2, 0, Width - width);
-        const int top = std::clamp(y - height / 2, 0, Height - height);
+        const int left = std::clamp(x - width / 2, 0, MapWidth - width);
+        const int top = std::clamp(y - height / 2, 0, MapHeight - height);
         box(left, top, left + width, top + height, glm::vec3(0.0f), 0.7f);
         int start = left + Dot;
         for (const char letter : letters) {
@@ -99,9 +102,9 @@ public:
             for (int dx = -reach; dx <= reach; ++dx) {
                 const int column = static_cast<int>(x) + dx, row = static_cast<int>(y) + dy;
                 const double off = std::abs(std::hypot(column + 0.5 - x, row + 0.5 - y) - Radius);
-                // The ring goes on at the other end, as the sky does.
+                // The ring goes on at the other end of the row, as the sky does.
                 if (off < 3.0)
-                    put((column + Width) % Width, row, off < 1.5 ? colour : glm::vec3(0.0f),
+                    put((column + MapWidth) % MapWidth, row, off < 1.5 ? colour : glm::vec3(0.0f),
                         off < 1.5 ? 1.0f : 0.6f);
             }
         }
@@ -117,25 +120,19 @@ struct Place {
 
 Place place(const glm::dvec3& w) {
     const cubemap::SkyAngles angles = cubemap::sky_angles(w);
-    return {(0.5 - angles.azimuth_degrees / 360.0) * Width,
-            (0.5 - angles.elevation_degrees / 180.0) * Height};
+    return {(0.5 - angles.azimuth_degrees / 360.0) * MapWidth,
+            (0.5 - angles.elevation_degrees / 180.0) * MapHeight};
 }
 
-/// Reinhard's global operator: the geometric mean of luminance becomes middle grey, the brightest
-/// stays below white.
+/// Tone-maps the pixels. The brightest stays below white, and a black one does not spoil the mean.
 void tone_map(std::vector<glm::vec3>& pixels) {
-    double sum = 0.0, largest = 0.0;
+    std::vector<LuminanceSample> samples;
+    samples.reserve(pixels.size());
     for (const glm::vec3& pixel : pixels)
-        largest = std::max(largest, cubemap::luminance(glm::dvec3(pixel)));
-    if (largest == 0.0)
-        return;
-    for (const glm::vec3& pixel : pixels)
-        sum += std::log(std::max(cubemap::luminance(glm::dvec3(pixel)), 1e-6 * largest));
-    const double scale = 0.18 / std::exp(sum / static_cast<double>(pixels.size()));
-    for (glm::vec3& pixel : pixels) {
-        const double value = scale * cubemap::luminance(glm::dvec3(pixel));
-        pixel = glm::vec3(glm::min(glm::dvec3(pixel) * (scale / (1.0 + value)), glm::dvec3(1.0)));
-    }
+        samples.push_back({.luminance = cubemap::luminance(glm::dvec3(pixel))});
+    const ToneMap map(std::move(samples), {.floor = 1e-6});
+    for (glm::vec3& pixel : pixels)
+        pixel = map(glm::dvec3(pixel));
 }
 
 } // namespace
@@ -150,16 +147,16 @@ void check_environment_picture(const std::string& path) {
 void save_environment_picture(const std::string& path, const cubemap::EnvironmentImage& image,
                               const SunMark& sun) {
     const cubemap::CubeMap map = cubemap::resample(
-        image, std::min<std::uint32_t>(Width / 4, cubemap::natural_resolution(image)));
+        image, std::min<std::uint32_t>(MapWidth / 4, cubemap::natural_resolution(image)));
     relight::Picture picture{
-        .width = Width,
-        .height = Height,
-        .pixels = cubemap::to_image(map, cubemap::Layout::LatLong, Width, Height).pixels};
+        .width = MapWidth,
+        .height = MapHeight,
+        .pixels = cubemap::to_image(map, cubemap::Layout::LatLong, MapWidth, MapHeight).pixels};
     tone_map(picture.pixels);
 
     Canvas canvas(picture);
-    for (int x = 0; x < Width; x += 8)
-        canvas.box(x, Height / 2, x + 2, Height / 2 + 1, glm::vec3(1.0f), 0.6f);
+    for (int x = 0; x < MapWidth; x += 8)
+        canvas.box(x, MapHeight / 2, x + 2, MapHeight / 2 + 1, glm::vec3(1.0f), 0.6f);
     const glm::vec3 red(1.0f, 0.12f, 0.1f), green(0.15f, 0.9f, 0.15f), blue(0.25f, 0.5f, 1.0f),
         yellow(1.0f, 0.85f, 0.05f);
     struct Axis {
@@ -168,13 +165,13 @@ void save_environment_picture(const std::string& path, const cubemap::Environmen
         glm::vec3 colour;
     };
     constexpr int Beside = 22; // from a cross to its name
-    const int middle = Height / 2;
+    const int middle = MapHeight / 2;
     // A pole is a whole row of the picture, and -Z lies on both its ends.
     for (const Axis& axis :
-         {Axis{"+X", Width / 4, middle, red}, Axis{"-X", 3 * Width / 4, middle, red},
-          Axis{"+Z", Width / 2, middle, blue}, Axis{"-Z", 0, middle, blue},
-          Axis{"-Z", Width - 1, middle, blue}, Axis{"+Y", Width / 2, 0, green},
-          Axis{"-Y", Width / 2, Height - 1, green}}) {
+         {Axis{"+X", MapWidth / 4, middle, red}, Axis{"-X", 3 * MapWidth / 4, middle, red},
+          Axis{"+Z", MapWidth / 2, middle, blue}, Axis{"-Z", 0, middle, blue},
+          Axis{"-Z", MapWidth - 1, middle, blue}, Axis{"+Y", MapWidth / 2, 0, green},
+          Axis{"-Y", MapWidth / 2, MapHeight - 1, green}}) {
         canvas.cross(axis.x, axis.y, axis.colour);
         canvas.text(axis.x, axis.y + (axis.y > middle ? -Beside : Beside), axis.name, axis.colour);
     }

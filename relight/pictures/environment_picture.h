@@ -9,19 +9,19 @@
 
 namespace relumine::relight {
 
-/// A ring around a direction with a word beside it; without a word nothing is drawn.
+/// A ring around a direction with a word beside it. Without a word nothing is drawn.
 struct SunMark {
     glm::dvec3 direction{0.0};
-    /// Of the letters in "sun?"
+    /// Only the letters in "sun?" can be drawn.
     std::string label = {};
 };
 
-/// Throws std::runtime_error unless the name ends in .png.
+/// Throws:  std::runtime_error unless the name ends in .png.
 void check_environment_picture(const std::string& path);
 
-/// Writes a lat-long PNG of 1024 x 512 as the world axes have it: +Z in the middle, +X to its left,
-/// +Y at the top. A cross marks each axis (-Z at both ends), a dotted line the horizon. Whole or
-/// not at all. Radiance must be finite and not negative.
+/// Writes a lat-long PNG of 1024 x 512 along the world axes: +Z in the middle, +X to its left, +Y
+/// at the top. A cross marks each axis (-Z at both ends), a dotted line the horizon. Writes the
+/// file whole or not at all. Radiance must be finite and not negative.
 void save_environment_picture(const std::string& path, const cubemap::EnvironmentImage& image,
                               const SunMark& sun);
 

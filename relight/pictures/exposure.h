@@ -7,8 +7,11 @@
 
 namespace relumine::relight {
 
-/// In stops: 0 where that leaves the brightest fiftieth of the radiances neither dark nor far
-/// beyond white; else what makes it white, in half stops, from -20 to 20. O(n).
+/// Returns an exposure in stops for the brightness that a fiftieth of the radiances exceeds. It is
+/// 0 where that brightness is neither dark nor far beyond white. Otherwise it makes that brightness
+/// white, in half stops, from -20 to 20.
+///
+/// Cost:    O(n).
 [[nodiscard]] float suitable_exposure_ev(std::span<const glm::vec3> radiance);
 
 } // namespace relumine::relight

@@ -31,8 +31,8 @@ float aspect_of(const PictureOptions& options) {
     return static_cast<float>(options.width) / static_cast<float>(options.height);
 }
 
-/// Box around what stands on the ground: triangles wholly in the lowest horizontal plane are left
-/// out.
+/// Returns the box around the objects on the ground: triangles wholly in the lowest horizontal
+/// plane are left out.
 mesh::Bounds subject_bounds(const mesh::TriangleMesh& mesh) {
     const mesh::Bounds all = mesh::bounds(mesh);
     const float ground = all.min.y + 1e-3f * all.size().y;
@@ -56,7 +56,7 @@ std::vector<std::byte> encode_png(const Picture& picture, float scale) {
     std::vector<std::uint8_t> bytes;
     bytes.reserve(picture.pixels.size() * static_cast<std::size_t>(num_channels));
     for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        // The PNG format's alpha is not multiplied into the colours.
+        // The colours of PNG are not multiplied by alpha.
         const float alpha = num_channels == 4 && picture.alpha[i] > 0.0f ? picture.alpha[i] : 1.0f;
         for (int channel = 0; channel < 3; ++channel)
             bytes.push_back(srgb_byte(picture.pixels[i][channel] / alpha * scale));
@@ -84,7 +84,7 @@ Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& op
                         float fov_degrees) {
     const mesh::Bounds box = subject_bounds(mesh);
     const glm::vec3 from_target = glm::normalize(glm::vec3(0.45f, 0.4f, 1.0f));
-    // About the origin: far from it floats would not hold so short a way from target to eye.
+    // About the origin: far from it, floats could not hold so short a way from target to eye.
     const prt::CameraAxes frame =
         prt::axes_of({.eye = from_target, .fov_degrees = fov_degrees}, aspect_of(options));
 
@@ -200,12 +200,10 @@ void save_picture(const std::filesystem::path& path, const Picture& picture, dou
         bytes = encode_png(picture, scale);
     } else if (extension == ".exr") {
         cubemap::EnvironmentImage image;
-        image.width = picture.width;
-        image.height = picture.height;
-        image.pixels = picture.pixels;
+        static_cast<Picture&>(image) = picture;
         for (glm::vec3& pixel : image.pixels)
             pixel *= scale;
-        bytes = cubemap::encode_exr(image, picture.alpha);
+        bytes = cubemap::encode_exr(image);
     } else {
         throw std::invalid_argument(fmt::format("{}: expected .png or .exr, got '{}'",
                                                 path.string(), path.extension().string()));

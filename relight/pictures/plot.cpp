@@ -13,8 +13,8 @@ namespace relumine::relight {
 
 namespace {
 
-constexpr double Width = 720.0;
-constexpr double Height = 440.0;
+constexpr double PlotWidth = 720.0;
+constexpr double PlotHeight = 440.0;
 constexpr double Left = 72.0;
 constexpr double Right = 170.0; // for the legend
 constexpr double Top = 40.0;
@@ -39,7 +39,7 @@ std::string escaped(const std::string& text) {
     return result;
 }
 
-/// From values to positions along an axis, [0, 1].
+/// Turns values into positions along an axis, [0, 1].
 class Axis {
 public:
     explicit Axis(Scale scale) : scale_(scale) {}
@@ -53,12 +53,12 @@ public:
         high_ = std::max(high_, value);
     }
 
-    /// Widens what was included to round numbers; to call once.
+    /// Widens the range of included values to round numbers. Call it once.
     void finish() {
         if (low_ > high_)
             low_ = high_ = 1.0;
         if (scale_ == Scale::Log) {
-            // Whole powers of two or ten would waste the plot; a twentieth of the range stays free
+            // Whole powers of two or ten would waste the plot. A twentieth of the range stays free
             // at both ends.
             const double margin = std::max(0.05 * std::log(high_ / low_), 0.05);
             low_ *= std::exp(-margin);
@@ -87,7 +87,7 @@ public:
                 result.push_back(low_ + i * step_);
             return result;
         }
-        // 1, 2, 5 of each decade, or decades alone where that were too many.
+        // 1, 2, 5 of each decade, or decades alone where these would be too many.
         const bool decades_only = high_ / low_ > 2e3;
         const auto first = static_cast<int>(std::floor(std::log10(low_)));
         const auto last = static_cast<int>(std::floor(std::log10(high_)));
@@ -100,7 +100,7 @@ public:
     }
 
 private:
-    /// The next of 1, 2, 5 times a power of ten.
+    /// Returns the next of 1, 2, 5 times a power of ten.
     static double round_step(double step) {
         const double decade = std::pow(10.0, std::floor(std::log10(step)));
         for (const double factor : {1.0, 2.0, 5.0})
@@ -115,7 +115,7 @@ private:
     double step_ = 1.0;
 };
 
-/// A tick's number: what rounding left of it is no part of it.
+/// Prints a tick's number. A remainder of rounding counts as 0.
 std::string number(double value) {
     return fmt::format("{:.4g}", std::abs(value) < 1e-12 ? 0.0 : value);
 }
@@ -139,10 +139,10 @@ public:
     [[nodiscard]] std::string document() {
         put(R"(<svg xmlns="http://www.w3.org/2000/svg" width="{0}" height="{1}" viewBox="0 0 {0} {1}" )"
             R"(font-family="sans-serif" font-size="12">)",
-            Width, Height);
-        put(R"(<rect width="{}" height="{}" fill="white"/>)", Width, Height);
+            PlotWidth, PlotHeight);
+        put(R"(<rect width="{}" height="{}" fill="white"/>)", PlotWidth, PlotHeight);
         put(R"(<text x="{}" y="22" font-size="15" text-anchor="middle">{}</text>)",
-            0.5 * (Left + Width - Right), escaped(plot_.title));
+            0.5 * (Left + PlotWidth - Right), escaped(plot_.title));
         grid();
         for (std::size_t i = 0; i < plot_.series.size(); ++i)
             series(plot_.series[i], i);
@@ -161,15 +161,15 @@ private:
         return x_.shows(series.x[i]) && y_.shows(series.y[i]);
     }
     [[nodiscard]] double across(double value) const {
-        return Left + x_.position(value) * (Width - Left - Right);
+        return Left + x_.position(value) * (PlotWidth - Left - Right);
     }
     [[nodiscard]] double down(double value) const {
-        return Height - Bottom - y_.position(value) * (Height - Top - Bottom);
+        return PlotHeight - Bottom - y_.position(value) * (PlotHeight - Top - Bottom);
     }
 
     void grid() {
-        const double bottom = Height - Bottom;
-        const double right = Width - Right;
+        const double bottom = PlotHeight - Bottom;
+        const double right = PlotWidth - Right;
         for (const double tick : x_.ticks()) {
             put(R"(<line x1="{0:.1f}" y1="{1}" x2="{0:.1f}" y2="{2}" stroke="#dddddd"/>)",
                 across(tick), Top, bottom);
@@ -185,7 +185,7 @@ private:
         put(R"(<rect x="{}" y="{}" width="{}" height="{}" fill="none" stroke="black"/>)", Left, Top,
             right - Left, bottom - Top);
         put(R"(<text x="{}" y="{}" text-anchor="middle">{}</text>)", 0.5 * (Left + right),
-            Height - 16.0, escaped(plot_.x_label));
+            PlotHeight - 16.0, escaped(plot_.x_label));
         put(R"svg(<text x="18" y="{0}" text-anchor="middle" transform="rotate(-90 18 {0})">{1}</text>)svg",
             0.5 * (Top + bottom), escaped(plot_.y_label));
     }
@@ -205,9 +205,9 @@ private:
             put(R"(<polyline points="{}" fill="none" stroke="{}" stroke-width="1.8"/>)", points,
                 colour);
         const double y = Top + 12.0 + 20.0 * static_cast<double>(index);
-        put(R"(<rect x="{}" y="{}" width="16" height="4" fill="{}"/>)", Width - Right + 12.0,
+        put(R"(<rect x="{}" y="{}" width="16" height="4" fill="{}"/>)", PlotWidth - Right + 12.0,
             y - 2.0, colour);
-        put(R"(<text x="{}" y="{}">{}</text>)", Width - Right + 34.0, y + 4.0,
+        put(R"(<text x="{}" y="{}">{}</text>)", PlotWidth - Right + 34.0, y + 4.0,
             escaped(series.name));
     }
 

@@ -13,9 +13,9 @@ struct Plot {
     struct Series {
         std::string name;
         std::vector<double> x;
-        /// As many as x
+        /// [x.size()]
         std::vector<double> y;
-        /// Points joined by a line; otherwise points alone
+        /// True: points joined by a line. False: points alone.
         bool line = true;
     };
     std::string title = {};
@@ -26,9 +26,10 @@ struct Plot {
     std::vector<Series> series = {};
 };
 
-/// The plot as a whole SVG document, 720 x 440, with axes, grid, ticks and a legend. Points that
-/// are not finite, or not above zero on a logarithmic axis, are left out. Throws
-/// std::invalid_argument for a series whose x and y differ in number.
+/// Returns the plot as a whole SVG document, 720 x 440, with axes, grid, ticks and a legend. Points
+/// that are not finite, or not above zero on a logarithmic axis, are left out.
+///
+/// Throws:  std::invalid_argument for a series whose x and y differ in number.
 [[nodiscard]] std::string svg(const Plot& plot);
 
 } // namespace relumine::relight

@@ -17,8 +17,8 @@ void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::ve
                                                 num_receivers, radiance.size()));
 }
 
-/// Means over the samples of each pixel. `behind(x, y, i)`: radiance of a sample without a
-/// receiver. Coverage goes to the picture's alpha where that is asked for.
+/// Averages the samples of each pixel. `behind(x, y, i)` is the radiance of a sample without a
+/// receiver. Coverage goes to the picture's alpha if asked for.
 template<typename Behind>
 Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
                  const Behind& behind, bool with_alpha) {
@@ -105,9 +105,9 @@ private:
     }
 
     Picture& picture_;
-    /// [height * width] 0: receivers
+    /// [height * width] ring of each texel; 0: a receiver.
     std::vector<std::uint32_t> ring_of_;
-    /// The outermost one
+    /// Texels of the outermost ring.
     std::vector<std::uint32_t> ring_;
 };
 

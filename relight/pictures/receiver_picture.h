@@ -1,4 +1,4 @@
-// Pictures out of the light of receivers that are pixels or texels.
+// Pictures from the light of receivers that are pixels or texels.
 #pragma once
 
 #include <cstdint>
@@ -12,21 +12,27 @@
 
 namespace relumine::relight {
 
-/// The picture that pixel receivers are: each pixel the mean of its samples, those without a
-/// receiver showing the environment in their ray's direction. Opaque. `radiance`: [num_receivers].
-/// Throws std::invalid_argument for another number or a background without texels.
+/// Composes the picture of pixel receivers: each pixel is the mean of its samples. A sample without
+/// a receiver shows the environment in its ray's direction. The picture is opaque.
+///
+/// Shape:   radiance is [num_receivers].
+/// Throws:  std::invalid_argument for another number of values, or a background without texels.
 [[nodiscard]] Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
                               const cubemap::CubeMap& background);
 
-/// The same without a background: its samples are black, alpha is the share of samples with a
-/// receiver (coverage), so that the pixels are premultiplied.
+/// Composes the picture of pixel receivers without a background. Samples without a receiver are
+/// black. Alpha is the share of samples with a receiver (coverage), so the pixels are
+/// premultiplied.
 [[nodiscard]] Picture compose_cut_out(const prt::PixelLayout& layout,
                                       std::span<const glm::vec3> radiance);
 
-/// The lightmap that texel receivers are. Texels around the charts are filled outwards, ring by
-/// ring up to `gutter` texels, each with the mean of its neighbours of the ring before (of eight),
-/// so that filters near a chart's border read its colours. Alpha is 1 where a chart touches the
-/// texel, 0 in the gutter and beyond. O(texels + filled ones).
+/// Composes the lightmap of texel receivers.
+///
+/// Texels around the charts are filled outwards, ring by ring up to `gutter` texels. Each takes the
+/// mean of its eight neighbours that belong to earlier rings, so that filters near a chart's border
+/// read its colours. Alpha is 1 where a chart touches the texel, 0 in the gutter and beyond.
+///
+/// Cost:    O(texels + filled texels).
 [[nodiscard]] Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance,
                               std::uint32_t gutter = 16);
 

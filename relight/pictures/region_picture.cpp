@@ -1,13 +1,17 @@
-// Tone mapping based on: E. Reinhard, M. Stark, P. Shirley, J. Ferwerda, "Photographic Tone
-// Reproduction for Digital Images", SIGGRAPH 2002.
 #include "relight/pictures/region_picture.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <tbb/parallel_for.h>
+
+#include "cubemap/luminance.h"
+#include "lights/lat_long_grid.h"
+#include "relight/pictures/tone_map.h"
 
 namespace relumine::relight {
 
@@ -15,11 +19,10 @@ namespace {
 
 const glm::vec3 LineColour(0.05f, 0.75f, 0.2f);
 
-/// How many pixels of the picture a pixel of the map becomes, or how many of the map become one of
-/// the picture.
-struct Scale {
+/// The picture has `grow` pixels for each `shrink` pixels of the map; one of the two is 1.
+struct MapScale {
     std::uint32_t grow = 1, shrink = 1;
-    explicit Scale(std::uint32_t width) {
+    explicit MapScale(std::uint32_t width) {
         constexpr std::uint32_t Narrowest = 1024;
         constexpr std::uint32_t Widest = 2048;
         if (width < Narrowest)
@@ -27,7 +30,7 @@ struct Scale {
         else
             shrink = (width + Widest - 1) / Widest;
     }
-    /// Of a border between the map's pixels, or any position among them.
+    /// Scales a border between the map's pixels, or any position among them.
     template<typename T>
     [[nodiscard]] T of(T position) const {
         return position * static_cast<T>(grow) / static_cast<T>(shrink);
@@ -37,55 +40,20 @@ struct Scale {
     }
 };
 
-/// Log-average luminance brought to middle grey; the brightest hundredth of the sphere white.
-class ToneMap {
-public:
-    explicit ToneMap(const lights::LatLongGrid& grid) {
-        double log_sum = 0.0;
-        double weight = 0.0;
-        std::vector<std::pair<double, double>>
-            values; // luminance, solid angle; a few ten thousand are enough
-        const auto step = std::max<std::uint32_t>(1, grid.width() / 512);
-        for (std::uint32_t y = step / 2; y < grid.height(); y += step) {
-            for (std::uint32_t x = step / 2; x < grid.width(); x += step) {
-                const double value = lights::luminance(grid.radiance(x, y));
-                if (value <= 0.0)
-                    continue;
-                const double solid_angle = grid.solid_angle(x, y);
-                log_sum += std::log(value) * solid_angle;
-                weight += solid_angle;
-                values.emplace_back(value, solid_angle);
-            }
-        }
-        if (values.empty())
-            return;
-        constexpr double MiddleGrey = 0.18;
-        key_ = MiddleGrey / std::exp(log_sum / weight);
-        std::sort(values.begin(), values.end());
-        double brightest = 0.0;
-        while (values.size() > 1 && brightest < 0.01 * weight) {
-            brightest += values.back().second;
-            values.pop_back();
-        }
-        white_ = std::max(key_ * values.back().first, 1.0);
-    }
+/// Returns a tone map in which the brightest hundredth of the sphere is white. A few ten thousand
+/// pixels of a large map are enough.
+ToneMap tone_map_of(const lights::LatLongGrid& grid) {
+    std::vector<LuminanceSample> samples;
+    const auto step = std::max<std::uint32_t>(1, grid.width() / 512);
+    for (std::uint32_t y = step / 2; y < grid.height(); y += step)
+        for (std::uint32_t x = step / 2; x < grid.width(); x += step)
+            samples.push_back({.luminance = lights::luminance(grid.radiance(x, y)),
+                               .weight = grid.solid_angle(x, y)});
+    return ToneMap(std::move(samples), {.weights = cubemap::MedianCutWeights, .white_share = 0.01});
+}
 
-    [[nodiscard]] glm::vec3 operator()(const glm::dvec3& radiance) const {
-        const double value = key_ * lights::luminance(radiance);
-        if (value <= 0.0)
-            return glm::vec3(0.0f);
-        const double shown =
-            value * (1.0 + value / (white_ * white_)) / (1.0 + value); // their Eq. 4
-        return glm::vec3(glm::min(radiance * (key_ * shown / value), glm::dvec3(1.0)));
-    }
-
-private:
-    double key_ = 1.0;
-    double white_ = 1.0;
-};
-
-Picture environment_picture(const lights::LatLongGrid& grid, const Scale& scale) {
-    const ToneMap tone_map(grid);
+Picture environment_picture(const lights::LatLongGrid& grid, const MapScale& scale) {
+    const ToneMap tone_map = tone_map_of(grid);
     Picture picture{scale.size(grid.width()), scale.size(grid.height()), {}};
     picture.pixels.resize(std::size_t{picture.width} * picture.height);
     tbb::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {
@@ -118,7 +86,7 @@ void blend(Picture& picture, std::int64_t x, std::int64_t y, const glm::vec3& co
     pixel = glm::mix(pixel, colour, static_cast<float>(std::min(coverage, 1.0)));
 }
 
-void draw_borders(Picture& picture, const lights::PixelRectangle& region, const Scale& scale) {
+void draw_borders(Picture& picture, const lights::PixelRectangle& region, const MapScale& scale) {
     const auto left = scale.of(region.x0), right = std::min(scale.of(region.x1), picture.width - 1);
     const auto top = scale.of(region.y0),
                bottom = std::min(scale.of(region.y1), picture.height - 1);
@@ -132,7 +100,8 @@ void draw_borders(Picture& picture, const lights::PixelRectangle& region, const 
     }
 }
 
-/// Coverage of a pixel at a distance from the centre of a disc, its edge one pixel wide.
+/// Returns the coverage of a pixel at a distance from the centre of a disc with an edge one pixel
+/// wide.
 double disc(double distance, double radius) {
     return std::clamp(radius + 0.5 - distance, 0.0, 1.0);
 }
@@ -165,7 +134,7 @@ void draw_light(Picture& picture, const lights::DistantLight& light) {
 Picture region_picture(const cubemap::EnvironmentImage& lat_long,
                        const lights::Placement& placement) {
     const lights::LatLongGrid grid(lat_long);
-    const Scale scale(grid.width());
+    const MapScale scale(grid.width());
     Picture picture = environment_picture(grid, scale);
     for (const lights::PixelRectangle& region : placement.regions)
         draw_borders(picture, region, scale);

@@ -7,10 +7,12 @@
 
 namespace relumine::relight {
 
-/// The lat-long tone-mapped (Reinhard's global operator), between 1024 and 2048 pixels wide where
-/// whole multiples of its own size allow, the regions' borders as thin lines and every light as a
-/// small disc in its own colour with a dark ring. Linear colours in [0, 1]. Throws
-/// std::invalid_argument for images that LatLongGrid refuses.
+/// Draws the tone-mapped lat-long (Reinhard's global operator), the regions' borders as thin lines,
+/// and every light as a small disc in its own colour with a dark ring. The picture is between 1024
+/// and 2048 pixels wide where whole multiples of the lat-long's size allow it. Colours are linear
+/// in [0, 1].
+///
+/// Throws:  std::invalid_argument for images that LatLongGrid refuses.
 [[nodiscard]] Picture region_picture(const cubemap::EnvironmentImage& lat_long,
                                      const lights::Placement& placement);
 

@@ -7,9 +7,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class CommandLine : public AppTest {
+class CommandLineTest : public AppTest {
 protected:
-    CommandLine() {
+    CommandLineTest() {
         write("mesh.obj", octahedron_obj());
         write("env.hdr", white_hdr());
     }
@@ -36,7 +36,7 @@ std::vector<std::string> with(std::vector<std::string> arguments,
     return arguments;
 }
 
-TEST_F(CommandLine, HelpOfEverythingIsPrintedAndSucceeds) {
+TEST_F(CommandLineTest, HelpOfEverythingIsPrintedAndSucceeds) {
     EXPECT_NE(succeed({"--help"}).out.find("precompute"), std::string::npos);
     EXPECT_EQ(succeed({"--version"}).out.rfind("relumine ", 0), 0u);
     for (const char* name : {"precompute", "relight", "edit", "verify", "info", "generate"}) {
@@ -49,7 +49,7 @@ TEST_F(CommandLine, HelpOfEverythingIsPrintedAndSucceeds) {
     }
 }
 
-TEST_F(CommandLine, WrongUsageExitsWithTwoAndOneLine) {
+TEST_F(CommandLineTest, WrongUsageExitsWithTwoAndOneLine) {
     misuse({});
     misuse({"--nonsense"}, "--nonsense");
     misuse({"illuminate"}, "illuminate");
@@ -69,7 +69,7 @@ TEST_F(CommandLine, WrongUsageExitsWithTwoAndOneLine) {
     misuse({"info", "mesh.obj", "--threads"}, "--threads");
 }
 
-TEST_F(CommandLine, EmptyValuesAreWrongUsage) {
+TEST_F(CommandLineTest, EmptyValuesAreWrongUsage) {
     // What a script passes when a variable is not set. An empty tolerance must not mean 0.
     misuse({"precompute", "", "-o", "new.prt"}, "MESH");
     misuse({"precompute", "mesh.obj", "-o", ""}, "--output");
@@ -86,7 +86,7 @@ TEST_F(CommandLine, EmptyValuesAreWrongUsage) {
     misuse({"generate", "blob", "-o", ""}, "--output");
 }
 
-TEST_F(CommandLine, JsonIsOneObjectOnStdoutAndNothingElse) {
+TEST_F(CommandLineTest, JsonIsOneObjectOnStdoutAndNothingElse) {
     precompute();
     for (const std::vector<std::string>& arguments : all_) {
         const Result result = succeed(with(arguments, {"--json"}));
@@ -95,7 +95,7 @@ TEST_F(CommandLine, JsonIsOneObjectOnStdoutAndNothingElse) {
     }
 }
 
-TEST_F(CommandLine, JsonStaysJsonWithQuietAndVerbose) {
+TEST_F(CommandLineTest, JsonStaysJsonWithQuietAndVerbose) {
     precompute();
     for (const std::vector<std::string>& arguments : all_) {
         EXPECT_FALSE(succeed(with(arguments, {"--json", "-q"})).json().empty()) << arguments[0];
@@ -103,7 +103,7 @@ TEST_F(CommandLine, JsonStaysJsonWithQuietAndVerbose) {
     }
 }
 
-TEST_F(CommandLine, QuietPrintsNothingOnSuccess) {
+TEST_F(CommandLineTest, QuietPrintsNothingOnSuccess) {
     precompute();
     for (const std::vector<std::string>& arguments : all_)
         for (const char* quiet : {"-q", "--quiet"}) {
@@ -113,20 +113,20 @@ TEST_F(CommandLine, QuietPrintsNothingOnSuccess) {
         }
 }
 
-TEST_F(CommandLine, VerboseSaysWhatWasAssumedOfTheEnvironment) {
+TEST_F(CommandLineTest, VerboseSaysWhatWasAssumedOfTheEnvironment) {
     precompute();
     const Result result = succeed({"relight", "scene.prt", "env.hdr", "-o", "new.npy", "-v"});
     EXPECT_NE(result.out.find("2:1"), std::string::npos) << result.described();
 }
 
-TEST_F(CommandLine, MistakesAreStillReportedWithQuietAndJson) {
+TEST_F(CommandLineTest, MistakesAreStillReportedWithQuietAndJson) {
     for (const char* option : {"-q", "--json"}) {
         fail({"info", "missing.prt", option}, {"missing.prt"});
         misuse({"info", option});
     }
 }
 
-TEST_F(CommandLine, OutputThatCannotBePrintedIsAFailure) {
+TEST_F(CommandLineTest, OutputThatCannotBePrintedIsAFailure) {
     if (!fs::exists("/dev/full"))
         GTEST_SKIP() << "this system has no /dev/full";
     precompute();
@@ -134,7 +134,7 @@ TEST_F(CommandLine, OutputThatCannotBePrintedIsAFailure) {
         fail(with({"info", "scene.prt"}, more), {"standard output"}, {.stdout_path = "/dev/full"});
 }
 
-TEST_F(CommandLine, OddFileNamesWork) {
+TEST_F(CommandLineTest, OddFileNamesWork) {
     precompute();
     for (const std::string name :
          {"with space", "quote'\"s", "umlaut \xc3\xa4\xc3\xb6", "\xe7\x85\xa7\xe6\x98\x8e",
@@ -152,7 +152,7 @@ TEST_F(CommandLine, OddFileNamesWork) {
     }
 }
 
-TEST_F(CommandLine, NamesThatLookLikeOptionsWorkAfterTwoDashes) {
+TEST_F(CommandLineTest, NamesThatLookLikeOptionsWorkAfterTwoDashes) {
     write("-m.obj", octahedron_obj());
     write("-e.hdr", white_hdr());
     succeed({"precompute", "-o", "./-s.prt", "--face-resolution", "16", "--", "-m.obj"});
@@ -161,13 +161,13 @@ TEST_F(CommandLine, NamesThatLookLikeOptionsWorkAfterTwoDashes) {
     EXPECT_TRUE(fs::exists(folder() / "-o.npy"));
 }
 
-TEST_F(CommandLine, LinesOfAFileNameWithALineBreakStayOneLine) {
+TEST_F(CommandLineTest, LinesOfAFileNameWithALineBreakStayOneLine) {
     fail({"info", "two\nlines.prt"}, {"two lines.prt"});
     fail({"info", "carriage\rreturn.prt"});
     misuse({"generate", "two\nlines", "-o", "new"});
 }
 
-TEST_F(CommandLine, ManyThreadsAreNoMistake) {
+TEST_F(CommandLineTest, ManyThreadsAreNoMistake) {
     precompute();
     succeed({"relight", "scene.prt", "env.hdr", "-o", "new.npy", "--threads", "64"});
 }

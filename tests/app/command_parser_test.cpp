@@ -86,7 +86,7 @@ TEST_F(CommandParser, ReadsValuesOfAllKinds) {
 }
 
 TEST_F(CommandParser, OptionsThatAreNotGivenKeepTheirValues) {
-    EXPECT_EQ(line_.run({"run", "-q", "--size", "--", "-a"}), "");
+    EXPECT_EQ(line_.run({"run", "--size", "-q", "--", "-a"}), "");
     EXPECT_EQ(text_, "-a");
     EXPECT_EQ(number_, 7u);
     EXPECT_FALSE(bias_);

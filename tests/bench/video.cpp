@@ -17,7 +17,7 @@
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "relight/flicker.h"
-#include "relight/light_packets.h"
+#include "relight/shadow_rays.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"

@@ -11,8 +11,6 @@
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 TEST(CubeMap, RefusesResolutionsThatMakeNoSense) {
     EXPECT_THROW(CubeMap(0), std::invalid_argument);
     EXPECT_THROW(CubeMap(16385), std::invalid_argument);
@@ -34,15 +32,16 @@ TEST(CubeMap, TexelSolidAnglesAreThoseOfTheFace) {
 
 TEST(CubeMap, SolidAnglesSumToTheSphereAtTheLargestResolutions) {
     const auto angles = texel_solid_angles(4096);
-    EXPECT_NEAR(6.0 * std::accumulate(angles.begin(), angles.end(), 0.0) / (4.0 * Pi), 1.0, 1e-10);
+    EXPECT_NEAR(6.0 * std::accumulate(angles.begin(), angles.end(), 0.0) / (4.0 * std::numbers::pi),
+                1.0, 1e-10);
 }
 
 TEST(CubeMap, ConstantRadianceCausesIrradiancePi) {
     const CubeMap map(64, glm::vec3(2.0f));
     for (const glm::dvec3 normal :
          {glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0), glm::normalize(glm::dvec3(1, 2, 3))})
-        EXPECT_NEAR(irradiance(map, normal).x / (2.0 * Pi), 1.0, 2e-4);
-    EXPECT_NEAR(total_power(map).y / (8.0 * Pi), 1.0, 1e-10);
+        EXPECT_NEAR(irradiance(map, normal).x / (2.0 * std::numbers::pi), 1.0, 2e-4);
+    EXPECT_NEAR(total_power(map).y / (8.0 * std::numbers::pi), 1.0, 1e-10);
 }
 
 TEST(CubeMap, SampleAtTexelCentresIsTheTexel) {

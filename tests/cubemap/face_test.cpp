@@ -11,10 +11,8 @@
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 TEST(Face, SolidAngleOfWholeFacesIsTheSphere) {
-    EXPECT_NEAR(6.0 * solid_angle(0, 0, 1, 1), 4.0 * Pi, 1e-14);
+    EXPECT_NEAR(6.0 * solid_angle(0, 0, 1, 1), 4.0 * std::numbers::pi, 1e-14);
 }
 
 TEST(Face, SolidAnglesOfTexelsSumToTheFace) {
@@ -25,7 +23,7 @@ TEST(Face, SolidAnglesOfTexelsSumToTheFace) {
             for (int x = 0; x < resolution; ++x)
                 sum += solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n);
         }
-        EXPECT_NEAR(sum / (4.0 * Pi / 6.0), 1.0, 1e-10) << resolution;
+        EXPECT_NEAR(sum / (4.0 * std::numbers::pi / 6.0), 1.0, 1e-10) << resolution;
     }
 }
 

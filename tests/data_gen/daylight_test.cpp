@@ -12,15 +12,13 @@
 namespace relumine::data_gen {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 double luminance(const glm::dvec3& c) {
     return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z;
 }
 
 // The paper's luminance, written down a second time: kcd/m^2.
 double paper_zenith(double T, double theta_sun) {
-    const double chi = (4.0 / 9.0 - T / 120.0) * (Pi - 2.0 * theta_sun);
+    const double chi = (4.0 / 9.0 - T / 120.0) * (std::numbers::pi - 2.0 * theta_sun);
     return (4.0453 * T - 4.9710) * std::tan(chi) - 0.2155 * T + 2.4192;
 }
 
@@ -53,7 +51,7 @@ TEST(DaylightTest, LuminanceIsThePapers) {
     for (const double T : {2.0, 3.0, 6.0}) {
         for (const double elevation : {10.0, 35.0, 70.0}) {
             const Daylight daylight({.turbidity = T, .sun_elevation_degrees = elevation});
-            const double theta_sun = (90.0 - elevation) * Pi / 180.0;
+            const double theta_sun = (90.0 - elevation) * std::numbers::pi / 180.0;
             // Away from the sun's side too, where colours are inside Rec. 709 and nothing is
             // clamped.
             for (const double theta_degrees : {0.0, 20.0, 50.0, 80.0, 88.0}) {
@@ -62,8 +60,8 @@ TEST(DaylightTest, LuminanceIsThePapers) {
                         direction_from_angles(90.0 - theta_degrees, azimuth_degrees);
                     const double gamma =
                         std::acos(std::min(1.0, glm::dot(w, daylight.sun_direction())));
-                    const double expected =
-                        paper_luminance(T, theta_sun, theta_degrees * Pi / 180.0, gamma);
+                    const double expected = paper_luminance(
+                        T, theta_sun, theta_degrees * std::numbers::pi / 180.0, gamma);
                     EXPECT_NEAR(luminance(daylight.sky(w)) / expected, 1.0, 2e-3)
                         << "turbidity " << T << " elevation " << elevation << " theta "
                         << theta_degrees;
@@ -75,7 +73,7 @@ TEST(DaylightTest, LuminanceIsThePapers) {
 
 TEST(DaylightTest, ZenithChromaticityIsThePapers) {
     const double T = 3.0;
-    const double t = 55.0 * Pi / 180.0;
+    const double t = 55.0 * std::numbers::pi / 180.0;
     const double x = T * T * (0.00166 * t * t * t - 0.00375 * t * t + 0.00209 * t) +
                      T * (-0.02903 * t * t * t + 0.06377 * t * t - 0.03202 * t + 0.00394) +
                      (0.11693 * t * t * t - 0.21196 * t * t + 0.06052 * t + 0.25886);
@@ -93,11 +91,11 @@ TEST(DaylightTest, ZenithChromaticityIsThePapers) {
 }
 
 TEST(DaylightTest, SunIsAsBrightAsTheRealOne) {
-    const double sine = std::sin(Daylight::SunRadiusDegrees * Pi / 180.0);
+    const double sine = std::sin(Daylight::SunRadiusDegrees * std::numbers::pi / 180.0);
     const auto normal_klx = [&](double turbidity, double elevation) {
         return luminance(
                    Daylight({.turbidity = turbidity, .sun_elevation_degrees = elevation}).sun()) *
-               Pi * sine * sine;
+               std::numbers::pi * sine * sine;
     };
     // Above the atmosphere it is 128 klx; a clear day's high sun is known to give 90 to 110, haze
     // and low sun take it away.
@@ -115,7 +113,8 @@ TEST(DaylightTest, GroundReflectsSkyAndSun) {
     const glm::dvec3 irradiance = cubemap::irradiance(sun_and_sky(128, options), {0.0, 1.0, 0.0});
     const glm::dvec3 ground = Daylight(options).ground();
     for (int channel = 0; channel < 3; ++channel) {
-        EXPECT_NEAR(ground[channel] * Pi / (options.ground_albedo[channel] * irradiance[channel]),
+        EXPECT_NEAR(ground[channel] * std::numbers::pi /
+                        (options.ground_albedo[channel] * irradiance[channel]),
                     1.0, 2e-3);
     }
 }

@@ -14,18 +14,16 @@
 namespace relumine::data_gen {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 double radians(double degrees) {
-    return degrees * Pi / 180.0;
+    return degrees * std::numbers::pi / 180.0;
 }
 
 TEST(ConstantTest, HasClosedForms) {
     const cubemap::CubeMap map = constant(33, {1.0f, 2.0f, 0.5f});
     const glm::dvec3 power = cubemap::total_power(map);
-    EXPECT_NEAR(power.x, 4.0 * Pi, 1e-5);
-    EXPECT_NEAR(power.y, 8.0 * Pi, 1e-5);
-    EXPECT_NEAR(cubemap::irradiance(constant(64), {0.0, 1.0, 0.0}).x, Pi, 1e-3);
+    EXPECT_NEAR(power.x, 4.0 * std::numbers::pi, 1e-5);
+    EXPECT_NEAR(power.y, 8.0 * std::numbers::pi, 1e-5);
+    EXPECT_NEAR(cubemap::irradiance(constant(64), {0.0, 1.0, 0.0}).x, std::numbers::pi, 1e-3);
     EXPECT_THROW((void)constant(0), std::invalid_argument);
 }
 
@@ -37,7 +35,7 @@ const std::vector<glm::dvec3> Directions = {{0, 0, 1},        {-1, 0, 0},       
 
 TEST(DiscLightTest, EnergyDependsNeitherOnPlaceNorResolution) {
     for (const double degrees : {0.001, 0.05, 0.2665, 1.0, 7.0, 30.0, 60.0, 90.0}) {
-        const double expected = 3.0 * 2.0 * Pi * (1.0 - std::cos(radians(degrees)));
+        const double expected = 3.0 * 2.0 * std::numbers::pi * (1.0 - std::cos(radians(degrees)));
         for (const std::uint32_t resolution : {1u, 7u, 32u, 100u, 256u}) {
             for (const glm::dvec3& direction : Directions) {
                 const cubemap::CubeMap map =
@@ -52,7 +50,8 @@ TEST(DiscLightTest, EnergyDependsNeitherOnPlaceNorResolution) {
 
 TEST(DiscLightTest, IrradianceHasAClosedForm) {
     for (const double degrees : {0.2665, 2.0, 20.0, 90.0}) {
-        const double expected = Pi * std::sin(radians(degrees)) * std::sin(radians(degrees));
+        const double expected =
+            std::numbers::pi * std::sin(radians(degrees)) * std::sin(radians(degrees));
         for (const glm::dvec3& direction : Directions) {
             const cubemap::CubeMap map = disc_light(128, direction, degrees);
             EXPECT_NEAR(cubemap::irradiance(map, glm::normalize(direction)).x / expected, 1.0, 1e-3)
@@ -117,7 +116,9 @@ TEST(SoftBoxTest, PowerIsThatOfARectangle) {
     const double solid_angle = 4.0 * std::atan(a * b / std::sqrt(1.0 + a * a + b * b));
     for (const std::uint32_t resolution : {16u, 64u, 200u}) {
         const cubemap::CubeMap map = soft_boxes(resolution, std::array{box}, glm::vec3(0.5f));
-        EXPECT_NEAR((cubemap::total_power(map).x - 0.5 * 4.0 * Pi) / (5.0 * solid_angle), 1.0, 2e-3)
+        EXPECT_NEAR((cubemap::total_power(map).x - 0.5 * 4.0 * std::numbers::pi) /
+                        (5.0 * solid_angle),
+                    1.0, 2e-3)
             << resolution;
     }
 }
@@ -170,7 +171,7 @@ TEST_P(SunAndSkyTest, KeepsTheSunsEnergyAndPlace) {
             }
         }
         const double sun_solid_angle =
-            2.0 * Pi * (1.0 - std::cos(radians(Daylight::SunRadiusDegrees)));
+            2.0 * std::numbers::pi * (1.0 - std::cos(radians(Daylight::SunRadiusDegrees)));
         for (int channel = 0; channel < 3; ++channel) {
             EXPECT_NEAR(sun_power[channel] / (daylight.sun()[channel] * sun_solid_angle), 1.0,
                         5e-3);
@@ -223,7 +224,8 @@ TEST(EnvironmentsTest, AllAreFiniteLightAndNotNegative) {
             }
         }
         // A white floor shows well: outgoing radiance about 1.
-        const double floor = cubemap::irradiance(environment.make(128), {0.0, 1.0, 0.0}).y / Pi;
+        const double floor =
+            cubemap::irradiance(environment.make(128), {0.0, 1.0, 0.0}).y / std::numbers::pi;
         EXPECT_GT(floor, 0.7) << environment.name;
         EXPECT_LT(floor, 1.3) << environment.name;
         EXPECT_EQ(environment.make(16).texels, environment.make(16).texels) << environment.name;

@@ -14,8 +14,6 @@
 namespace relumine::data_gen {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 TEST(IcosphereTest, IsClosedAndEven) {
     for (const std::uint32_t frequency : {1u, 2u, 3u, 4u, 7u, 30u}) {
         const mesh::TriangleMesh sphere = icosphere(frequency);
@@ -35,7 +33,7 @@ TEST(IcosphereTest, IsClosedAndEven) {
         }
         EXPECT_LT(longest, 1.6 * shortest) << frequency;
     }
-    EXPECT_NEAR(volumes(icosphere(60)).at(0), 4.0 / 3.0 * Pi, 0.002);
+    EXPECT_NEAR(volumes(icosphere(60)).at(0), 4.0 / 3.0 * std::numbers::pi, 0.002);
     EXPECT_THROW((void)icosphere(0), std::invalid_argument);
 }
 
@@ -58,7 +56,7 @@ TEST(BoxTest, CopiesAreTurnedFromZTowardsX) {
     mesh::TriangleMesh box;
     append_box(box, {0.0, 0.0, 1.0}, {0.1, 0.1, 2.0}, 1.0);
     mesh::TriangleMesh copy;
-    append_copy(copy, box, Pi / 2.0, {10.0, 0.0, 0.0});
+    append_copy(copy, box, std::numbers::pi / 2.0, {10.0, 0.0, 0.0});
     const mesh::Bounds bounds = mesh::bounds(copy);
     EXPECT_NEAR(bounds.min.x, 11.0f, 1e-5f);
     EXPECT_NEAR(bounds.max.x, 12.0f, 1e-5f);
@@ -78,7 +76,7 @@ TEST(LatheTest, MakesAClosedCylinder) {
     for (const Fill fill : {Fill::Fan, Fill::Even}) {
         const mesh::TriangleMesh mesh = cylinder(120, {}, fill);
         EXPECT_EQ(num_open_edges(mesh), 0u);
-        EXPECT_NEAR(volumes(mesh).at(0), Pi * 0.25 * 3.0, 0.002);
+        EXPECT_NEAR(volumes(mesh).at(0), std::numbers::pi * 0.25 * 3.0, 0.002);
     }
 }
 
@@ -88,7 +86,7 @@ TEST(LatheTest, FlutesTakeTheirVolume) {
     const mesh::TriangleMesh fluted = cylinder(600, flutes, Fill::Fan);
     EXPECT_EQ(num_open_edges(fluted), 0u);
     // A parabola's mean is 2/3 of its depth; the ends are a little shallower.
-    const double groove = 2.0 / 3.0 * 0.01 * 2.0 * Pi * 0.5 * 2.0;
+    const double groove = 2.0 / 3.0 * 0.01 * 2.0 * std::numbers::pi * 0.5 * 2.0;
     EXPECT_NEAR((plain - volumes(fluted).at(0)) / groove, 1.0, 0.05);
 }
 
@@ -114,7 +112,7 @@ TEST(DiscTest, AnnulusFitsAroundADisc) {
                        .inner_radius = 1.0,
                        .inner_num_around = 60});
     EXPECT_EQ(num_open_edges(mesh), 180u) << "only the outer rim is open";
-    EXPECT_NEAR(area(mesh), Pi * 9.0, 0.02);
+    EXPECT_NEAR(area(mesh), std::numbers::pi * 9.0, 0.02);
     for (const mesh::Triangle& triangle : mesh.triangles) {
         ASSERT_GT(area_vector(mesh, triangle).y, 0.0);
     }

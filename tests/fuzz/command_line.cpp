@@ -1,6 +1,6 @@
 // The command line, one argument per line of the input. The commands run as far as they come in an
-// empty folder: none of their files exist. `generate`, which needs none, and `view`, which opens a
-// window, are parsed only.
+// empty folder: none of their files exist. `generate`, `completion` and `man`, which need
+// none, and `view`, which opens a window, are parsed only.
 #include <memory>
 #include <vector>
 
@@ -58,10 +58,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         text.find('/') != std::string_view::npos)
         return 0;
     app::CommandLine program("relumine", "", "");
-    app::Command root = program.root();
-    app::add_commands(root, fresh_session());
-    for (const char* name : {"generate", "view"})
-        root.command(name).on_run([] {});
+    app::add_commands(program, fresh_session());
+    for (const char* name : {"generate", "view", "completion", "man"})
+        program.root().command(name).on_run([] {});
     run(program, lines(text));
     fuzz::require(std::filesystem::is_empty(std::filesystem::current_path()),
                   "a failed command leaves no file");

@@ -5,7 +5,7 @@
 
 #include "cubemap/image/environment.h"
 #include "cubemap/image/image_size.h"
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 #include "cubemap/resample/resample.h"
 
 namespace relumine::fuzz {
@@ -16,7 +16,7 @@ void read_environment(std::span<const std::byte> content) {
         accepted([&] { return cubemap::load_environment(path, {.fix_bad_pixels = true}); });
     const auto size = accepted([&] { return cubemap::read_image_size(path); });
     // Pictures of light layers have other shapes and may not have bad pixels.
-    const auto picture = accepted([&] { return cubemap::load_picture(path); });
+    const auto picture = accepted([&] { return cubemap::load_image_pyramid(path); });
     require(!picture || !(*picture)->levels().empty(), "a picture has pixels");
     if (!image)
         return;

@@ -1,4 +1,4 @@
-#include "lights/disc_light.h"
+#include "tests/lights/disc_light.h"
 
 #include <cmath>
 #include <numbers>
@@ -9,10 +9,8 @@
 namespace relumine::lights {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 double cap_solid_angle(double radius) {
-    return 4.0 * Pi * std::pow(std::sin(0.5 * radius), 2);
+    return 4.0 * std::numbers::pi * std::pow(std::sin(0.5 * radius), 2);
 }
 
 /// Mean of max(n.w, 0) over a cap around +Z, over that of n.w for n = +Z, by brute force.
@@ -24,7 +22,7 @@ double reference(double angle, double radius) {
         const double z = 1.0 - (ring + 0.5) / num_rings * (1.0 - std::cos(radius));
         const double across = std::sqrt(1.0 - z * z);
         for (int step = 0; step < num_steps; ++step) {
-            const double turn = 2.0 * Pi * (step + 0.5) / num_steps;
+            const double turn = 2.0 * std::numbers::pi * (step + 0.5) / num_steps;
             const glm::dvec3 w(across * std::cos(turn), across * std::sin(turn), z);
             sum += std::max(0.0, glm::dot(normal, w));
             facing += z;
@@ -39,7 +37,7 @@ TEST(DiscLight, AgreesWithBruteForceAsItSets) {
                                  .irradiance = {1.0, 2.0, 0.0},
                                  .solid_angle = cap_solid_angle(radius)};
         for (const double offset : {-2.0, -1.01, -0.99, -0.5, -0.1, 0.0, 0.1, 0.5, 0.99, 1.01}) {
-            const double angle = 0.5 * Pi + offset * radius;
+            const double angle = 0.5 * std::numbers::pi + offset * radius;
             if (angle < 0.0)
                 continue;
             const glm::dvec3 result = irradiance(light, {std::sin(angle), 0.0, std::cos(angle)});
@@ -59,7 +57,7 @@ TEST(DiscLight, APointIsACosine) {
 }
 
 TEST(DiscLight, HugeAndTinyStayFinite) {
-    for (const double solid_angle : {1e-12, 1e-9, 2.0 * Pi, 4.0 * Pi})
+    for (const double solid_angle : {1e-12, 1e-9, 2.0 * std::numbers::pi, 4.0 * std::numbers::pi})
         for (const double y : {-1.0, -1e-6, 0.0, 1e-6, 1.0}) {
             const double value =
                 irradiance({.irradiance = glm::dvec3(1.0), .solid_angle = solid_angle},

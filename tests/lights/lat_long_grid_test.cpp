@@ -11,13 +11,11 @@
 namespace relumine::lights {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 /// The direction of a point of a lat-long: centre +Z, +X left of it, top +Y.
 glm::dvec3 direction(double u, double v) {
-    const double longitude = Pi - 2.0 * Pi * u;
-    return {std::sin(Pi * v) * std::sin(longitude), std::cos(Pi * v),
-            std::sin(Pi * v) * std::cos(longitude)};
+    const double longitude = std::numbers::pi - 2.0 * std::numbers::pi * u;
+    return {std::sin(std::numbers::pi * v) * std::sin(longitude), std::cos(std::numbers::pi * v),
+            std::sin(std::numbers::pi * v) * std::cos(longitude)};
 }
 
 TEST(LatLongGrid, MomentsAreTheIntegralsOverThePixel) {
@@ -36,10 +34,10 @@ TEST(LatLongGrid, MomentsAreTheIntegralsOverThePixel) {
                         const double u =
                             across[x] + (across[x + 1] - across[x]) * (i + 0.5) / Steps;
                         const double v = down[y] + (down[y + 1] - down[y]) * (j + 0.5) / Steps;
-                        sum += std::sin(Pi * v) * glm::dvec4(direction(u, v), 1.0);
+                        sum += std::sin(std::numbers::pi * v) * glm::dvec4(direction(u, v), 1.0);
                     }
-                sum *= 2.0 * Pi * Pi * (across[x + 1] - across[x]) * (down[y + 1] - down[y]) /
-                       (Steps * Steps);
+                sum *= 2.0 * std::numbers::pi * std::numbers::pi * (across[x + 1] - across[x]) *
+                       (down[y + 1] - down[y]) / (Steps * Steps);
                 const glm::dvec4 moments = grid.moments(x, y);
                 for (int i = 0; i < 4; ++i)
                     EXPECT_NEAR(moments[i], sum[i], 1e-4) << x << "," << y << "," << i;
@@ -52,11 +50,11 @@ TEST(LatLongGrid, MomentsAreTheIntegralsOverThePixel) {
 TEST(LatLongGrid, KnowsTheExtentOfRegions) {
     const auto image = constant(8, 4, glm::vec3(1.0f));
     const LatLongGrid grid(image);
-    EXPECT_NEAR(grid.solid_angle(grid.whole()), 4.0 * Pi, 1e-12);
-    EXPECT_NEAR(grid.angular_width(grid.whole()), 2.0 * Pi, 1e-12);
-    EXPECT_NEAR(grid.angular_height(grid.whole()), Pi, 1e-12);
+    EXPECT_NEAR(grid.solid_angle(grid.whole()), 4.0 * std::numbers::pi, 1e-12);
+    EXPECT_NEAR(grid.angular_width(grid.whole()), 2.0 * std::numbers::pi, 1e-12);
+    EXPECT_NEAR(grid.angular_height(grid.whole()), std::numbers::pi, 1e-12);
     // The upper half: its centre is inclined by 45 degrees.
-    EXPECT_NEAR(grid.angular_width({0, 0, 8, 2}), 2.0 * Pi * std::sqrt(0.5), 1e-12);
+    EXPECT_NEAR(grid.angular_width({0, 0, 8, 2}), 2.0 * std::numbers::pi * std::sqrt(0.5), 1e-12);
     EXPECT_NEAR(glm::distance(grid.centre({2, 1, 6, 3}), glm::dvec3(0, 0, 1)), 0.0, 1e-12);
     EXPECT_NEAR(glm::distance(grid.centre({0, 1, 4, 3}), glm::dvec3(1, 0, 0)), 0.0, 1e-12);
     EXPECT_NEAR(glm::distance(grid.direction(4, 2, 0.0, 0.0), glm::dvec3(0, 0, 1)), 0.0, 1e-12);

@@ -12,7 +12,7 @@
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/resample.h"
 #include "data_gen/environments.h"
-#include "lights/disc_light.h"
+#include "tests/lights/disc_light.h"
 #include "tests/real_data.h"
 
 namespace relumine::lights {

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include <tiny_gltf.h>
+#include <nlohmann/json.hpp>
 
 #include "files/output_file.h"
 #include "tests/mesh/mesh_files.h"
@@ -33,17 +33,57 @@ TEST_F(SaveTest, PlyLoadsAgainUnchanged) {
     EXPECT_EQ(num_files(), 1u);
 }
 
-/// The values of an accessor, which must fill its buffer view.
-template<class Value>
-std::vector<Value> values_of(const tinygltf::Model& model, int index) {
-    const tinygltf::Accessor& accessor = model.accessors.at(static_cast<std::size_t>(index));
-    const tinygltf::BufferView& view =
-        model.bufferViews.at(static_cast<std::size_t>(accessor.bufferView));
-    std::vector<Value> values(accessor.count);
-    EXPECT_EQ(view.byteLength, values.size() * sizeof(Value));
-    EXPECT_EQ(view.byteOffset % 4, 0u);
-    std::memcpy(values.data(), model.buffers.at(0).data.data() + view.byteOffset, view.byteLength);
-    return values;
+/// A .glb file's JSON and its bytes, read by the format's own words and not by Relumine's reader.
+struct Glb {
+    nlohmann::json document;
+    std::vector<std::byte> bytes;
+
+    [[nodiscard]] const nlohmann::json& accessor(const nlohmann::json& index) const {
+        return document.at("accessors").at(index.get<std::size_t>());
+    }
+    /// The values of an accessor, which must fill its buffer view.
+    template<class Value>
+    [[nodiscard]] std::vector<Value> values(const nlohmann::json& index) const {
+        const nlohmann::json& of = accessor(index);
+        const nlohmann::json& view =
+            document.at("bufferViews").at(of.at("bufferView").get<std::size_t>());
+        EXPECT_EQ(view.at("buffer"), 0);
+        const auto offset = view.value("byteOffset", std::size_t{0});
+        const std::size_t scalars = sizeof(Value) / 4;
+        std::vector<Value> values(of.at("count").get<std::size_t>());
+        EXPECT_EQ(of.at("type"), scalars == 3 ? "VEC3" : "SCALAR");
+        EXPECT_EQ(view.at("byteLength"), values.size() * sizeof(Value));
+        EXPECT_EQ(offset % 4, 0u);
+        if (offset + values.size() * sizeof(Value) > bytes.size())
+            throw std::out_of_range("a view ends behind the bytes");
+        std::memcpy(values.data(), bytes.data() + offset, values.size() * sizeof(Value));
+        return values;
+    }
+};
+
+Glb read_glb(const std::filesystem::path& path) {
+    const std::vector<std::byte> file = files::read(path);
+    const auto number = [&](std::size_t offset) {
+        std::uint32_t value = 0;
+        std::memcpy(&value, &file.at(offset + 3) - 3, sizeof value);
+        return value;
+    };
+    EXPECT_EQ(std::memcmp(file.data(), "glTF", 4), 0);
+    EXPECT_EQ(number(4), 2u) << "version";
+    EXPECT_EQ(number(8), file.size());
+    const std::size_t json_size = number(12);
+    EXPECT_EQ(json_size % 4, 0u);
+    EXPECT_EQ(number(16), 0x4e4f534au) << "JSON";
+    const auto json = reinterpret_cast<const char*>(&file.at(20));
+    const std::size_t bytes_at = 20 + json_size;
+    EXPECT_EQ(number(bytes_at) % 4, 0u);
+    EXPECT_EQ(number(bytes_at + 4), 0x004e4942u) << "BIN";
+    EXPECT_EQ(bytes_at + 8 + number(bytes_at), file.size()) << "nothing follows";
+    Glb glb{.document = nlohmann::json::parse(json, json + json_size),
+            .bytes = {file.begin() + static_cast<std::ptrdiff_t>(bytes_at + 8), file.end()}};
+    EXPECT_EQ(glb.document.at("buffers").size(), 1u);
+    EXPECT_EQ(glb.document.at("buffers").at(0).at("byteLength"), glb.bytes.size());
+    return glb;
 }
 
 TEST_F(SaveTest, GlbHoldsWhatItShould) {
@@ -52,40 +92,38 @@ TEST_F(SaveTest, GlbHoldsWhatItShould) {
     save(folder_ / "box.GLB", mesh, colors_);
     EXPECT_EQ(num_files(), 1u);
 
-    tinygltf::Model model;
-    std::string error, warning;
-    ASSERT_TRUE(tinygltf::TinyGLTF().LoadBinaryFromFile(&model, &error, &warning,
-                                                        (folder_ / "box.GLB").string()))
-        << error;
-    EXPECT_EQ(error + warning, "");
-    EXPECT_EQ(model.asset.version, "2.0");
-    EXPECT_THAT(model.extensionsUsed, testing::ElementsAre("KHR_materials_unlit"));
-    EXPECT_EQ(model.scenes.at(static_cast<std::size_t>(model.defaultScene)).nodes,
-              std::vector<int>{0});
-    const tinygltf::Primitive& primitive = model.meshes.at(0).primitives.at(0);
-    EXPECT_EQ(model.materials.at(static_cast<std::size_t>(primitive.material))
-                  .extensions.count("KHR_materials_unlit"),
+    const Glb glb = read_glb(folder_ / "box.GLB");
+    const nlohmann::json& document = glb.document;
+    EXPECT_EQ(document.at("asset").at("version"), "2.0");
+    EXPECT_EQ(document.at("extensionsUsed"), nlohmann::json::array({"KHR_materials_unlit"}));
+    EXPECT_EQ(document.at("scenes").at(document.at("scene").get<std::size_t>()).at("nodes"),
+              nlohmann::json::array({0}));
+    EXPECT_EQ(document.at("nodes").at(0).at("mesh"), 0);
+    const nlohmann::json& primitive = document.at("meshes").at(0).at("primitives").at(0);
+    EXPECT_EQ(primitive.at("mode"), 4) << "triangles";
+    EXPECT_EQ(document.at("materials")
+                  .at(primitive.at("material").get<std::size_t>())
+                  .at("extensions")
+                  .count("KHR_materials_unlit"),
               1u);
 
-    const tinygltf::Accessor& position =
-        model.accessors.at(static_cast<std::size_t>(primitive.attributes.at("POSITION")));
-    EXPECT_EQ(position.minValues, (std::vector<double>{0, 0, 0}));
-    EXPECT_EQ(position.maxValues, (std::vector<double>{1, 2, 3}));
-    EXPECT_EQ(values_of<glm::vec3>(model, primitive.attributes.at("POSITION")), mesh.positions);
-    const int color = primitive.attributes.at("COLOR_0");
-    EXPECT_EQ(model.accessors.at(static_cast<std::size_t>(color)).componentType,
-              TINYGLTF_COMPONENT_TYPE_FLOAT);
-    EXPECT_EQ(model.accessors.at(static_cast<std::size_t>(color)).type, TINYGLTF_TYPE_VEC3);
-    EXPECT_EQ(values_of<glm::vec3>(model, color), colors_);
-    for (const glm::vec3& normal : values_of<glm::vec3>(model, primitive.attributes.at("NORMAL")))
+    constexpr int Float = 5126, UnsignedInt = 5125;
+    const nlohmann::json& attributes = primitive.at("attributes");
+    const nlohmann::json& position = glb.accessor(attributes.at("POSITION"));
+    EXPECT_EQ(position.at("min"), (std::vector<double>{0, 0, 0}));
+    EXPECT_EQ(position.at("max"), (std::vector<double>{1, 2, 3}));
+    EXPECT_EQ(glb.values<glm::vec3>(attributes.at("POSITION")), mesh.positions);
+    const nlohmann::json& color = attributes.at("COLOR_0");
+    EXPECT_EQ(glb.accessor(color).at("componentType"), Float);
+    EXPECT_EQ(glb.accessor(color).at("type"), "VEC3");
+    EXPECT_EQ(glb.values<glm::vec3>(color), colors_);
+    for (const glm::vec3& normal : glb.values<glm::vec3>(attributes.at("NORMAL")))
         EXPECT_NEAR(glm::length(normal), 1.0f, 1e-5f) << "glTF knows no zero normals";
-    const tinygltf::Accessor& indices =
-        model.accessors.at(static_cast<std::size_t>(primitive.indices));
-    EXPECT_EQ(indices.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
+    EXPECT_EQ(glb.accessor(primitive.at("indices")).at("componentType"), UnsignedInt);
     std::vector<std::uint32_t> expected;
     for (const Triangle& triangle : mesh.triangles)
         expected.insert(expected.end(), triangle.begin(), triangle.end());
-    EXPECT_EQ(values_of<std::uint32_t>(model, primitive.indices), expected);
+    EXPECT_EQ(glb.values<std::uint32_t>(primitive.at("indices")), expected);
 }
 
 TEST_F(SaveTest, FailingLeavesNothingBehind) {

@@ -43,7 +43,7 @@ TEST(MemoryEstimate, PlanesGetAQuarterOfWhatIsLeft) {
     EXPECT_EQ(plane_bytes_within(Sizes, std::uint64_t{1} << 40), PrecomputeOptions{}.plane_bytes);
 }
 
-struct SmallScene {
+struct MemoryScene {
     mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(60, 4.0f),
                                              scenes::icosphere(4, 0.5f, {0.0f, 0.7f, 0.0f}));
     Receivers receivers = vertex_receivers(mesh);
@@ -56,7 +56,7 @@ struct SmallScene {
 };
 
 TEST(MemoryEstimate, ATrialForetellsTheClusters) {
-    const SmallScene scene;
+    const MemoryScene scene;
     PrecomputeStatistics statistics;
     static_cast<void>(precompute(scene.receivers, scene.rays, scene.options, &statistics));
     const MemoryEstimate estimate = estimate_memory(scene.sizes, scene.receivers, scene.rays,
@@ -71,7 +71,7 @@ TEST(MemoryEstimate, ATrialForetellsTheClusters) {
 }
 
 TEST(MemoryEstimate, ATrialStopsWhenTheLimitIsReached) {
-    SmallScene scene;
+    MemoryScene scene;
     scene.options.tolerance = 0.0f; // 400,000 clusters
     const std::uint64_t limit = scene_bytes(scene.sizes) + (4u << 20);
     const MemoryEstimate estimate =
@@ -82,7 +82,7 @@ TEST(MemoryEstimate, ATrialStopsWhenTheLimitIsReached) {
 }
 
 TEST(MemoryEstimate, ARunStopsAtItsLimitAndLeavesACheckpoint) {
-    const SmallScene scene;
+    const MemoryScene scene;
     PrecomputeStatistics statistics;
     const Transfer expected = precompute(scene.receivers, scene.rays, scene.options, &statistics);
     MemoryCheckpoint checkpoint;

@@ -157,4 +157,10 @@ glm::dvec3 vector_irradiance_of_white(const prt::Cell& cell) {
                                       (cell.y + 1) * size);
 }
 
+mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, float scale, const glm::vec3& offset) {
+    for (glm::vec3& position : mesh.positions)
+        position = scale * position + offset;
+    return mesh;
+}
+
 } // namespace relumine::scenes

@@ -51,4 +51,8 @@ namespace relumine::scenes {
                                                     double s1, double t1);
 [[nodiscard]] glm::dvec3 vector_irradiance_of_white(const prt::Cell& cell);
 
+/// The mesh with its positions scaled, then moved.
+[[nodiscard]] mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, float scale,
+                                             const glm::vec3& offset);
+
 } // namespace relumine::scenes

@@ -13,17 +13,12 @@
 
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
 namespace relumine::relight {
 namespace {
-
-std::vector<std::uint32_t> all_of(std::size_t n) {
-    std::vector<std::uint32_t> all(n);
-    std::iota(all.begin(), all.end(), 0u);
-    return all;
-}
 
 TEST(Exact, EqualsALoopOverTexelsWithSingleRays) {
     const scenes::RelitScene& scene = scenes::relit_scene();

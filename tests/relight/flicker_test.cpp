@@ -12,9 +12,9 @@
 
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
-#include "relight/light_packets.h"
 #include "relight/pictures/array_file.h"
 #include "relight/relighter.h"
+#include "relight/shadow_rays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
@@ -22,7 +22,7 @@ namespace relumine::relight {
 namespace {
 
 namespace fs = std::filesystem;
-using Frames = std::vector<std::vector<glm::dvec3>>;
+using RadianceFrames = std::vector<std::vector<glm::dvec3>>;
 
 std::vector<glm::dvec3> grey(std::initializer_list<double> values) {
     std::vector<glm::dvec3> result;
@@ -32,8 +32,8 @@ std::vector<glm::dvec3> grey(std::initializer_list<double> values) {
 }
 
 TEST(Flicker, HandWorkedValues) {
-    const Frames reference = {grey({1.0, 2.0}), grey({1.5, 2.0}), grey({1.5, 1.0})};
-    const Frames frames = {grey({1.2, 2.0}), grey({1.5, 2.4}), grey({1.5, 1.0})};
+    const RadianceFrames reference = {grey({1.0, 2.0}), grey({1.5, 2.0}), grey({1.5, 1.0})};
+    const RadianceFrames frames = {grey({1.2, 2.0}), grey({1.5, 2.4}), grey({1.5, 1.0})};
     const FlickerReport report = measure_flicker(frames, reference);
     ASSERT_EQ(report.inconsistency.size(), 2u);
     // t = 0: weights 1.2 and 1; dX - dX' = (-0.3 + 0.5, -0.4 - 0)
@@ -53,22 +53,24 @@ TEST(Flicker, HandWorkedValues) {
 }
 
 TEST(Flicker, OfColoursIsThatOfLuminance) {
-    const Frames reference = {{glm::dvec3(0.0)}, {glm::dvec3(0.0)}};
-    const Frames frames = {{glm::dvec3(0.0)}, {glm::dvec3(1.0, 2.0, 4.0)}};
+    const RadianceFrames reference = {{glm::dvec3(0.0)}, {glm::dvec3(0.0)}};
+    const RadianceFrames frames = {{glm::dvec3(0.0)}, {glm::dvec3(1.0, 2.0, 4.0)}};
     EXPECT_NEAR(measure_flicker(frames, reference).inconsistency[0],
                 0.2125 + 2 * 0.7154 + 4 * 0.0721, 1e-12);
 }
 
 TEST(Flicker, AConstantErrorIsNoFlicker) {
-    const Frames reference = {grey({1.0, 0.0}), grey({3.0, 2.0}), grey({0.5, 0.0})};
-    Frames frames = reference;
+    const RadianceFrames reference = {grey({1.0, 0.0}), grey({3.0, 2.0}), grey({0.5, 0.0})};
+    RadianceFrames frames = reference;
     EXPECT_EQ(measure_flicker(frames, reference).mean_inconsistency, 0.0);
     for (auto& frame : frames)
         for (glm::dvec3& value : frame)
             value += 0.25;
     EXPECT_NEAR(measure_flicker(frames, reference).mean_inconsistency, 0.0, 1e-15);
     EXPECT_GT(measure_flicker(frames, reference).mean_relative_l2, 0.0);
-    EXPECT_EQ(measure_flicker(Frames{reference[0]}, Frames{reference[0]}).mean_inconsistency, 0.0);
+    EXPECT_EQ(measure_flicker(RadianceFrames{reference[0]}, RadianceFrames{reference[0]})
+                  .mean_inconsistency,
+              0.0);
 }
 
 TEST(Flicker, BadFrames) {
@@ -82,7 +84,8 @@ TEST(Flicker, BadFrames) {
                  std::invalid_argument);
     meter.add_frame(grey({1.5}), grey({1.0})); // as if the bad ones had not been there
     EXPECT_NEAR(meter.report().mean_inconsistency, 0.5, 1e-12);
-    EXPECT_THROW(static_cast<void>(measure_flicker(Frames(2, grey({1.0})), Frames(1, grey({1.0})))),
+    EXPECT_THROW(static_cast<void>(measure_flicker(RadianceFrames(2, grey({1.0})),
+                                                   RadianceFrames(1, grey({1.0})))),
                  std::invalid_argument);
 }
 
@@ -128,9 +131,9 @@ TEST(Flicker, OfFilesIsThatOfArrays) {
 }
 
 TEST(Flicker, PlotsHaveTheirCurves) {
-    const NamedReport report{"clusters",
-                             measure_flicker(Frames{grey({1.0}), grey({1.5}), grey({1.0})},
-                                             Frames{grey({1.0}), grey({1.0}), grey({1.0})})};
+    const NamedReport report{
+        "clusters", measure_flicker(RadianceFrames{grey({1.0}), grey({1.5}), grey({1.0})},
+                                    RadianceFrames{grey({1.0}), grey({1.0}), grey({1.0})})};
     const std::string svg = inconsistency_plot(std::vector{report}, "sun");
     EXPECT_THAT(svg, testing::HasSubstr("clusters"));
     EXPECT_THAT(svg, testing::HasSubstr("<polyline"));
@@ -139,10 +142,10 @@ TEST(Flicker, PlotsHaveTheirCurves) {
     EXPECT_THAT(light_positions_plot(lights, 1, 5, "lights"), testing::HasSubstr("frame 2"));
 }
 
-/// Frames of a method on the test scene, all receivers.
+/// RadianceFrames of a method on the test scene, all receivers.
 template<class Light>
-Frames rendered(std::size_t num_frames, const Light& light) {
-    Frames frames;
+RadianceFrames rendered(std::size_t num_frames, const Light& light) {
+    RadianceFrames frames;
     for (std::size_t frame = 0; frame < num_frames; ++frame)
         frames.push_back(light(frame));
     return frames;
@@ -159,22 +162,22 @@ TEST(Flicker, NoneInALightThatStandsStill) {
         all[i] = i;
     constexpr std::size_t NumFrames = 5;
     Relighter relighter(scene.transfer, scene.shadow_rays());
-    const Frames transfer = rendered(NumFrames, [&](std::size_t) {
+    const RadianceFrames transfer = rendered(NumFrames, [&](std::size_t) {
         relighter.set_environment(map);
         return std::vector<glm::dvec3>(relighter.radiance().begin(), relighter.radiance().end());
     });
     const lights::FrameLights lights = lights::frame_lights(lights::cluster_lights(
         lights::sample_frames(still, NumFrames, {.samples_per_frame = 64}), {.num_clusters = 32}));
-    const Frames clusters = rendered(NumFrames, [&](std::size_t frame) {
+    const RadianceFrames clusters = rendered(NumFrames, [&](std::size_t frame) {
         return radiance_under(lights.at(frame), scene.receivers.normals, all, scene.shadow_rays());
     });
     const lights::FrameLights jumping =
         lights::importance_lights(still, NumFrames, 32, {.seed_per_frame = true});
-    const Frames importance = rendered(NumFrames, [&](std::size_t frame) {
+    const RadianceFrames importance = rendered(NumFrames, [&](std::size_t frame) {
         return radiance_under(jumping.at(frame), scene.receivers.normals, all, scene.shadow_rays());
     });
     // The reference may be any that stands still.
-    const Frames reference(NumFrames, transfer[0]);
+    const RadianceFrames reference(NumFrames, transfer[0]);
     EXPECT_EQ(measure_flicker(transfer, reference).mean_inconsistency, 0.0);
     EXPECT_EQ(measure_flicker(clusters, reference).mean_inconsistency, 0.0);
     EXPECT_GT(measure_flicker(importance, reference).mean_inconsistency, 1e-3);

@@ -15,6 +15,7 @@
 #include "relight/pictures/array_file.h"
 #include "relight/pictures/picture.h"
 #include "relight/relighter.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
@@ -22,10 +23,6 @@ namespace relumine::relight {
 namespace {
 
 using scenes::relit_scene;
-
-std::vector<glm::vec3> copy(std::span<const glm::vec3> radiance) {
-    return {radiance.begin(), radiance.end()};
-}
 
 class Frames : public testing::Test {
 protected:

@@ -8,9 +8,12 @@
 
 #include "prt/glossy/brdf.h"
 #include "relight/exact.h"
+#include "relight/glossy_kernels.h"
+#include "relight/light_pyramid.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/glossy_scene.h"
 
@@ -19,16 +22,6 @@ namespace {
 
 using scenes::expect_close;
 using scenes::glossy_scene;
-
-std::vector<std::uint32_t> all_of(std::size_t n) {
-    std::vector<std::uint32_t> all(n);
-    std::iota(all.begin(), all.end(), 0u);
-    return all;
-}
-
-std::vector<glm::vec3> copy(std::span<const glm::vec3> radiance) {
-    return {radiance.begin(), radiance.end()};
-}
 
 double relative_l2(const scenes::GlossyScene& scene, const Relighter& relighter) {
     const std::vector<std::uint32_t> all = all_of(scene.receivers.size());

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/prt/scenes.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
@@ -20,10 +21,6 @@ namespace relumine::relight {
 namespace {
 
 using scenes::relit_scene;
-
-std::vector<glm::vec3> copy(std::span<const glm::vec3> radiance) {
-    return {radiance.begin(), radiance.end()};
-}
 
 /// ||a - b|| / ||b||.
 double relative_difference(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {

@@ -7,18 +7,29 @@
 #include <random>
 #include <stdexcept>
 #include <tuple>
+#include <type_traits>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "relight/light_editor.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 
 namespace relumine::relight {
 namespace {
+
+// A transfer that goes before what refers to it is refused when the program is compiled.
+static_assert(std::is_constructible_v<Relighter, const prt::Transfer&>);
+static_assert(!std::is_constructible_v<Relighter, prt::Transfer>);
+static_assert(!std::is_constructible_v<Relighter, const prt::Transfer>);
+static_assert(!std::is_constructible_v<Relighter, prt::Transfer, ShadowRays>);
+static_assert(!std::is_constructible_v<LightEditor, prt::Transfer>);
+static_assert(!std::is_constructible_v<EnvironmentBinner, prt::Transfer, float>);
 
 using scenes::expect_close;
 using scenes::relit_scene;
@@ -41,10 +52,6 @@ std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer,
         radiance[transfer.order[place]] = b;
     }
     return radiance;
-}
-
-std::vector<glm::vec3> copy(std::span<const glm::vec3> radiance) {
-    return {radiance.begin(), radiance.end()};
 }
 
 prt::Receivers random_receivers(std::size_t n, std::uint32_t seed) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cubemap/layers/layer_composite.h"
-#include "relight/light_packets.h"
+#include "relight/shadow_rays.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
 

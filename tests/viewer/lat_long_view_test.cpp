@@ -10,7 +10,7 @@
 namespace relumine::viewer {
 namespace {
 
-constexpr PixelRectangle Viewport{.x = 100, .y = 50, .width = 800, .height = 400};
+constexpr PixelRectangle MapViewport{.x = 100, .y = 50, .width = 800, .height = 400};
 
 TEST(LatLong, AxesLieWhereOpenExrHasThem) {
     EXPECT_LT(glm::length(lat_long({0, 0, 1}) - glm::dvec2(0.5, 0.5)), 1e-12);
@@ -42,13 +42,13 @@ TEST(LatLong, LinesOverTheSeamHaveNoJumps) {
 
 TEST(LatLongView, PixelsAndDirectionsAgreeHoweverPannedAndZoomed) {
     LatLongView view;
-    view.zoom_at(Viewport, {300, 200}, 6.0);
-    view.pan(Viewport, {-5000.0, 40.0});
+    view.zoom_at(MapViewport, {300, 200}, 6.0);
+    view.pan(MapViewport, {-5000.0, 40.0});
     for (int x = 120; x < 900; x += 60)
         for (int y = 60; y < 450; y += 40) {
-            const std::optional<glm::dvec3> direction = view.direction(Viewport, {x, y});
+            const std::optional<glm::dvec3> direction = view.direction(MapViewport, {x, y});
             ASSERT_TRUE(direction);
-            const glm::dvec2 pixel = view.pixel_of(Viewport, *direction);
+            const glm::dvec2 pixel = view.pixel_of(MapViewport, *direction);
             EXPECT_NEAR(pixel.x, x, 1e-6);
             EXPECT_NEAR(pixel.y, y, 1e-6);
         }
@@ -57,10 +57,10 @@ TEST(LatLongView, PixelsAndDirectionsAgreeHoweverPannedAndZoomed) {
 TEST(LatLongView, ZoomingKeepsWhatIsUnderThePointer) {
     LatLongView view;
     const glm::dvec2 pixel(650.0, 220.0);
-    const glm::dvec2 before = view.uv_at(Viewport, pixel);
-    view.zoom_at(Viewport, pixel, 5.0);
-    EXPECT_NEAR(view.uv_at(Viewport, pixel).x, before.x, 1e-12);
-    EXPECT_NEAR(view.uv_at(Viewport, pixel).y, before.y, 1e-12);
+    const glm::dvec2 before = view.uv_at(MapViewport, pixel);
+    view.zoom_at(MapViewport, pixel, 5.0);
+    EXPECT_NEAR(view.uv_at(MapViewport, pixel).x, before.x, 1e-12);
+    EXPECT_NEAR(view.uv_at(MapViewport, pixel).y, before.y, 1e-12);
 }
 
 TEST(LatLongView, NothingLiesBeyondThePoles) {
@@ -68,7 +68,7 @@ TEST(LatLongView, NothingLiesBeyondThePoles) {
     const PixelRectangle high{.x = 0, .y = 0, .width = 400, .height = 400};
     EXPECT_FALSE(view.direction(high, {200, 20}));
     EXPECT_TRUE(view.direction(high, {200, 200}));
-    view.pan(Viewport, {0.0, 1e6});
+    view.pan(MapViewport, {0.0, 1e6});
     EXPECT_NEAR(view.center.y, 0.5, 1e-12); // all of it is seen: it stays
 }
 

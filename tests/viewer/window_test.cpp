@@ -87,8 +87,8 @@ protected:
         std::ifstream file(folder_ / name);
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    [[nodiscard]] cubemap::Picture::Level picture(const std::string& name) const {
-        return cubemap::load_picture(folder_ / name)->levels().front();
+    [[nodiscard]] cubemap::Picture picture(const std::string& name) const {
+        return cubemap::load_image_pyramid(folder_ / name)->levels().front();
     }
     /// The window's pixel at which a point of the world is seen.
     [[nodiscard]] std::array<int, 2> pixel_of(const glm::vec3& point) const {
@@ -103,7 +103,7 @@ protected:
                     static_cast<int>((0.5f - 0.5f * y) * static_cast<float>(viewport_.height))};
     }
     /// Green, the mean of 5 x 5 pixels.
-    [[nodiscard]] static float brightness(const cubemap::Picture::Level& picture,
+    [[nodiscard]] static float brightness(const cubemap::Picture& picture,
                                           const std::array<int, 2>& at) {
         float sum = 0.0f;
         for (int y = at[1] - 2; y <= at[1] + 2; ++y)
@@ -115,8 +115,8 @@ protected:
         return sum / 25.0f;
     }
     /// Whether two pictures agree bit by bit in a part of the window.
-    [[nodiscard]] static bool equal(const cubemap::Picture::Level& a,
-                                    const cubemap::Picture::Level& b, const PixelRectangle& part) {
+    [[nodiscard]] static bool equal(const cubemap::Picture& a, const cubemap::Picture& b,
+                                    const PixelRectangle& part) {
         for (int y = part.y; y < part.y + part.height; ++y)
             for (int x = part.x; x < part.x + part.width; ++x) {
                 const std::size_t i =
@@ -154,9 +154,9 @@ TEST_F(WindowTest, ADraggedDiscLightsTheOtherSideAndUndoBringsItBack) {
     EXPECT_EQ(report["drag_events"], 12);
     EXPECT_GT(report["seconds_drag_mean"], 0.0);
 
-    const cubemap::Picture::Level before = picture("before.exr");
-    const cubemap::Picture::Level after = picture("after.exr");
-    const cubemap::Picture::Level undone = picture("undone.exr");
+    const cubemap::Picture before = picture("before.exr");
+    const cubemap::Picture after = picture("after.exr");
+    const cubemap::Picture undone = picture("undone.exr");
     ASSERT_EQ(before.width, static_cast<std::uint32_t>(Width));
     ASSERT_EQ(before.height, static_cast<std::uint32_t>(Height));
     // Light from the right, then from the left: no mirror image.
@@ -206,9 +206,9 @@ TEST_F(WindowTest, ThePointerDragsLayersTurnsTheSceneAndAsksWhoLights) {
         angle_between(std::get<cubemap::Disc>(saved.layers[0].region).direction, {-1, 0.2, 0.3}),
         2.0);
 
-    const cubemap::Picture::Level moved = picture("moved.exr");
+    const cubemap::Picture moved = picture("moved.exr");
     EXPECT_GT(brightness(moved, pixel_of(left_)), 1.5f * brightness(moved, pixel_of(right_)));
-    const cubemap::Picture::Level heat = picture("heat.exr");
+    const cubemap::Picture heat = picture("heat.exr");
     EXPECT_FALSE(equal(moved, heat, map));
     const PixelRectangle upper{.x = viewport_.x,
                                .y = viewport_.y,
@@ -267,10 +267,10 @@ TEST_F(WindowTest, LassosAndDroppedPicturesBecomeLayersAndRotationIsUndone) {
     const auto& patch = std::get<cubemap::ImagePatch>(saved.layers[1].effect);
     EXPECT_EQ(patch.path, "picture.exr") << "relative to the file";
     EXPECT_EQ(saved.base, "env.exr");
-    const cubemap::Picture::Level lasso = picture("lasso.exr");
+    const cubemap::Picture lasso = picture("lasso.exr");
     EXPECT_FALSE(equal(lasso, picture("asks.exr"), viewport_))
         << "the dialogue dims what is behind it";
-    const cubemap::Picture::Level layer = picture("layer.exr");
+    const cubemap::Picture layer = picture("layer.exr");
     EXPECT_GT(brightness(layer, {map.x + map.width / 2, map.y + map.height * 46 / 100}),
               brightness(lasso, {map.x + map.width / 2, map.y + map.height * 46 / 100}));
     EXPECT_FALSE(equal(layer, picture("rotated.exr"), map));

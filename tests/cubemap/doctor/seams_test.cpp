@@ -120,10 +120,10 @@ TEST(Seams, OneFaceUnlikeTheOthers) {
                                               "edge of +Y and +Z", "edge of +Y and -Z"));
     // One face exposed half a stop more.
     image = world(Layout::VerticalCross, Sampling::TexelCentres, 64);
-    const FaceCells cells(image.layout, image.width, image.height);
+    const FaceSquares squares(image.layout, image.width, image.height);
     for (std::uint32_t y = 0; y < 64; ++y)
         for (std::uint32_t x = 0; x < 64; ++x)
-            image.pixels[cells.pixel(Face::NegativeZ, x, y)] *= 3.0f;
+            image.pixels[squares.pixel(Face::NegativeZ, x, y)] *= 3.0f;
     EXPECT_THAT(places(image),
                 testing::UnorderedElementsAre("edge of +X and -Z", "edge of -X and -Z",
                                               "edge of +Y and -Z", "edge of -Y and -Z"));

@@ -17,8 +17,6 @@
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
-
 /// A coloured light on each axis and a white mark that no mirror image or turn of the sphere leaves
 /// in place.
 glm::vec3 radiance(const glm::dvec3& w) {
@@ -88,22 +86,27 @@ std::vector<Known> known() {
         // ImfEnvmap.h: longitude pi at the left, -pi at the right, 0 is +Z and pi/2 is +X.
         {"openexr", Layout::LatLong,
          [](double u, double v) {
-             return spherical(Pi * v, Pi - 2.0 * Pi * u, 1);
+             return spherical(std::numbers::pi * v, std::numbers::pi - 2.0 * std::numbers::pi * u,
+                              1);
          }},
         {"usd", Layout::LatLong,
          [](double u, double v) {
-             return spherical(Pi * v, Pi - 2.0 * Pi * u, 1);
+             return spherical(std::numbers::pi * v, std::numbers::pi - 2.0 * std::numbers::pi * u,
+                              1);
          }},
         // envmap.cpp: u = atan2(x, -z) / 2 pi.
         {"mitsuba", Layout::LatLong,
          [](double u, double v) {
-             return glm::dvec3(std::sin(Pi * v) * std::sin(2.0 * Pi * u), std::cos(Pi * v),
-                               -std::sin(Pi * v) * std::cos(2.0 * Pi * u));
+             return glm::dvec3(
+                 std::sin(std::numbers::pi * v) * std::sin(2.0 * std::numbers::pi * u),
+                 std::cos(std::numbers::pi * v),
+                 -std::sin(std::numbers::pi * v) * std::cos(2.0 * std::numbers::pi * u));
          }},
         // Cycles: u = (atan2(y, x) - pi) / -2 pi.
         {"blender", Layout::LatLong,
          [](double u, double v) {
-             return from_z_up(spherical(Pi * v, Pi - 2.0 * Pi * u, 2));
+             return from_z_up(
+                 spherical(std::numbers::pi * v, std::numbers::pi - 2.0 * std::numbers::pi * u, 2));
          }},
         // Cycles: d = 2 sqrt(-(y - 1) / 2); u = (x / d + 1) / 2 and upwards (z / d + 1) / 2. So
         // with p = (2u - 1, 1 - 2v): y = 2 |p|^2 - 1.
@@ -119,9 +122,10 @@ std::vector<Known> known() {
         // ShaderChunk common: u = atan2(z, x) / 2 pi + 1/2.
         {"threejs", Layout::LatLong,
          [](double u, double v) {
-             const double angle = 2.0 * Pi * (u - 0.5);
-             return glm::dvec3(std::sin(Pi * v) * std::cos(angle), std::cos(Pi * v),
-                               std::sin(Pi * v) * std::sin(angle));
+             const double angle = 2.0 * std::numbers::pi * (u - 0.5);
+             return glm::dvec3(std::sin(std::numbers::pi * v) * std::cos(angle),
+                               std::cos(std::numbers::pi * v),
+                               std::sin(std::numbers::pi * v) * std::sin(angle));
          }},
         // Cube textures are looked up at (flipEnvMap x, y, z) with flipEnvMap = -1.
         {"threejs", Layout::Cube,
@@ -135,7 +139,7 @@ std::vector<Known> known() {
         {"pbrt", Layout::Octahedral,
          [](double u, double v) {
              const double x = std::abs(2.0 * u - 1.0), y = std::abs(2.0 * v - 1.0), d = 1.0 - x - y;
-             const double r = 1.0 - std::abs(d), phi = Pi / 4.0 * ((y - x) / r + 1.0);
+             const double r = 1.0 - std::abs(d), phi = std::numbers::pi / 4.0 * ((y - x) / r + 1.0);
              const double across = r * std::sqrt(2.0 - r * r);
              return from_z_up({(u < 0.5 ? -1.0 : 1.0) * across * std::cos(phi),
                                (v < 0.5 ? -1.0 : 1.0) * across * std::sin(phi),

@@ -98,7 +98,7 @@ ImageFile decode(const fs::path& path) {
     return decode_exr(files::read(path), path.string());
 }
 
-std::string refusal(const fs::path& path) {
+std::string refusal_of_file(const fs::path& path) {
     return message_of([&] { (void)decode(path); });
 }
 
@@ -203,10 +203,10 @@ TEST(ExrFile, TheOnlyLayerWithColourIsTaken) {
     for (const Channel& channel : rgb(Imf::FLOAT, "ground."))
         channels.push_back(channel);
     write_scanlines(folder / "b.exr", channels, whole_numbers(), Imf::Header(Width, Height));
-    EXPECT_NE(
-        refusal(folder / "b.exr").find("expected channels R, G and B, or Y, got depth.Z, ground.B"),
-        std::string::npos)
-        << refusal(folder / "b.exr");
+    EXPECT_NE(refusal_of_file(folder / "b.exr")
+                  .find("expected channels R, G and B, or Y, got depth.Z, ground.B"),
+              std::string::npos)
+        << refusal_of_file(folder / "b.exr");
 }
 
 TEST(ExrFile, LuminanceIsGrey) {
@@ -313,7 +313,7 @@ TEST(ExrFile, FilesWithoutColourNameTheirChannels) {
     const TemporaryFolder folder;
     write_scanlines(folder / "a.exr", {{"Z", Imf::FLOAT, 0}, {"R", Imf::HALF, 1}}, whole_numbers(),
                     Imf::Header(Width, Height));
-    EXPECT_EQ(refusal(folder / "a.exr"),
+    EXPECT_EQ(refusal_of_file(folder / "a.exr"),
               (folder / "a.exr").string() + ": expected channels R, G and B, or Y, got R, Z");
 }
 
@@ -347,7 +347,7 @@ TEST(ExrFile, AConstantPictureInAnyCompressionIsNoBomb) {
             file.setFrameBuffer(buffer);
             file.writePixels(2048);
         }
-        EXPECT_EQ(refusal(folder / "a.exr"), "") << compression;
+        EXPECT_EQ(refusal_of_file(folder / "a.exr"), "") << compression;
     }
 }
 

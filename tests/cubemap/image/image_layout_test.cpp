@@ -105,8 +105,8 @@ TEST(ImageLayout, OnlyMatchingProportionsFit) {
     EXPECT_TRUE(fits(Layout::VerticalCross, 9, 12));
     EXPECT_FALSE(fits(Layout::VerticalCross, 3, 5));
     EXPECT_FALSE(fits(Layout::LatLong, 0, 5));
-    EXPECT_THROW(FaceCells(Layout::Cube, 6, 35), std::invalid_argument);
-    EXPECT_THROW(FaceCells(Layout::LatLong, 64, 32), std::invalid_argument);
+    EXPECT_THROW(FaceSquares(Layout::Cube, 6, 35), std::invalid_argument);
+    EXPECT_THROW(FaceSquares(Layout::LatLong, 64, 32), std::invalid_argument);
 }
 
 } // namespace

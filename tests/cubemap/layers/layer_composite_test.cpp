@@ -219,7 +219,7 @@ TEST(LayerComposite, PlacesPictures) {
         pixels.push_back(bottom ? (right ? glm::vec3(1) : glm::vec3(0, 0, 1))
                                 : (right ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0)));
     }
-    ImagePatch patch{"p.exr", std::make_shared<const Picture>(16, 16, pixels),
+    ImagePatch patch{"p.exr", std::make_shared<const ImagePyramid>(Picture{16, 16, pixels}),
                      ImagePatch::Blend::Replace};
     LightLayer layer{.name = "a",
                      .gain_ev = 1.0,
@@ -249,7 +249,8 @@ TEST(LayerComposite, PicturesKeepTheirEnergy) {
         for (const glm::dvec3& place : Places) {
             std::vector<glm::vec3> pixels(std::size_t{N} * N, glm::vec3(1.0f, 0.0f, 0.0f));
             pixels[20 * N + 45].y = 1000.0f;
-            const ImagePatch patch{"p.exr", std::make_shared<const Picture>(N, N, pixels),
+            const ImagePatch patch{"p.exr",
+                                   std::make_shared<const ImagePyramid>(Picture{N, N, pixels}),
                                    ImagePatch::Blend::Replace};
             const LightLayer layer{
                 .name = "a", .region = Rectangle{place, 30.0, 30.0, 20.0, 0.0}, .effect = patch};
@@ -321,7 +322,7 @@ void expect_as_texel_by_texel(const Region& region, std::uint32_t resolution) {
                             return 1.0f;
                         default:
                             return static_cast<float>(
-                                mean_coverage(of_kind, grid.plane, grid.cell(x, y)));
+                                mean_coverage(of_kind, grid.plane, grid.square(x, y)));
                         }
                     },
                     whole);

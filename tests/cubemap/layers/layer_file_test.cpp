@@ -73,7 +73,7 @@ LightLayers everything(const std::filesystem::path& folder) {
                   {.name = "d", .region = Stroke{{{0, 1, 0}}, 90.0, 0.0}, .effect = Gain{}},
                   {.name = "e",
                    .region = Rectangle{},
-                   .effect = ImagePatch{"patch.exr", load_picture(folder / "patch.exr"),
+                   .effect = ImagePatch{"patch.exr", load_image_pyramid(folder / "patch.exr"),
                                         ImagePatch::Blend::Add}}};
     all.frames = {
         {-1.5,

@@ -146,7 +146,7 @@ TEST(LightLayer, RefusesBadLight) {
     refused({.name = "a", .gain_ev = 100.0, .effect = Emit{{1e30f, 0, 0}}});
     refused({.name = "a", .effect = Gain{-1.0f, {1, 1, 1}}});
     refused({.name = "a", .effect = Gain{1.0f, {1, -1, 1}}});
-    const auto picture = std::make_shared<const Picture>(1, 1, std::vector{glm::vec3(1.0f)});
+    const auto picture = std::make_shared<const ImagePyramid>(Picture{1, 1, {glm::vec3(1.0f)}});
     refused({.name = "a", .effect = ImagePatch{"p", picture}});
     refused({.name = "a", .region = Rectangle{}, .effect = ImagePatch{"p"}});
     EXPECT_NO_THROW(
@@ -154,30 +154,30 @@ TEST(LightLayer, RefusesBadLight) {
     EXPECT_THROW((void)coverage(Disc{}, {0, 0, 0}), std::invalid_argument);
 }
 
-TEST(Picture, HalvesToItsMean) {
+TEST(ImagePyramid, HalvesToItsMean) {
     std::vector<glm::vec3> pixels(35);
     fill_randomly(pixels, 3);
     glm::dvec3 mean(0.0);
     for (const glm::vec3& pixel : pixels)
         mean += glm::dvec3(pixel) / 35.0;
-    const Picture picture(7, 5, pixels);
+    const ImagePyramid picture(Picture{7, 5, pixels});
     ASSERT_EQ(picture.levels().size(), 3u);
     EXPECT_LT(glm::distance(glm::dvec3(picture.levels().back().pixels[0]), mean), 1e-6);
-    EXPECT_THROW(Picture(2, 2, pixels), std::invalid_argument);
-    EXPECT_THROW(Picture(0, 0, {}), std::invalid_argument);
-    EXPECT_THROW(Picture(1, 1, {glm::vec3(0, -1, 0)}), std::invalid_argument);
+    EXPECT_THROW(ImagePyramid(Picture{2, 2, pixels}), std::invalid_argument);
+    EXPECT_THROW(ImagePyramid(Picture{}), std::invalid_argument);
+    EXPECT_THROW(ImagePyramid(Picture{1, 1, {glm::vec3(0, -1, 0)}}), std::invalid_argument);
 }
 
-TEST(Picture, LoadsAnyShape) {
+TEST(ImagePyramid, LoadsAnyShape) {
     const TemporaryFolder folder;
     const CubeMap map(4, glm::vec3(1, 2, 3));
     for (const std::string name : {"a.exr", "a.hdr"}) {
         save_environment(folder / name, map);
-        const auto picture = load_picture(folder / name);
+        const auto picture = load_image_pyramid(folder / name);
         EXPECT_EQ(picture->levels().front().height, 24u);
         EXPECT_EQ(picture->levels().back().pixels[0], glm::vec3(1, 2, 3));
     }
-    EXPECT_NE(message_of([&] { (void)load_picture(folder / "none.exr"); }).find("none.exr"),
+    EXPECT_NE(message_of([&] { (void)load_image_pyramid(folder / "none.exr"); }).find("none.exr"),
               std::string::npos);
 }
 

@@ -1,5 +1,5 @@
-// Angular map, mirror ball and octahedral map: their mathematics, their pixels' patches, and what
-// becomes of light in them.
+// Angular map, mirror ball and octahedral map: their mathematics, their pixels' footprints, and
+// what becomes of light in them.
 #include "cubemap/resample/projection.h"
 
 #include <cmath>
@@ -8,14 +8,13 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "cubemap/resample/patch.h"
+#include "cubemap/resample/footprint.h"
 #include "cubemap/resample/resample.h"
 #include "tests/cubemap/test_images.h"
 
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 constexpr std::array<Layout, 3> Projected = {Layout::AngularMap, Layout::MirrorBall,
                                              Layout::Octahedral};
 
@@ -34,7 +33,8 @@ TEST(Projection, ShowsTheAxesWhereItsDescriptionSays) {
 
     const Projection& ball = *projection(Layout::MirrorBall);
     const double side =
-        0.5 * std::sin(Pi / 4.0); // where the ball's normal is half way between +Z and the axis
+        0.5 * std::sin(std::numbers::pi /
+                       4.0); // where the ball's normal is half way between +Z and the axis
     expect_near(ball.direction({0.5, 0.5}), {0, 0, 1});
     expect_near(ball.direction({0.5 + side, 0.5}), {1, 0, 0});
     expect_near(ball.direction({0.5, 0.5 - side}), {0, 1, 0});
@@ -83,22 +83,22 @@ TEST(Projection, DensityIsTheSolidAngleOfSmallSquares) {
     }
 }
 
-TEST(PatchPieces, PixelsTileTheSphereAtEveryResolution) {
+TEST(ProjectionFootprints, PixelsTileTheSphereAtEveryResolution) {
     for (const Layout layout : Projected) {
         for (const std::uint32_t n : {1u, 2u, 3u, 7u, 16u, 33u, 100u}) {
             double sum = 0.0;
             for_each_pixel({layout, Sampling::TexelCentres, n, n},
                            [&](std::size_t, const PixelPlace& place) { sum += place.solid_angle; });
-            EXPECT_NEAR(sum / (4.0 * Pi), 1.0, 1e-5) << name(layout) << ' ' << n;
+            EXPECT_NEAR(sum / (4.0 * std::numbers::pi), 1.0, 1e-5) << name(layout) << ' ' << n;
         }
     }
 }
 
-TEST(PatchPieces, RimPixelsOfAMirrorBallHaveTheirShareOfTheDisc) {
+TEST(ProjectionFootprints, RimPixelsOfAMirrorBallHaveTheirShareOfTheDisc) {
     // Equal areas are equal solid angles, so the area of a square's part in the disc is known: here
     // by counting.
     constexpr std::uint32_t N = 9;
-    PatchPieces pieces(*projection(Layout::MirrorBall), N, N);
+    ProjectionFootprints pieces(*projection(Layout::MirrorBall), N, N);
     for (std::uint32_t y = 0; y < N; ++y) {
         for (std::uint32_t x = 0; x < N; ++x) {
             double angle = 0.0;

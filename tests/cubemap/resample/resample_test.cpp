@@ -13,7 +13,6 @@
 namespace relumine::cubemap {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 constexpr std::array<Layout, 3> OldLayouts = {Layout::LatLong, Layout::Cube, Layout::VerticalCross};
 constexpr std::array<Sampling, 2> AllSamplings = {Sampling::TexelCentres, Sampling::Borders};
 
@@ -53,7 +52,7 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
     const bool lat_long = image.layout == Layout::LatLong;
     const std::uint32_t faces = lat_long ? 1 : 6;
     const std::uint32_t width =
-        lat_long ? image.width : FaceCells(image.layout, image.width, image.height).resolution();
+        lat_long ? image.width : FaceSquares(image.layout, image.width, image.height).resolution();
     const std::uint32_t height = lat_long ? image.height : width;
     const auto columns = cell_borders(width, image.sampling),
                rows = cell_borders(height, image.sampling);
@@ -62,7 +61,7 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
             for (std::uint32_t x = 0; x < width; ++x) {
                 const glm::vec3 radiance =
                     image.pixels[lat_long ? std::size_t{y} * width + x
-                                          : FaceCells(image.layout, image.width, image.height)
+                                          : FaceSquares(image.layout, image.width, image.height)
                                                 .pixel(AllFaces[f], x, y)];
                 for (int k = 0; k < n * n; ++k) {
                     const double s = columns[x] + (columns[x + 1] - columns[x]) *
@@ -72,7 +71,8 @@ CubeMap supersampled(const EnvironmentImage& image, std::uint32_t resolution, in
                                                    n;
                     const double piece = (columns[x + 1] - columns[x]) * (rows[y + 1] - rows[y]);
                     if (lat_long) {
-                        const double longitude = 2.0 * Pi * (0.5 - s), polar = Pi * t;
+                        const double longitude = 2.0 * std::numbers::pi * (0.5 - s),
+                                     polar = std::numbers::pi * t;
                         add({std::sin(polar) * std::sin(longitude), std::cos(polar),
                              std::sin(polar) * std::cos(longitude)},
                             piece * std::sin(polar), radiance);
@@ -177,7 +177,8 @@ glm::dvec3 vector_irradiance(const EnvironmentImage& image, std::size_t pixel) {
 std::vector<glm::dvec3> spread_normals(int n) {
     std::vector<glm::dvec3> normals;
     for (int i = 0; i < n; ++i) {
-        const double y = 1.0 - (2.0 * i + 1.0) / n, angle = i * Pi * (3.0 - std::sqrt(5.0)),
+        const double y = 1.0 - (2.0 * i + 1.0) / n,
+                     angle = i * std::numbers::pi * (3.0 - std::sqrt(5.0)),
                      radius = std::sqrt(1.0 - y * y);
         normals.emplace_back(radius * std::cos(angle), y, radius * std::sin(angle));
     }

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "prt/precompute_context.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/same_transfer.h"
@@ -20,13 +21,14 @@ class ClusteringTest : public testing::Test {
 protected:
     [[nodiscard]] Transfer transfer(const PrecomputeOptions& options,
                                     PrecomputeStatistics* statistics = nullptr) const {
-        return precompute(receivers_, rays_, options, statistics);
+        return precompute(receivers_, rays_, options,
+                          options.checkpoint != nullptr ? context_ : PrecomputeContext{},
+                          statistics);
     }
-    /// A work of many small steps.
+    /// A work with checkpoints; of many small steps, as context_ has it.
     [[nodiscard]] PrecomputeOptions in_steps(MemoryCheckpoint& checkpoint) const {
         PrecomputeOptions options = options_;
         options.checkpoint = &checkpoint;
-        options.samples_per_step = 64 * 4 * receivers_.size();
         return options;
     }
 
@@ -35,6 +37,7 @@ protected:
     RayScene rays_{mesh_};
     PrecomputeOptions options_{
         .tolerance = 0.028f, .face_resolution = 64, .bias = automatic_bias(mesh_)};
+    PrecomputeContext context_{.samples_per_step = 64 * 4 * receivers_.size()};
 };
 
 TEST_F(ClusteringTest, AnyRoomForPlanesGivesTheSameBits) {
@@ -108,10 +111,10 @@ TEST_F(ClusteringTest, LooksAtTheCheckpointAfterEveryStep) {
     PrecomputeOptions options = in_steps(unused);
     options.checkpoint = &lookout;
     PrecomputeStatistics statistics;
-    static_cast<void>(precompute(receivers_, lookout, options, &statistics));
+    static_cast<void>(precompute(receivers_, lookout, options, context_, &statistics));
     EXPECT_GT(lookout.num_looks, 15u);
-    EXPECT_GT(statistics.num_rays, 4 * *options.samples_per_step);
-    EXPECT_LE(lookout.num_rays, *options.samples_per_step);
+    EXPECT_GT(statistics.num_rays, 4 * *context_.samples_per_step);
+    EXPECT_LE(lookout.num_rays, *context_.samples_per_step);
 }
 
 TEST_F(ClusteringTest, GoesOnAgainAndAgainWithLittleRoom) {
@@ -179,7 +182,7 @@ TEST_F(ClusteringTest, LeavesItsResultWhereMoreFollows) {
     PrecomputeOptions options = in_steps(checkpoint);
     static_cast<void>(transfer(options));
     EXPECT_EQ(checkpoint.num_saves, 0u);
-    options.more_follows = true;
+    context_.more_follows = true;
     const Transfer expected = transfer(options);
     EXPECT_EQ(checkpoint.num_saves, 1u);
     PrecomputeStatistics statistics;

@@ -18,7 +18,6 @@
 namespace relumine::prt {
 namespace {
 
-constexpr double Pi = std::numbers::pi;
 const glm::vec3 Up(0.0f, 1.0f, 0.0f);
 
 constexpr float Roughnesses[] = {0.0f, 0.02f, 0.1f, 0.2f, 0.35f, 0.5f, 0.7f, 0.85f, 1.0f};
@@ -60,7 +59,7 @@ glm::vec3 direction(double polar, double azimuth) {
 }
 
 glm::vec3 eye_at(double degrees) {
-    return direction(degrees * Pi / 180.0, 0.3);
+    return direction(degrees * std::numbers::pi / 180.0, 0.3);
 }
 
 /// The lobes of a single light of radiance times solid angle 1 and their colours: BRDF times
@@ -95,11 +94,12 @@ Lobes<double> integral_over_lights(const Surface& surface, const glm::vec3& v, i
         // are.
         const double t = (i + 0.5) / n;
         const double cosine = t * t;
-        const double weight = 2.0 * t / n * 2.0 * Pi / n;
+        const double weight = 2.0 * t / n * 2.0 * std::numbers::pi / n;
         for (int j = 0; j < n; ++j)
             add(sum,
-                evaluate_lobes(surface, Up, v,
-                               direction(std::acos(cosine), 2.0 * Pi * (j + 0.5) / n)),
+                evaluate_lobes(
+                    surface, Up, v,
+                    direction(std::acos(cosine), 2.0 * std::numbers::pi * (j + 0.5) / n)),
                 weight);
     }
     return sum;
@@ -117,9 +117,9 @@ Lobes<double> integral_over_halves(const Surface& surface, const glm::vec3& eye,
         const double cosine = 1.0 / std::sqrt(1.0 + tan2);
         const double sine = std::sqrt(tan2) * cosine;
         const double d = cosine * cosine * (alpha * alpha - 1.0) + 1.0;
-        const double density = alpha * alpha * cosine / (Pi * d * d);
+        const double density = alpha * alpha * cosine / (std::numbers::pi * d * d);
         for (int j = 0; j < n; ++j) {
-            const double azimuth = 2.0 * Pi * (j + 0.5) / n;
+            const double azimuth = 2.0 * std::numbers::pi * (j + 0.5) / n;
             const glm::dvec3 h(sine * std::cos(azimuth), cosine, sine * std::sin(azimuth));
             const double v_h = glm::dot(v, h);
             const glm::dvec3 w = 2.0 * v_h * h - v;
@@ -212,7 +212,8 @@ TEST(Brdf, LightFromStraightBehind) {
     for (const float roughness : Roughnesses) {
         const Lobes<float> lobes = evaluate_lobes(ggx_surface(roughness), Up, v, w);
         const float alpha = ggx_alpha(roughness);
-        EXPECT_NEAR(lobes.specular * 4.0f * float(Pi) * alpha * alpha * alpha, 1.0f, 1e-5f)
+        EXPECT_NEAR(lobes.specular * 4.0f * float(std::numbers::pi) * alpha * alpha * alpha, 1.0f,
+                    1e-5f)
             << roughness;
         EXPECT_NEAR(lobes.specular_grazing, lobes.specular, 1e-5f * lobes.specular) << "white";
         EXPECT_NEAR(lobes.diffuse_grazing, lobes.diffuse, 1e-5f * lobes.diffuse);
@@ -258,7 +259,7 @@ TEST(Brdf, BlinnPhongReflectsAllOnlyAlongTheNormal) {
             << exponent;
     }
     for (const double degrees : {30.0, 60.0, 80.0}) {
-        const double cosine = std::cos(degrees * Pi / 180.0);
+        const double cosine = std::cos(degrees * std::numbers::pi / 180.0);
         EXPECT_NEAR(integral_over_lights(blinn_surface(0.0f), eye_at(degrees)).specular, 1.0, 1e-4)
             << "exponent 0 is Lambert";
         EXPECT_NEAR(integral_over_halves(blinn_surface(1e6f), eye_at(degrees), 1.4e-3).specular,
@@ -270,7 +271,7 @@ TEST(Brdf, BlinnPhongReflectsAllOnlyAlongTheNormal) {
 /// n.v.
 TEST(Brdf, WhiteFurnaceOfTheRoughestGgx) {
     for (const double degrees : {0.0, 20.0, 45.0, 70.0, 85.0}) {
-        const double m = std::cos(degrees * Pi / 180.0);
+        const double m = std::cos(degrees * std::numbers::pi / 180.0);
         const double expected = 1.0 - m * std::log1p(1.0 / m);
         EXPECT_NEAR(integral_over_lights(ggx_surface(1.0f), eye_at(degrees)).specular, expected,
                     1e-4);
@@ -283,7 +284,8 @@ TEST(Brdf, WhiteFurnaceOfTheRoughestGgx) {
 TEST(Brdf, WhiteFurnaceOfTheSmoothestGgx) {
     for (const float roughness : {0.0f, 0.01f, 0.0316f})
         for (const double degrees : {0.0, 30.0, 60.0, 80.0}) {
-            const double fresnel = std::pow(1.0 - std::cos(degrees * Pi / 180.0), 5.0);
+            const double fresnel =
+                std::pow(1.0 - std::cos(degrees * std::numbers::pi / 180.0), 5.0);
             const Lobes<double> lobes = integral_over_halves(
                 ggx_surface(roughness), eye_at(degrees), double{ggx_alpha(0.0f)});
             EXPECT_NEAR(lobes.specular, 1.0, 2e-3) << roughness << " at " << degrees;
@@ -334,7 +336,8 @@ TEST(Brdf, FresnelGoesToOneAtGrazingAngles) {
             const glm::vec3 v = eye_at(degrees), w(-v.x, v.y, -v.z);
             const Lobes<float> lobes = evaluate_lobes(surface, Up, v, w);
             const double c = double{lobes.specular_grazing} / double{lobes.specular};
-            EXPECT_NEAR(c, std::pow(1.0 - std::cos(degrees * Pi / 180.0), 5.0), 1e-5) << degrees;
+            EXPECT_NEAR(c, std::pow(1.0 - std::cos(degrees * std::numbers::pi / 180.0), 5.0), 1e-5)
+                << degrees;
             EXPECT_GE(c, previous);
             previous = c;
         }
@@ -374,7 +377,7 @@ TEST(Brdf, GgxDistributionIsNormalised) {
             const double specular = double{evaluate_lobes(surface, Up, h, h).specular};
             const double distribution =
                 specular / (cosine * published_visibility(cosine, cosine, alpha));
-            sum += distribution * cosine * 2.0 * Pi * std::sin(polar) * d_polar;
+            sum += distribution * cosine * 2.0 * std::numbers::pi * std::sin(polar) * d_polar;
         }
         EXPECT_NEAR(sum, 1.0, 1e-3) << roughness;
     }
@@ -399,7 +402,7 @@ TEST(Brdf, GgxMaskingIsSmithsHeightCorrelated) {
             const glm::dvec3 h = glm::normalize(glm::dvec3(v) + glm::dvec3(w));
             const double sin2 = h.x * h.x + h.z * h.z;
             const double d = alpha * alpha * h.y * h.y + sin2;
-            const double distribution = alpha * alpha / (Pi * d * d);
+            const double distribution = alpha * alpha / (std::numbers::pi * d * d);
             const double masking = 1.0 / (1.0 + lambda(n_v, alpha) + lambda(n_w, alpha));
             const double expected = distribution * masking / (4.0 * n_v);
             EXPECT_NEAR(double{evaluate_lobes(surface, Up, v, w).specular} / expected, 1.0, 2e-3)
@@ -419,8 +422,8 @@ glm::dvec3 published_gltf(const glm::dvec3& base, double metallic, double roughn
         f0 + (glm::dvec3(1.0) - f0) * std::pow(1.0 - std::abs(glm::dot(v, h)), 5.0);
     const double n_h = glm::dot(n, h), n_l = glm::dot(n, l), n_v = glm::dot(n, v),
                  a2 = alpha * alpha;
-    const double d = a2 / (Pi * std::pow(n_h * n_h * (a2 - 1.0) + 1.0, 2.0));
-    return (glm::dvec3(1.0) - fresnel) * c_diff / Pi +
+    const double d = a2 / (std::numbers::pi * std::pow(n_h * n_h * (a2 - 1.0) + 1.0, 2.0));
+    return (glm::dvec3(1.0) - fresnel) * c_diff / std::numbers::pi +
            fresnel * published_visibility(n_l, n_v, alpha) * d;
 }
 
@@ -470,7 +473,8 @@ TEST(Brdf, SharpnessIsClamped) {
     const float least = ggx_alpha(0.0f);
     EXPECT_EQ(peak(ggx_surface(0.0f)), peak(ggx_surface(std::sqrt(0.99f * least))));
     EXPECT_GT(peak(ggx_surface(0.0f)), peak(ggx_surface(std::sqrt(1.1f * least))));
-    EXPECT_NEAR(peak(ggx_surface(0.0f)) * float(Pi) * least * least * 4.0f * v.y, 1.0f, 1e-2f);
+    EXPECT_NEAR(peak(ggx_surface(0.0f)) * float(std::numbers::pi) * least * least * 4.0f * v.y,
+                1.0f, 1e-2f);
     EXPECT_EQ(peak(blinn_surface(1e30f)), peak(blinn_surface(1e6f)));
     EXPECT_EQ(peak(blinn_surface(std::numeric_limits<float>::infinity())),
               peak(blinn_surface(1e6f)));

@@ -10,6 +10,7 @@
 
 #include "prt/clusters/cell_index.h"
 #include "prt/glossy/brdf.h"
+#include "prt/precompute_context.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"
@@ -197,13 +198,12 @@ TEST(GlossyPrecompute, GoesOnFromEveryCheckpoint) {
     GlossyOptions options = scene.options;
     static_cast<void>(
         precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options, &plain));
-    options.blocks_per_step = 5;
     for (const std::size_t saves : {0u, 1u, 2u, 3u}) {
         MemoryCheckpoint checkpoint;
         options.checkpoint = &checkpoint;
         checkpoint.saves_to_live = saves;
-        EXPECT_THROW(static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays,
-                                                         scene.transfer, options)),
+        EXPECT_THROW(static_cast<void>(precompute_glossy_in_steps(
+                         scene.receivers, scene.diffuse.rays, scene.transfer, options, 5)),
                      Killed);
         checkpoint.saves_to_live = static_cast<std::size_t>(-1);
         GlossyStatistics statistics;
@@ -254,10 +254,10 @@ TEST(GlossyPrecompute, StopsAtItsLimitAndLeavesACheckpoint) {
     for (const LobeCuts& cuts : scene.transfer.glossy->lobes)
         num_entries += cuts.num_entries();
     GlossyOptions options = scene.options;
-    options.blocks_per_step = 5;
     options.max_bytes = num_entries * BytesPerEntry;
     const auto run = [&] {
-        return precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, options);
+        return precompute_glossy_in_steps(scene.receivers, scene.diffuse.rays, scene.transfer,
+                                          options, 5);
     };
     EXPECT_NO_THROW(static_cast<void>(run()));
     MemoryCheckpoint checkpoint;

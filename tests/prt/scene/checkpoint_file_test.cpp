@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<std::byte> bytes_of(const std::string& text) {
+std::vector<std::byte> bytes_of_text(const std::string& text) {
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
 }
@@ -21,7 +21,7 @@ std::vector<std::byte> bytes_of(const std::string& text) {
 std::vector<std::vector<std::byte>> all(const std::vector<std::string>& texts) {
     std::vector<std::vector<std::byte>> records;
     for (const std::string& text : texts)
-        records.push_back(bytes_of(text));
+        records.push_back(bytes_of_text(text));
     return records;
 }
 
@@ -45,9 +45,9 @@ protected:
     }
     void save_two() {
         CheckpointFile checkpoint = open(false);
-        EXPECT_TRUE(checkpoint.save("a", bytes_of("one"), bytes_of("first state")));
-        EXPECT_TRUE(checkpoint.save("a", bytes_of("two"), bytes_of("state")));
-        EXPECT_TRUE(checkpoint.save("b", bytes_of("x"), {}));
+        EXPECT_TRUE(checkpoint.save("a", bytes_of_text("one"), bytes_of_text("first state")));
+        EXPECT_TRUE(checkpoint.save("a", bytes_of_text("two"), bytes_of_text("state")));
+        EXPECT_TRUE(checkpoint.save("b", bytes_of_text("x"), {}));
     }
     std::string refusal(const Fingerprint& fingerprint) {
         try {
@@ -85,7 +85,7 @@ TEST_F(CheckpointFileTest, GivesBackWhatWasSaved) {
     EXPECT_TRUE(checkpoint.exists());
     const Checkpoint::Saved a = checkpoint.load("a", true);
     EXPECT_EQ(a.records, all({"one", "two"}));
-    EXPECT_EQ(a.state, bytes_of("state"));
+    EXPECT_EQ(a.state, bytes_of_text("state"));
     EXPECT_EQ(checkpoint.load("b", false).records, all({"x"}));
     EXPECT_TRUE(checkpoint.load("c", true).records.empty());
     checkpoint.remove();
@@ -99,7 +99,7 @@ TEST_F(CheckpointFileTest, ARecordWithoutItsStateDoesNotCount) {
     {
         CheckpointFile checkpoint = open(true);
         static_cast<void>(checkpoint.load("a", true));
-        EXPECT_TRUE(checkpoint.save("a", bytes_of("three"), bytes_of("third")));
+        EXPECT_TRUE(checkpoint.save("a", bytes_of_text("three"), bytes_of_text("third")));
     }
     // As if killed between the two.
     files::OutputFile file(checkpoint_ / "a.state");
@@ -107,7 +107,7 @@ TEST_F(CheckpointFileTest, ARecordWithoutItsStateDoesNotCount) {
     file.commit();
     CheckpointFile checkpoint = open(true);
     EXPECT_EQ(checkpoint.load("a", true).records.size(), 2u);
-    EXPECT_TRUE(checkpoint.save("a", bytes_of("other"), bytes_of("third")));
+    EXPECT_TRUE(checkpoint.save("a", bytes_of_text("other"), bytes_of_text("third")));
     EXPECT_EQ(checkpoint.load("a", true).records, all({"one", "two", "other"}));
 }
 
@@ -150,7 +150,7 @@ TEST_F(CheckpointFileTest, WithoutResumeTheFirstSaveBeginsAnew) {
     EXPECT_FALSE(checkpoint.exists());
     EXPECT_TRUE(checkpoint.load("a", true).state.empty());
     EXPECT_TRUE(fs::exists(checkpoint_ / "b.log")) << "untouched so far";
-    EXPECT_TRUE(checkpoint.save("a", bytes_of("new"), bytes_of("s")));
+    EXPECT_TRUE(checkpoint.save("a", bytes_of_text("new"), bytes_of_text("s")));
     EXPECT_FALSE(fs::exists(checkpoint_ / "b.log"));
     EXPECT_EQ(checkpoint.load("a", true).records, all({"new"}));
 }
@@ -161,7 +161,7 @@ TEST_F(CheckpointFileTest, OneRunAtATime) {
     ASSERT_NE(lock, nullptr);
     EXPECT_NE(refusal({{"mesh", "1"}, {"bias", "2"}}).find("got one in use"), std::string::npos);
     CheckpointFile second = open(false);
-    EXPECT_FALSE(second.save("a", bytes_of("x"), bytes_of("y")));
+    EXPECT_FALSE(second.save("a", bytes_of_text("x"), bytes_of_text("y")));
     EXPECT_EQ(problems_.size(), 1u);
     EXPECT_FALSE(second.is_due());
     second.remove();
@@ -173,10 +173,10 @@ TEST_F(CheckpointFileTest, AFailedSaveLeavesTheOneBefore) {
     CheckpointFile checkpoint = open(true);
     static_cast<void>(checkpoint.load("a", true));
     fs::create_directories(checkpoint_ / "c.state" / "in the way");
-    EXPECT_FALSE(checkpoint.save("c", bytes_of("record"), bytes_of("state")));
+    EXPECT_FALSE(checkpoint.save("c", bytes_of_text("record"), bytes_of_text("state")));
     EXPECT_EQ(problems_.size(), 1u);
     fs::remove_all(checkpoint_ / "c.state");
-    EXPECT_TRUE(checkpoint.save("c", bytes_of("record"), bytes_of("state")));
+    EXPECT_TRUE(checkpoint.save("c", bytes_of_text("record"), bytes_of_text("state")));
     EXPECT_EQ(checkpoint.load("c", true).records, all({"record"}));
 }
 

@@ -65,7 +65,7 @@ struct Tally {
     std::size_t num_blocked = 0;
 };
 
-/// Blocks of receivers of all sizes through patches of all widths, patch by patch and direction by
+/// Groups of receivers of all sizes through patches of all widths, patch by patch and direction by
 /// direction: the very bits of the ray tracer.
 Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& origins,
               const std::vector<glm::vec3>& normals, std::uint32_t seed, int rounds) {
@@ -85,10 +85,10 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
             for (std::size_t j = 0; j < patch.num_directions; ++j)
                 if (glm::dot(normals[first + i], patch.direction(j)) > 0.0f)
                     asked[i] |= std::uint64_t{1} << j;
-        const ReceiverBlock block{std::span(origins).subspan(first, size), hint};
+        const ReceiverGroup group{std::span(origins).subspan(first, size), hint};
         const auto lit = [&](const Blockers& blockers) {
             std::vector<std::uint64_t> result = asked;
-            blockers.clear_blocked(block, patch, result);
+            blockers.clear_blocked(group, patch, result);
             return result;
         };
         const std::vector<std::uint64_t> expected = lit(rays);
@@ -113,12 +113,6 @@ Tally compare_at_vertices(const mesh::TriangleMesh& mesh, std::uint32_t seed, in
         origins.push_back(ray_origin(receivers.positions[i], receivers.normals[i], bias));
     }
     return compare(mesh, origins, normals, seed, rounds);
-}
-
-mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, float scale, const glm::vec3& offset) {
-    for (glm::vec3& position : mesh.positions)
-        position = scale * position + offset;
-    return mesh;
 }
 
 /// A fine floor, which becomes two triangles, with things on it that touch and pierce it.
@@ -159,7 +153,7 @@ TEST(BeamScene, AnswersAsTheRayTracerDoesAmongRandomTriangles) {
             std::uniform_real_distribution<float> coordinate(-1.5f, 1.5f);
             std::vector<glm::vec3> origins, normals;
             glm::vec3 centre(0.0f);
-            for (int i = 0; i < 1000; ++i) { // in clouds, as blocks are
+            for (int i = 0; i < 1000; ++i) { // in clouds, as groups are
                 if (i % 50 == 0)
                     centre = {coordinate(random), coordinate(random), coordinate(random)};
                 origins.push_back(centre + 0.05f * scenes::random_direction(random));
@@ -184,9 +178,9 @@ TEST(BeamScene, AnswersAsTheRayTracerDoesWhereSurfacesMeet) {
 TEST(BeamScene, AnswersAsTheRayTracerDoesAtAnyScaleAndPlace) {
     const mesh::TriangleMesh mesh = things_on_a_floor();
     for (const float scale : {1e-30f, 1e-12f, 1e-3f, 1e6f, 1e15f})
-        compare_at_vertices(transformed(mesh, scale, glm::vec3(0.0f)), 9, 300);
-    compare_at_vertices(transformed(mesh, 1.0f, glm::vec3(1e4f, -2e4f, 3e4f)), 10, 500);
-    compare_at_vertices(transformed(mesh, 1.0f, glm::vec3(1e6f, 0.0f, 0.0f)), 11,
+        compare_at_vertices(scenes::transformed(mesh, scale, glm::vec3(0.0f)), 9, 300);
+    compare_at_vertices(scenes::transformed(mesh, 1.0f, glm::vec3(1e4f, -2e4f, 3e4f)), 10, 500);
+    compare_at_vertices(scenes::transformed(mesh, 1.0f, glm::vec3(1e6f, 0.0f, 0.0f)), 11,
                         500); // floats are 1/16 apart
 }
 

@@ -63,12 +63,6 @@ glm::vec3 direction_of(const DirectionPacket& packet, std::size_t i) {
     return {packet.x[i], packet.y[i], packet.z[i]};
 }
 
-mesh::TriangleMesh transformed(mesh::TriangleMesh mesh, float scale, const glm::vec3& offset) {
-    for (glm::vec3& position : mesh.positions)
-        position = scale * position + offset;
-    return mesh;
-}
-
 TEST(RayScene, PacketsAnswerAsSingleRaysDo) {
     const mesh::TriangleMesh soup = scenes::triangle_soup(60, 1);
     const RayScene scene(soup);
@@ -101,7 +95,8 @@ TEST(RayScene, PacketsAnswerAsSingleRaysDo) {
 /// units of the soup.
 void compare_with_every_triangle(float scale, const glm::vec3& offset, double close,
                                  double accuracy) {
-    const mesh::TriangleMesh soup = transformed(scenes::triangle_soup(80, 3), scale, offset);
+    const mesh::TriangleMesh soup =
+        scenes::transformed(scenes::triangle_soup(80, 3), scale, offset);
     const RayScene scene(soup);
     std::mt19937 random(4);
     std::uniform_real_distribution<float> coordinate(-1.2f, 1.2f);
@@ -218,10 +213,11 @@ TEST(RayScene, NoTrianglesBlockNothing) {
 // Embree itself drops such triangles without a word.
 TEST(RayScene, RefusesCoordinatesBeyondTheRayTracersRange) {
     const mesh::TriangleMesh sphere = scenes::icosphere(0, 1.0f, glm::vec3(0.0f));
-    EXPECT_TRUE(
-        RayScene(transformed(sphere, 1e18f, glm::vec3(0.0f))).occluded(glm::vec3(0.0f), {0, 1, 0}));
+    EXPECT_TRUE(RayScene(scenes::transformed(sphere, 1e18f, glm::vec3(0.0f)))
+                    .occluded(glm::vec3(0.0f), {0, 1, 0}));
     for (const float scale : {3e18f, 1e30f, 1e38f, std::numeric_limits<float>::infinity()})
-        EXPECT_THROW(RayScene{transformed(sphere, scale, glm::vec3(0.0f))}, std::runtime_error)
+        EXPECT_THROW(RayScene{scenes::transformed(sphere, scale, glm::vec3(0.0f))},
+                     std::runtime_error)
             << scale;
     mesh::TriangleMesh with_stray_point = sphere;
     with_stray_point.positions.emplace_back(1e30f);
@@ -278,7 +274,7 @@ TEST(RayScene, OnAConvexMeshNothingAboveAllAdjacentFacesIsBlocked) {
 TEST(RayScene, AutomaticBiasScalesWithTheBlockers) {
     const mesh::TriangleMesh mesh = scenes::box(glm::vec3(0.0f), glm::vec3(2.0f, 3.0f, 6.0f));
     EXPECT_FLOAT_EQ(automatic_bias(mesh), 7e-4f);
-    EXPECT_FLOAT_EQ(automatic_bias(transformed(mesh, 100.0f, glm::vec3(5.0f))), 7e-2f);
+    EXPECT_FLOAT_EQ(automatic_bias(scenes::transformed(mesh, 100.0f, glm::vec3(5.0f))), 7e-2f);
 }
 
 } // namespace

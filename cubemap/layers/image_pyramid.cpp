@@ -1,4 +1,4 @@
-#include "cubemap/layers/picture.h"
+#include "cubemap/layers/image_pyramid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,12 +20,12 @@ bool is_radiance(const glm::vec3& value) {
            std::isfinite(value.y) && std::isfinite(value.z);
 }
 
-/// Half as many pixels each way (at least one), each the mean of those it covers, also where the
-/// number is odd.
-Picture::Level halved(const Picture::Level& from) {
-    Picture::Level to{.width = std::max(1u, from.width / 2),
-                      .height = std::max(1u, from.height / 2),
-                      .pixels = {}};
+/// Returns half as many pixels in each direction (at least one). Each is the mean of the pixels it
+/// covers, also for an odd number of pixels.
+Picture halved(const Picture& from) {
+    Picture to{.width = std::max(1u, from.width / 2),
+               .height = std::max(1u, from.height / 2),
+               .pixels = {}};
     to.pixels.reserve(std::size_t{to.width} * to.height);
     // Calls visit(pixel, weight) for the pixels that pixel `index` of the halved row or column
     // covers.
@@ -55,25 +55,28 @@ Picture::Level halved(const Picture::Level& from) {
 
 } // namespace
 
-Picture::Picture(std::uint32_t width, std::uint32_t height, std::vector<glm::vec3> pixels) {
-    if (width == 0 || height == 0 || pixels.size() != std::size_t{width} * height)
+ImagePyramid::ImagePyramid(Picture picture) {
+    const std::vector<glm::vec3>& pixels = picture.pixels;
+    if (picture.width == 0 || picture.height == 0 ||
+        pixels.size() != std::size_t{picture.width} * picture.height)
         throw std::invalid_argument(
-            fmt::format("picture: expected {} x {} pixels, at least one, got {}", width, height,
-                        pixels.size()));
+            fmt::format("picture: expected {} x {} pixels, at least one, got {}", picture.width,
+                        picture.height, pixels.size()));
     const auto bad = std::find_if_not(pixels.begin(), pixels.end(), is_radiance);
     if (bad != pixels.end()) {
         const auto index = static_cast<std::size_t>(bad - pixels.begin());
         throw std::invalid_argument(fmt::format(
             "picture: expected finite radiance of at least 0, got ({}, {}, {}) at pixel ({}, {})",
-            bad->x, bad->y, bad->z, index % width, index / width));
+            bad->x, bad->y, bad->z, index % picture.width, index / picture.width));
     }
-    levels_.push_back({.width = width, .height = height, .pixels = std::move(pixels)});
+    picture.alpha.clear();
+    levels_.push_back(std::move(picture));
     while (levels_.back().pixels.size() > 1)
         levels_.push_back(halved(levels_.back()));
 }
 
-glm::dvec3 Picture::sample(std::size_t level, const glm::dvec2& position) const {
-    const Level& image = levels_[level];
+glm::dvec3 ImagePyramid::sample(std::size_t level, const glm::dvec2& position) const {
+    const Picture& image = levels_[level];
     const double x = std::clamp(position.x * image.width - 0.5, 0.0, image.width - 1.0);
     const double y = std::clamp(position.y * image.height - 0.5, 0.0, image.height - 1.0);
     const auto x0 = static_cast<std::size_t>(x), y0 = static_cast<std::size_t>(y);
@@ -86,7 +89,7 @@ glm::dvec3 Picture::sample(std::size_t level, const glm::dvec2& position) const 
     return glm::mix(glm::mix(at(x0, y0), at(x1, y0), fx), glm::mix(at(x0, y1), at(x1, y1), fx), fy);
 }
 
-std::shared_ptr<const Picture> load_picture(const std::filesystem::path& path) {
+std::shared_ptr<const ImagePyramid> load_image_pyramid(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
     const std::string name = path.string();
     if (!is_exr(bytes) && !is_hdr(bytes))
@@ -94,7 +97,7 @@ std::shared_ptr<const Picture> load_picture(const std::filesystem::path& path) {
             fmt::format("{}: expected an OpenEXR or Radiance .hdr file, got neither", name));
     ImageFile file = is_exr(bytes) ? decode_exr(bytes, name) : decode_hdr(bytes, name);
     try {
-        return std::make_shared<const Picture>(file.width, file.height, std::move(file.pixels));
+        return std::make_shared<const ImagePyramid>(static_cast<Picture&&>(file));
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
     }

@@ -1,4 +1,4 @@
-#include "cubemap/resample/patch.h"
+#include "cubemap/resample/footprint.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,12 +6,13 @@
 
 namespace relumine::cubemap {
 
-PatchPieces::PatchPieces(const Projection& projection, std::uint32_t width, std::uint32_t height)
+ProjectionFootprints::ProjectionFootprints(const Projection& projection, std::uint32_t width,
+                                           std::uint32_t height)
     : projection_(projection), width_(width), height_(height), is_disc_(projection.is_disc()),
       is_mirrored_(projection.is_mirrored()),
       tolerance_(1e-4 * std::sqrt(4.0 * std::numbers::pi / (width_ * height_))) {}
 
-bool PatchPieces::is_whole(std::uint32_t x, std::uint32_t y) const {
+bool ProjectionFootprints::is_whole(std::uint32_t x, std::uint32_t y) const {
     if (!is_disc_)
         return true;
     const double far_x = std::max(std::abs(x / width_ - 0.5), std::abs((x + 1) / width_ - 0.5));
@@ -19,7 +20,7 @@ bool PatchPieces::is_whole(std::uint32_t x, std::uint32_t y) const {
     return far_x * far_x + far_y * far_y <= 0.25;
 }
 
-bool PatchPieces::clip(const Rectangle& rectangle) {
+bool ProjectionFootprints::clip(const Rectangle& rectangle) {
     const auto& [low, high] = rectangle;
     const std::array<glm::dvec2, 4> square = {low, {high.x, low.y}, high, {low.x, high.y}};
     corners_.clear();
@@ -41,7 +42,7 @@ bool PatchPieces::clip(const Rectangle& rectangle) {
             continue;
         const glm::dvec2 first = enter > 0.0 ? square[i] + enter * d : square[i];
         const glm::dvec2 last = leave < 1.0 ? square[i] + leave * d : square[(i + 1) % 4];
-        // Where edges do not follow each other, the way goes along the rim.
+        // Between edges that do not follow each other, the outline runs along the rim.
         if (corners_.empty() || corners_.back().point != first) {
             if (!corners_.empty())
                 corners_.back().along_rim = true;
@@ -60,9 +61,9 @@ bool PatchPieces::clip(const Rectangle& rectangle) {
     return !corners_.empty() || holds_middle;
 }
 
-bool PatchPieces::is_small(const Rectangle& rectangle) const {
-    constexpr double LargestSide =
-        0.25; // of the picture; larger rectangles might hold the whole disc
+bool ProjectionFootprints::is_small(const Rectangle& rectangle) const {
+    // Part of the picture's side. A larger rectangle might hold the whole disc.
+    constexpr double LargestSide = 0.25;
     constexpr double LargestAngle = 0.3;
     if (corners_.empty() || rectangle.high.x - rectangle.low.x > LargestSide ||
         rectangle.high.y - rectangle.low.y > LargestSide)
@@ -73,7 +74,7 @@ bool PatchPieces::is_small(const Rectangle& rectangle) const {
     });
 }
 
-void PatchPieces::make_outline() {
+void ProjectionFootprints::make_outline() {
     outline_.clear();
     for (std::size_t i = 0; i < corners_.size(); ++i) {
         const Corner& from = corners_[i];
@@ -86,19 +87,20 @@ void PatchPieces::make_outline() {
         std::reverse(outline_.begin(), outline_.end());
 }
 
-void PatchPieces::add_edge(const glm::dvec2& from, const glm::dvec3& from_direction,
-                           const glm::dvec2& to, const glm::dvec3& to_direction, int depth) {
+void ProjectionFootprints::add_edge(const glm::dvec2& from, const glm::dvec3& from_direction,
+                                    const glm::dvec2& to, const glm::dvec3& to_direction,
+                                    int depth) {
     constexpr int Deepest = 12;
     const glm::dvec2 middle = 0.5 * (from + to);
     const glm::dvec3 direction = projection_.direction(middle);
     const glm::dvec3 normal = glm::cross(from_direction, to_direction);
     const double length = glm::length(normal);
-    // Off the great circle, or off the chord where its ends hardly differ.
+    // Distance from the great circle, or from the chord if its ends hardly differ.
     const double off = length > 1e-9
                            ? std::abs(glm::dot(direction, normal)) / length
                            : glm::distance(direction, 0.5 * (from_direction + to_direction));
-    // A bend on the way, as at the creases of an octahedron, may hide from the middle of a long
-    // edge.
+    // The middle of a long edge may miss a bend elsewhere on the edge, as at the creases of an
+    // octahedron.
     constexpr double LongEdge = 0.1;
     if (depth >= Deepest || (off <= tolerance_ && length <= LongEdge))
         return;

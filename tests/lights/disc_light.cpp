@@ -1,7 +1,7 @@
 // Based on: Snyder, "Area light sources for real-time graphics", 1996, the integral of the cosine
-// over a spherical cap that the horizon cuts; also known from the view factors of spheres in heat
-// transfer.
-#include "lights/disc_light.h"
+// over a spherical cap that the horizon cuts. The same integral is known from the view factors of
+// spheres in heat transfer.
+#include "tests/lights/disc_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,9 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
-/// Integral of max(n.w, 0) over a cap of angular radius `radius` (at most pi / 2) at the angle
-/// `angle` to n, over pi sin^2(radius): the cosine as long as the horizon does not cut the cap.
+/// Returns the integral of max(n.w, 0) over a cap, divided by pi sin^2(radius). The cap has the
+/// angular radius `radius` (at most pi / 2) and lies at `angle` to n. The result is the cosine of
+/// `angle` if the horizon does not cut the cap.
 double cap_cosine(double angle, double radius) {
     if (angle <= 0.5 * Pi - radius)
         return std::cos(angle);
@@ -42,12 +43,12 @@ double cap_cosine(double angle, double radius) {
 
 glm::dvec3 irradiance(const DistantLight& light, const glm::dvec3& normal) {
     const double cosine = std::clamp(glm::dot(light.direction, normal), -1.0, 1.0);
-    // Below a ten-thousandth of a degree the closed form loses its digits, and nobody can tell the
-    // disc from a point.
+    // Below a ten-thousandth of a degree the closed form loses its digits, and the disc cannot be
+    // told from a point.
     constexpr double Point = 1e-11;
     if (light.solid_angle < Point)
         return light.irradiance * std::max(cosine, 0.0);
-    // A little less than a hemisphere at most, where the closed form breaks down.
+    // A little less than a hemisphere, where the closed form fails.
     constexpr double MaxRadius = 0.5 * Pi - 1e-6;
     const double share = std::min(light.solid_angle / (4.0 * Pi), 0.5);
     const double radius = std::min(2.0 * std::asin(std::sqrt(share)), MaxRadius);

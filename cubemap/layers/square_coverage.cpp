@@ -1,17 +1,17 @@
-#include "cubemap/layers/cell_coverage.h"
+#include "cubemap/layers/square_coverage.h"
 
 namespace relumine::cubemap {
 
 namespace {
 
-/// Smoothstep integrated once from 0.
+/// Integral of smoothstep from 0.
 double first_integral(double t) {
     if (t <= 0.0)
         return 0.0;
     return t >= 1.0 ? t - 0.5 : t * t * t * (1.0 - 0.5 * t);
 }
 
-/// And twice.
+/// Integral of first_integral() from 0.
 double second_integral(double t) {
     if (t <= 0.0)
         return 0.0;
@@ -23,9 +23,8 @@ double second_integral(double t) {
 double mean_smoothstep(double a, double p, double q) {
     if (std::abs(p) < std::abs(q))
         std::swap(p, q);
-    // Differences of the integrals lose digits where a slope is small, and are not needed there:
-    // the errors of the midpoint are the slope's square, 1e-7 in the first case, and 1e-9 in the
-    // second.
+    // Where a slope is small, differences of the integrals lose digits and the midpoint is good
+    // enough. Its error is the square of the slope: 1e-7 in the first case, 1e-9 in the second.
     if (std::abs(p) < 1e-3)
         return smoothstep(a + 0.5 * (p + q));
     double mean = 0.0;
@@ -49,9 +48,9 @@ detail::RampFit::RampFit(const std::array<double, 4>& corners, double centre) {
     if (none || full) {
         mean = full ? 1.0 : 0.0;
     } else {
-        // Two thirds of the centre and one of the corners make the mean of a quadratic function
-        // exactly, so what bending up to the bounds below leaves is of the next order. The energy
-        // tests say that they are good enough.
+        // Two thirds of the centre and one third of the corners make the mean of a quadratic
+        // function exactly. So a bend up to the bounds below leaves only an error of the next
+        // order. The energy tests check that the bounds are good enough.
         const double level = (2.0 * centre + corner_mean) / 3.0;
         mean = mean_smoothstep(level - 0.5 * (p + q), p, q);
     }

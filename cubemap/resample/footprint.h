@@ -1,4 +1,5 @@
-// The patches of the sphere that the pixels of a Projection stand for, as spherical polygons.
+// Footprints: the parts of the sphere that the pixels of a Projection stand for, as spherical
+// polygons.
 #pragma once
 
 #include <array>
@@ -15,17 +16,19 @@
 
 namespace relumine::cubemap {
 
-/// Finds a pixel's patch. Keeps its buffers; one per thread.
+/// Finds a pixel's footprint.
 ///
-/// A patch comes in pieces well within a half-sphere. Its edges, curves on the sphere, become
-/// chords that are no further off than 1e-4 of a pixel; neighbours share them, so patches tile the
-/// sphere. Pixels on the rim of a disc keep the part inside, and the rim itself shrinks to the one
-/// direction that it shows.
-class PatchPieces {
+/// A footprint comes in pieces well within a half-sphere. Its edges are curves on the sphere;
+/// chords replace them with an error below 1e-4 of a pixel. Neighbours share these chords, so
+/// footprints tile the sphere. A pixel on the rim of a disc keeps its part inside the disc. The rim
+/// itself shrinks to the one direction that it shows.
+///
+/// Threads: use one object per thread; it keeps its buffers.
+class ProjectionFootprints {
 public:
-    PatchPieces(const Projection& projection, std::uint32_t width, std::uint32_t height);
+    ProjectionFootprints(const Projection& projection, std::uint32_t width, std::uint32_t height);
 
-    /// True if the whole pixel shows something.
+    /// Returns true if the whole pixel shows a part of the sphere.
     [[nodiscard]] bool is_whole(std::uint32_t x, std::uint32_t y) const;
 
     /// Calls `visit(std::span<const glm::dvec3>)` with the unit corners of each piece, clockwise
@@ -42,17 +45,17 @@ private:
     struct Rectangle {
         glm::dvec2 low, high;
     };
-    /// A corner; `along_rim` if the way to the next one is the disc's rim.
+    /// A corner of a piece. `along_rim`: the way to the next corner is the disc's rim.
     struct Corner {
         glm::dvec2 point;
         bool along_rim;
         glm::dvec3 direction = glm::dvec3(0.0);
     };
 
-    /// The corners of the rectangle's part that shows something, into corners_ without their
-    /// directions. False where there is none.
+    /// Puts the corners of the rectangle's part that shows something into corners_, without
+    /// directions. Returns false if there is no such part.
     bool clip(const Rectangle& rectangle);
-    /// True if the piece of corners_ is small enough for one polygon.
+    /// Returns true if the piece of corners_ is small enough for one polygon.
     [[nodiscard]] bool is_small(const Rectangle& rectangle) const;
     void make_outline();
     void add_edge(const glm::dvec2& from, const glm::dvec3& from_direction, const glm::dvec2& to,
@@ -80,14 +83,14 @@ private:
     const Projection& projection_;
     double width_, height_;
     bool is_disc_, is_mirrored_;
-    /// Distance of chords from edges
+    /// Largest distance between a chord and its edge.
     double tolerance_;
     std::vector<Corner> corners_;
     std::vector<glm::dvec3> outline_;
 };
 
-/// Solid angle of a spherical polygon within a half-sphere, positive if clockwise seen from the
-/// middle of the sphere.
+/// Returns the solid angle of a spherical polygon within a half-sphere. The value is positive if
+/// the corners run clockwise seen from the middle of the sphere.
 [[nodiscard]] double solid_angle(std::span<const glm::dvec3> corners);
 
 } // namespace relumine::cubemap

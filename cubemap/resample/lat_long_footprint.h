@@ -1,4 +1,5 @@
-// The patches of the sphere that the pixels of a lat-long stand for, as spherical polygons.
+// Footprints: the parts of the sphere that the pixels of a lat-long stand for, as spherical
+// polygons.
 #pragma once
 
 #include <cmath>
@@ -13,11 +14,12 @@
 
 namespace relumine::cubemap {
 
-/// Finds a pixel's patch, whose parallels are replaced by short arcs of great circles. Keeps its
-/// buffers; one per thread.
-class LatLongPatches {
+/// Finds a pixel's footprint. Short arcs of great circles replace the parallels.
+///
+/// Threads: use one object per thread; it keeps its buffers.
+class LatLongFootprints {
 public:
-    explicit LatLongPatches(const ImageShape& shape)
+    explicit LatLongFootprints(const ImageShape& shape)
         : columns_(cell_borders(shape.width, shape.sampling)),
           rows_(cell_borders(shape.height, shape.sampling)) {}
 
@@ -27,9 +29,9 @@ public:
     void visit(std::uint32_t x, std::uint32_t y, const Visit& visit) {
         constexpr double Pi = std::numbers::pi;
         // An arc of angle d in place of a parallel moves less than d^2 / 12 of a pixel's area: 1e-6
-        // at this number per turn.
+        // at this number of arcs per turn.
         constexpr double ArcsPerTurn = 1536.0;
-        // Patches beyond this are taken in parts, which keeps them well within a half-sphere.
+        // Larger footprints are divided, so every part lies well within a half-sphere.
         constexpr double LargestPart = Pi / 8.0;
         const double top = Pi * rows_[y], bottom = Pi * rows_[y + 1];
         const double left = 2.0 * Pi * (0.5 - columns_[x]),

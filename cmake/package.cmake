@@ -1,0 +1,97 @@
+# What `cmake --install` and `cpack -G DEB` make beside the libraries and the program, whose targets install
+# themselves: the CMake package that find_package(relumine) reads, the licence, the Debian packages.
+#
+# Component runtime:     the program, shared libraries, the licence.
+# Component development: headers, static libraries, the CMake package.
+include(CMakePackageConfigHelpers)
+include(GNUInstallDirs)
+
+# Static libraries need the libraries that they were compiled with: what CMake finds them with, and their Debian
+# packages. A library that is headers only stands in $<BUILD_INTERFACE:...> where it is linked, and is not needed.
+set(relumine_find_TBB_tbb "find_dependency(TBB)" libtbb-dev)
+set(relumine_find_fmt_fmt "find_dependency(fmt)" libfmt-dev)
+set(relumine_find_embree "find_dependency(embree 3)" libembree-dev)
+set(relumine_find_OpenEXR_OpenEXR "find_dependency(OpenEXR)" libopenexr-dev)
+set(relumine_find_JPEG_JPEG "find_dependency(JPEG)" libjpeg-dev)
+set(relumine_find_PkgConfig_hwy "relumine_find_module(hwy)" libhwy-dev pkg-config)
+set(relumine_find_PkgConfig_zstd "relumine_find_module(zstd)" libzstd-dev pkg-config)
+set(relumine_find_PkgConfig_xxhash "relumine_find_module(xxhash)" libxxhash-dev pkg-config)
+set(RELUMINE_FIND_LINKED "")
+set(development_depends libglm-dev)
+if(NOT BUILD_SHARED_LIBS)
+    set(linked "")
+    get_property(libraries GLOBAL PROPERTY RELUMINE_LIBRARIES)
+    foreach(library IN LISTS libraries)
+        get_target_property(of_library relumine_${library} LINK_LIBRARIES)
+        list(APPEND linked ${of_library})
+    endforeach()
+    list(FILTER linked EXCLUDE REGEX "BUILD_INTERFACE|^relumine::|^glm::glm$")
+    list(REMOVE_DUPLICATES linked)
+    foreach(target IN LISTS linked)
+        string(REPLACE "::" "_" key ${target})
+        if(NOT relumine_find_${key})
+            message(FATAL_ERROR "cmake/package.cmake: expected a line relumine_find_${key} for ${target}")
+        endif()
+        list(POP_FRONT relumine_find_${key} find)
+        string(APPEND RELUMINE_FIND_LINKED "${find}\n")
+        list(APPEND development_depends ${relumine_find_${key}})
+    endforeach()
+    list(REMOVE_DUPLICATES development_depends)
+endif()
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/relumine)
+configure_package_config_file(cmake/relumineConfig.cmake.in ${PROJECT_BINARY_DIR}/relumineConfig.cmake
+    INSTALL_DESTINATION ${package_dir} NO_SET_AND_CHECK_MACRO)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/relumineConfig.cmake ${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake
+    DESTINATION ${package_dir} COMPONENT development)
+install(EXPORT relumine NAMESPACE relumine:: FILE relumineTargets.cmake DESTINATION ${package_dir} COMPONENT development)
+foreach(component runtime development)
+    set(name relumine)
+    if(component STREQUAL development)
+        set(name relumine-dev)
+    endif()
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name}
+        RENAME copyright COMPONENT ${component})
+endforeach()
+
+if(NOT PROJECT_IS_TOP_LEVEL)
+    return()
+endif()
+
+# Two Debian packages: relumine_VERSION_ARCHITECTURE.deb is the program, relumine-dev_... the library for programs of
+# one's own. dpkg-shlibdeps finds what programs and shared libraries depend on.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME relumine)
+set(CPACK_PACKAGE_CONTACT "Relumine developers <developers@relumine.invalid>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL development)
+if(RELUMINE_BUILD_APP OR BUILD_SHARED_LIBS)
+    list(PREPEND CPACK_COMPONENTS_ALL runtime)
+endif()
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME relumine)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION graphics)
+set(CPACK_COMPONENT_RUNTIME_DESCRIPTION
+    "Relights 3D assets under measured environment light
+A precompute finds out how much light from every direction reaches each vertex of
+a mesh, blockers included. After that any HDR environment lights the mesh in
+milliseconds, all shadows in place.")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME relumine-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+    "Relights 3D assets under measured environment light (library)
+Headers, libraries and a CMake package: find_package(relumine).")
+if(BUILD_SHARED_LIBS)
+    list(APPEND development_depends "relumine (= ${PROJECT_VERSION})")
+    set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+    get_property(folders GLOBAL PROPERTY RELUMINE_LIBRARIES)
+    list(TRANSFORM folders PREPEND ${PROJECT_BINARY_DIR}/)
+    set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${folders})
+endif()
+list(JOIN development_depends ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+include(CPack)

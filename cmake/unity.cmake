@@ -1,0 +1,44 @@
+# Fewer, larger translation units: the sources of a room (a folder of sources) are compiled together, at most
+# RELUMINE_UNITY_SIZE at a time, because most of a small file's time goes into headers that its neighbours include, too.
+# So names in unnamed namespaces must differ within a room.
+#
+# A source stays alone if its text is compiled several times (Highway's foreach_target.h), if it holds the code of a
+# header-only library or includes one that is dear (CLI11), or if it has compile options of its own.
+option(RELUMINE_UNITY "Compile the sources of a folder together" ON)
+set(RELUMINE_UNITY_SIZE 12 CACHE STRING "How many sources are compiled together at most")
+mark_as_advanced(RELUMINE_UNITY_SIZE)
+
+function(relumine_compile_together target)
+    if(NOT RELUMINE_UNITY)
+        return()
+    endif()
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+    # g++ warns of types in unnamed namespaces that a class holds, as if the class stood in a header.
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    get_target_property(sources ${target} SOURCES)
+    list(FILTER sources INCLUDE REGEX "\\.cpp$")
+    set(rooms "")
+    foreach(source ${sources})
+        get_filename_component(path ${source} ABSOLUTE)
+        file(STRINGS ${path} alone REGEX "hwy/foreach_target.h|^#define STB_.*_IMPLEMENTATION|CLI/CLI.hpp" LIMIT_COUNT 1)
+        if(alone)
+            continue()
+        endif()
+        get_filename_component(room ${source} DIRECTORY)
+        string(MAKE_C_IDENTIFIER "sources_${room}" room)
+        list(APPEND rooms ${room})
+        list(APPEND ${room} ${source})
+    endforeach()
+    list(REMOVE_DUPLICATES rooms)
+    foreach(room ${rooms})
+        # Groups of equal size, so that no processor waits for a large one at the end.
+        list(LENGTH ${room} size)
+        math(EXPR num_groups "(${size} + ${RELUMINE_UNITY_SIZE} - 1) / ${RELUMINE_UNITY_SIZE}")
+        set(index 0)
+        foreach(source ${${room}})
+            math(EXPR group "${index} * ${num_groups} / ${size}")
+            set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${room}_${group}")
+            math(EXPR index "${index} + 1")
+        endforeach()
+    endforeach()
+endfunction()

@@ -1,0 +1,17 @@
+// A scene from the sections of its file.
+#pragma once
+
+#include <filesystem>
+
+#include "prt/scene/scene_file.h"
+#include "prt/scene/section_file.h"
+
+namespace relumine::prt {
+
+/// Does what load_scene() does, for a file's sections as read_sections() gives them.
+///
+/// path:   for messages only.
+/// Throws: as load_scene() does.
+[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
+
+} // namespace relumine::prt

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# Builds the consumer against an installed Relumine and runs it: run.sh prefix|deb BUILD WORK [CMAKE_ARGS...]
+#   prefix  what `cmake --install` puts into a folder
+#   deb     the Debian packages that cpack makes, unpacked
+# BUILD is a finished build of Relumine, WORK a folder to be made anew. Fails where the consumer includes a header
+# that is not Relumine's, GLM's, the compiler's or the C library's.
+set -euo pipefail
+kind=$1 build=$2 work=$3
+shift 3
+source=$(cd "$(dirname "${BASH_SOURCE[0]}")/consumer" && pwd)
+
+fail() {
+    echo "$*" >&2
+    exit 1
+}
+
+rm -rf "$work"
+mkdir -p "$work"
+case $kind in
+prefix)
+    root=$work/prefix
+    cmake --install "$build" --prefix "$root" >"$work/install.log"
+    ;;
+deb)
+    root=$work/root/usr
+    cpack -G DEB --config "$build/CPackConfig.cmake" -B "$work/deb" >"$work/cpack.log" 2>&1 ||
+        { cat "$work/cpack.log" >&2; exit 1; }
+    for package in "$work"/deb/*.deb; do
+        dpkg-deb -x "$package" "$work/root"
+        name=$(dpkg-deb -f "$package" Package)
+        depends=$(dpkg-deb -f "$package" Depends)
+        echo "$(basename "$package") depends on $depends"
+        [ -s "$root/share/doc/$name/copyright" ] || fail "$package: no licence"
+        # The program needs libraries to run, and nothing to compile with; compiling with ours needs GLM.
+        case $name in
+        relumine) [[ "$depends" != *-dev* && "$depends" == *libembree3* ]] || fail "$package: wrong dependencies" ;;
+        relumine-dev) [[ ", $depends," == *", libglm-dev,"* ]] || fail "$package: no libglm-dev" ;;
+        *) fail "$package: unknown" ;;
+        esac
+    done
+    ;;
+*)
+    fail "expected prefix or deb, got '$kind'"
+    ;;
+esac
+
+# The program finds its libraries.
+if [ -e "$root/bin/relumine" ]; then
+    "$root/bin/relumine" --version
+fi
+
+cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$root" "$@" >"$work/configure.log" 2>&1 ||
+    { cat "$work/configure.log" >&2; exit 1; }
+cmake --build "$work/build" >"$work/build.log" || { cat "$work/build.log" >&2; exit 1; }
+"$work/build/consumer" "$source/octahedron.off"
+
+# All headers that the compiler read: Relumine's lie under the root, the others belong to Debian packages.
+headers=$(cd "$work/build" && ninja -t deps | sed -n 's/^    //p' | xargs realpath | sort -u)
+grep -q "^$(realpath "$root")/include/relumine/" <<<"$headers" || fail "no header of Relumine was read"
+others=$(grep -v -e "^$(realpath "$root")/include/relumine/" -e "^$source/" <<<"$headers")
+packages=$(xargs dpkg-query -S <<<"$others" | sed 's/:.*//' | sort -u)
+echo "headers of" $packages
+wrong=$(grep -vE '^(libglm-dev|libc6-dev|linux-libc-dev|libstdc\+\+-[0-9]+-dev|libgcc-[0-9]+-dev|libclang-common-[0-9]+-dev)$' <<<"$packages" || true)
+[ -z "$wrong" ] || fail "the consumer read headers of" $wrong
