@@ -59,6 +59,6 @@ headers=$(cd "$work/build" && ninja -t deps | sed -n 's/^    //p' | xargs realpa
 grep -q "^$(realpath "$root")/include/relumine/" <<<"$headers" || fail "no header of Relumine was read"
 others=$(grep -v -e "^$(realpath "$root")/include/relumine/" -e "^$source/" <<<"$headers")
 packages=$(xargs dpkg-query -S <<<"$others" | sed 's/:.*//' | sort -u)
-echo "headers of" $packages
+echo "headers of ${packages//$'\n'/ }"
 wrong=$(grep -vE '^(libglm-dev|libc6-dev|linux-libc-dev|libstdc\+\+-[0-9]+-dev|libgcc-[0-9]+-dev|libclang-common-[0-9]+-dev)$' <<<"$packages" || true)
-[ -z "$wrong" ] || fail "the consumer read headers of" $wrong
+[ -z "$wrong" ] || fail "the consumer read headers of ${wrong//$'\n'/ }"
