@@ -15,6 +15,7 @@
 
 #include "data_gen/sequences.h"
 #include "lights/light_clusters.h"
+#include "lights/luminance.h"
 #include "lights/place_lights.h"
 #include "relight/flicker.h"
 #include "relight/shadow_rays.h"

@@ -22,6 +22,7 @@
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
+#include "prt/scene/section_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/app/small_files.h"
 #include "tests/fuzz/section_names.h"

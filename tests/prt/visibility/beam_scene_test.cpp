@@ -76,7 +76,7 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
     Tally tally;
     for (int round = 0; round < rounds; ++round) {
         const std::size_t size =
-            std::min<std::size_t>(origins.size(), 1 + random() % ReceiverBlock::MaxSize);
+            std::min<std::size_t>(origins.size(), 1 + random() % ReceiverGroup::MaxSize);
         const std::size_t first = random() % (origins.size() - size + 1);
         const glm::vec3 hint = round % 5 == 0 ? glm::vec3(0.0f) : normals[first];
         const DirectionPatch patch = any_patch(random);
@@ -225,7 +225,7 @@ TEST(BeamScene, AsksTheRayTracerOnlyWhereItMust) {
                                                      static_cast<std::ptrdiff_t>(random() % 900),
                                                  mesh.positions.begin() + 1000);
             std::vector<glm::vec3> lifted;
-            for (std::size_t i = 0; i < std::min(origins.size(), ReceiverBlock::MaxSize); ++i)
+            for (std::size_t i = 0; i < std::min(origins.size(), ReceiverGroup::MaxSize); ++i)
                 lifted.push_back(origins[i] + glm::vec3(0.0137f, 0.001f, 0.0071f)); // off the edges
             const DirectionPatch patch =
                 lattice_patch({.face = cubemap::Face::PositiveY,
@@ -253,7 +253,7 @@ TEST(BeamScene, AsksTheRayTracerRarelyOnFineMeshes) {
     const BeamScene beams(fine, counting, 0);
     std::mt19937 random(14);
     std::vector<glm::vec3> origins;
-    for (std::size_t i = 0; i < ReceiverBlock::MaxSize; ++i)
+    for (std::size_t i = 0; i < ReceiverGroup::MaxSize; ++i)
         origins.push_back(0.05f * scenes::random_direction(random));
     std::size_t num_blocked = 0;
     for (int round = 0; round < 20; ++round) {
