@@ -13,9 +13,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "cubemap/luminance.h"
 #include "data_gen/sequences.h"
 #include "lights/light_clusters.h"
+#include "lights/luminance.h"
 #include "lights/place_lights.h"
 #include "relight/flicker.h"
 #include "relight/shadow_rays.h"
@@ -186,7 +186,7 @@ private:
                                                      map, {.bias = lit_.scene().settings.bias}));
             images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
-                luminance += cubemap::luminance(value);
+                luminance += lights::luminance(value);
             const RelightTimes times = lit_.light(map);
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
             relit.emplace_back();
