@@ -52,7 +52,7 @@ std::vector<std::int64_t> numbers(const std::vector<FrameFile>& frames) {
 }
 
 template<typename Function>
-std::string message_of(const Function& function) {
+std::string refusal_of(const Function& function) {
     try {
         function();
     } catch (const std::runtime_error& error) {
@@ -117,16 +117,16 @@ TEST_F(Frames, APatternTakesItsFramesInOrder) {
 TEST_F(Frames, GapsAreToldInOneLine) {
     for (const int number : {1, 2, 5, 6, 9})
         touch("f." + std::to_string(number) + ".exr");
-    EXPECT_EQ(message_of([&] { static_cast<void>(find_frames(in("f.%d.exr"))); }),
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(find_frames(in("f.%d.exr"))); }),
               in("f.%d.exr") + ": expected frames 1 to 9 without a gap, got none for 3-4, 7-8");
-    EXPECT_THAT(message_of([&] {
+    EXPECT_THAT(refusal_of([&] {
                     static_cast<void>(find_frames(in("f.%d.exr"), FrameRange{5, 8}));
                 }),
                 HasSubstr("none for 7-8"));
     EXPECT_THAT(numbers(find_frames(in("f.%d.exr"), FrameRange{1, 9, 4})), ElementsAre(1, 5, 9));
-    EXPECT_THAT(message_of([&] { static_cast<void>(find_frames(in("g.%d.exr"))); }),
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(find_frames(in("g.%d.exr"))); }),
                 HasSubstr("no file of such a name"));
-    EXPECT_THAT(message_of([&] { static_cast<void>(find_frames(in("no/g.%d.exr"))); }),
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(find_frames(in("no/g.%d.exr"))); }),
                 HasSubstr("cannot read the folder"));
 }
 
@@ -184,7 +184,7 @@ TEST_F(Frames, SizesFromHeadersAreThoseOfTheImages) {
     EXPECT_THROW(static_cast<void>(read_image_size(in("text.exr"))), std::runtime_error);
     EXPECT_THROW(static_cast<void>(read_image_size(in("missing.exr"))), std::runtime_error);
     std::ofstream(in("empty.exr"));
-    EXPECT_THAT(message_of([&] { static_cast<void>(read_image_size(in("empty.exr"))); }),
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(read_image_size(in("empty.exr"))); }),
                 HasSubstr("an empty file"));
 }
 
@@ -204,7 +204,7 @@ TEST_F(Frames, AnotherSizeIsRefusedBeforeAnyFrameIsLoaded) {
     frame("f.0.exr", 1.0f);
     frame("f.1.exr", 1.0f, 3);
     int num_loaded = 0;
-    EXPECT_EQ(message_of([&] {
+    EXPECT_EQ(refusal_of([&] {
                   const FrameSequence sequence(find_frames(in("f.%d.exr")),
                                                [&](const fs::path& path) {
                                                    ++num_loaded;
@@ -221,7 +221,7 @@ TEST_F(Frames, ADamagedFrameIsToldWhenItsTurnComes) {
     fs::resize_file(in("f.1.exr"), fs::file_size(in("f.1.exr")) - 30);
     FrameSequence sequence(find_frames(in("f.%d.exr")));
     static_cast<void>(sequence.load(0)); // begins to load the damaged one
-    EXPECT_THAT(message_of([&] { static_cast<void>(sequence.load(1)); }), HasSubstr(in("f.1.exr")));
+    EXPECT_THAT(refusal_of([&] { static_cast<void>(sequence.load(1)); }), HasSubstr(in("f.1.exr")));
     EXPECT_EQ(sequence.load(2).width, 96u); // and nothing of it is left
 }
 
@@ -279,9 +279,9 @@ TEST(ReadAhead, ThrowsForTheOneThatWasAskedForAlone) {
     });
     EXPECT_EQ(ahead.get(0), 0u);
     EXPECT_EQ(ahead.get(2), 2u); // 1 had been begun
-    EXPECT_EQ(message_of([&] { static_cast<void>(ahead.get(1)); }), "one");
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(ahead.get(1)); }), "one");
     EXPECT_EQ(ahead.get(0), 0u);
-    EXPECT_EQ(message_of([&] { static_cast<void>(ahead.get(1)); }), "one"); // made ahead
+    EXPECT_EQ(refusal_of([&] { static_cast<void>(ahead.get(1)); }), "one"); // made ahead
     EXPECT_EQ(ahead.get(3), 3u);
 }
 
