@@ -98,10 +98,10 @@ TEST_F(EnvironmentInfo, SeamsOutOfLine) {
 }
 
 TEST_F(EnvironmentInfo, BadPixelsDoNotSpoilTheFigures) {
-    constexpr float NaN = std::numeric_limits<float>::quiet_NaN();
+    constexpr float NotANumber = std::numeric_limits<float>::quiet_NaN();
     write("bad.exr", exr_file(128, 64, [](std::uint32_t x, std::uint32_t y) {
               if (x == 3 && y == 5)
-                  return Rgb{NaN, 1.0f, 1.0f};
+                  return Rgb{NotANumber, 1.0f, 1.0f};
               return sky_with_sun(96, 15, 4000.0f)(x, y);
           }));
     const nlohmann::json bad = info("bad.exr");
