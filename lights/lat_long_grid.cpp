@@ -65,7 +65,8 @@ LatLongGrid::LatLongGrid(const cubemap::EnvironmentImage& image) : pixels_(image
     }
     const std::vector<double> across = cubemap::cell_borders(image.width, image.sampling);
     for (std::uint32_t x = 0; x < image.width; ++x) {
-        const double left = 2.0 * std::numbers::pi * (0.5 - across[x]); // the left edge is longitude +pi
+        const double left =
+            2.0 * std::numbers::pi * (0.5 - across[x]); // the left edge is longitude +pi
         const double right = 2.0 * std::numbers::pi * (0.5 - across[x + 1]);
         const double half = 0.5 * (left - right);
         const double middle = 0.5 * (left + right);

@@ -127,8 +127,8 @@ Sun measure(const Pixels& image, const CubeMap& map, const BrightSpot& spot, dou
         const glm::vec3& radiance = image.radiance[index];
         const glm::dvec3 around = sky.radiance(place.direction);
         const double value = luminance(glm::dvec3(radiance)), sky_value = luminance(around);
-        if (value <=
-            sky_value + std::max(SkyPart * sky_value, SunPeakPart * (spot.peak_luminance - sky_value)))
+        if (value <= sky_value + std::max(SkyPart * sky_value,
+                                          SunPeakPart * (spot.peak_luminance - sky_value)))
             return;
         // In a channel where the sky is brighter, the pixel stays as it is. So the sun has no
         // negative light.
