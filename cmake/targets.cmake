@@ -71,3 +71,8 @@ function(relumine_library name)
     endif()
     relumine_compile_together(relumine_${name})
 endfunction()
+
+# Code that parses, calls and writes gains nothing from what is costly to compile. Only folders with inner loops keep -O3.
+function(relumine_optimise_less target level)
+    target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
+endfunction()
