@@ -45,7 +45,7 @@ std::optional<long double> long_number(const std::string& text) {
 }
 
 template<typename T>
-std::optional<T> whole_number(const std::string& text) {
+std::optional<T> whole_number(std::string_view text) {
     T value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size())
@@ -393,7 +393,7 @@ std::optional<double> parse_number(const std::string& text) {
     return number ? std::optional(static_cast<double>(*number)) : std::nullopt;
 }
 
-std::optional<std::uint32_t> parse_count(const std::string& text) {
+std::optional<std::uint32_t> parse_count(std::string_view text) {
     return whole_number<std::uint32_t>(text);
 }
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace relumine::app {
@@ -141,6 +142,6 @@ private:
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);
 
 /// Decimal digits and nothing else, not above 2^32 - 1. None for other text.
-[[nodiscard]] std::optional<std::uint32_t> parse_count(const std::string& text);
+[[nodiscard]] std::optional<std::uint32_t> parse_count(std::string_view text);
 
 } // namespace relumine::app

@@ -82,7 +82,7 @@ std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
         return std::nullopt;
     if (const auto size = parse_size_text(text))
         return cubemap::ImageSize{size->width, size->height};
-    const auto width = parse_side(text);
+    const auto width = parse_count(text);
     if (!width)
         throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
     return cubemap::ImageSize{*width, 0};

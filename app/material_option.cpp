@@ -24,8 +24,8 @@ struct Model {
     /// Empty: none
     std::string_view specular;
     /// Empty: none
-    std::string_view shape;
-    float max_shape;
+    std::string_view width;
+    float max_width;
 };
 constexpr std::array<Model, 3> Models = {{
     {"ggx", prt::Highlight::Ggx, "albedo", "f0", "roughness", 1.0f},
@@ -76,7 +76,7 @@ const Model& Parser::take_model(std::string_view& rest, MaterialOption& result) 
 /// key=number,number,number,key=number: words without = belong to the key before them.
 void Parser::read_values(std::string_view rest, const Model& model) {
     std::vector<std::string_view> keys = {model.albedo};
-    for (const std::string_view key : {model.specular, model.shape})
+    for (const std::string_view key : {model.specular, model.width})
         if (!key.empty())
             keys.push_back(key);
     std::vector<std::string_view>* current = nullptr;
@@ -136,11 +136,11 @@ MaterialOption Parser::parse() {
     result.albedo = color(model.albedo);
     if (!model.specular.empty())
         result.specular = color(model.specular);
-    if (!model.shape.empty()) {
-        const std::vector<float> shape = numbers(model.shape, model.max_shape);
-        if (shape.size() != 1)
-            fail(fmt::format("one number of {} of {}", model.shape, model.name), text_);
-        result.shape = shape[0];
+    if (!model.width.empty()) {
+        const std::vector<float> width = numbers(model.width, model.max_width);
+        if (width.size() != 1)
+            fail(fmt::format("one number of {} of {}", model.width, model.name), text_);
+        result.roughness_or_exponent = width[0];
     }
     if (model.highlight == prt::Highlight::BlinnPhong) {
         if (!result.specular)
@@ -165,7 +165,7 @@ prt::Surface MaterialOption::applied_to(const prt::Surface& surface) const {
     return {.albedo = albedo.value_or(surface.albedo),
             .specular = specular_color,
             .highlight = highlight,
-            .shape = shape};
+            .roughness_or_exponent = roughness_or_exponent};
 }
 
 MaterialOption parse_material(const std::string& text, const std::string& option) {

@@ -19,7 +19,7 @@ struct MaterialOption {
     /// Empty: the whole mesh
     std::string group = {};
     prt::Highlight highlight = prt::Highlight::None;
-    float shape = 1.0f;
+    float roughness_or_exponent = 1.0f;
     /// `albedo` or `kd`
     std::optional<glm::vec3> albedo = {};
     /// `f0` or `ks`; without it 0.04 where the file has no F0 of its own

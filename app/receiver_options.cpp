@@ -45,7 +45,7 @@ std::variant<Vertices, Pixels, Texels> ReceiverOptions::receivers() const {
     const bool has_samples = second_colon != std::string_view::npos;
     const auto size = parse_size_text(text.substr(colon + 1, second_colon - colon - 1));
     const auto samples =
-        has_samples ? parse_side(text.substr(second_colon + 1)) : std::optional<std::uint32_t>(1);
+        has_samples ? parse_count(text.substr(second_colon + 1)) : std::optional<std::uint32_t>(1);
     if (!size || !samples || (has_samples && !are_pixels))
         refuse();
     const auto is_size = [](std::uint32_t side) {

@@ -13,9 +13,6 @@ struct SizeText {
     bool operator==(const SizeText&) const = default;
 };
 
-/// Reads one side: decimal digits and nothing else, at most 2^32 - 1.
-[[nodiscard]] std::optional<std::uint32_t> parse_side(std::string_view text);
-
 /// Reads WxH: two sides with a small x between them. Sides of 0 are the caller's to refuse.
 [[nodiscard]] std::optional<SizeText> parse_size_text(std::string_view text);
 

@@ -64,14 +64,15 @@ Lobes<float> evaluate_lobes(const Surface& surface, const glm::vec3& normal,
     const glm::vec3 across = glm::cross(normal, half);
     const float sin2 = std::min(glm::dot(across, across) / length2, 1.0f);
     if (surface.highlight == Highlight::BlinnPhong) {
-        lobes.specular = blinn_phong_norm(surface.shape) *
-                         cosine_power(sin2, blinn_phong_exponent(surface.shape)) * n_w;
+        lobes.specular = blinn_phong_norm(surface.roughness_or_exponent) *
+                         cosine_power(sin2, blinn_phong_exponent(surface.roughness_or_exponent)) *
+                         n_w;
         return lobes;
     }
     const float v_h = std::min(0.5f * std::sqrt(length2), 1.0f);
     const float squared = (1.0f - v_h) * (1.0f - v_h);
     const float c = squared * squared * (1.0f - v_h);
-    lobes.specular = ggx(ggx_alpha(surface.shape), sin2, n_w, n_v);
+    lobes.specular = ggx(ggx_alpha(surface.roughness_or_exponent), sin2, n_w, n_v);
     lobes.diffuse_grazing = c * lobes.diffuse;
     lobes.specular_grazing = c * lobes.specular;
     return lobes;

@@ -105,9 +105,9 @@ LobeCuts joined(std::vector<BlockEntries>&& blocks) {
 float narrowness_of(const Surface& surface) {
     switch (surface.highlight) {
     case Highlight::Ggx:
-        return 2.0f * ggx_alpha(surface.shape);
+        return 2.0f * ggx_alpha(surface.roughness_or_exponent);
     case Highlight::BlinnPhong:
-        return 2.0f * std::sqrt(2.0f / (surface.shape + 2.0f));
+        return 2.0f * std::sqrt(2.0f / (surface.roughness_or_exponent + 2.0f));
     case Highlight::None:
         break;
     }

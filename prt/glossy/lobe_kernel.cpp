@@ -166,12 +166,12 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
     const std::uint32_t bit = 1u << lane;
     if (surface.highlight == Highlight::Ggx) {
         ggx |= bit;
-        const float alpha = ggx_alpha(surface.shape);
+        const float alpha = ggx_alpha(surface.roughness_or_exponent);
         alpha_squared[lane] = alpha * alpha;
     } else if (surface.highlight == Highlight::BlinnPhong) {
         blinn_phong |= bit;
-        exponent[lane] = blinn_phong_exponent(surface.shape);
-        factor[lane] = blinn_phong_norm(surface.shape);
+        exponent[lane] = blinn_phong_exponent(surface.roughness_or_exponent);
+        factor[lane] = blinn_phong_norm(surface.roughness_or_exponent);
     }
 }
 

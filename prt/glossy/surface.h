@@ -17,17 +17,17 @@ enum class Highlight : std::uint8_t {
     BlinnPhong,
 };
 
-/// Reflection of one receiver. Colours may change after a precompute; the kind and shape of the
+/// Reflection of one receiver. Colours may change after a precompute; the kind and width of the
 /// highlight may not.
 struct Surface {
     /// Diffuse reflectance, 0..1.
     glm::vec3 albedo{1.0f};
     /// GGX: F0, the reflectance at normal incidence. Blinn-Phong: Ks.
     glm::vec3 specular{0.0f};
-    /// Gives `shape` its meaning.
+    /// Gives `roughness_or_exponent` its meaning.
     Highlight highlight = Highlight::None;
     /// GGX: glTF's roughness, 0..1 (alpha is its square). Blinn-Phong: the exponent, >= 0.
-    float shape = 1.0f;
+    float roughness_or_exponent = 1.0f;
 
     bool operator==(const Surface&) const = default;
 };

@@ -51,7 +51,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
         return {.albedo = base,
                 .specular = material.specular,
                 .highlight = Highlight::BlinnPhong,
-                .shape = material.exponent};
+                .roughness_or_exponent = material.exponent};
     }
     float metallic = material.metallic, roughness = material.roughness;
     if (const auto& slot = material.metallic_roughness_texture) {
@@ -62,7 +62,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     return {.albedo = base * (1.0f - metallic),
             .specular = glm::mix(glm::vec3(0.04f), base, metallic),
             .highlight = Highlight::Ggx,
-            .shape = roughness};
+            .roughness_or_exponent = roughness};
 }
 
 std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,

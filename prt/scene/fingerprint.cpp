@@ -34,7 +34,7 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
     numbers.reserve(surfaces.size() * 2);
     for (const Surface& surface : surfaces) {
         numbers.push_back(static_cast<float>(surface.highlight));
-        numbers.push_back(surface.shape);
+        numbers.push_back(surface.roughness_or_exponent);
     }
     return numbers;
 }

@@ -99,7 +99,7 @@ void add_surfaces(Sections& sections, const std::vector<Surface>& surfaces) {
         albedo.push_back(surface.albedo);
         specular.push_back(surface.specular);
         highlight.push_back(static_cast<std::uint8_t>(surface.highlight));
-        shape.push_back(surface.shape);
+        shape.push_back(surface.roughness_or_exponent);
     }
     sections["r_albedo"] = bytes_of(albedo);
     sections["r_specular"] = bytes_of(specular);
@@ -137,7 +137,7 @@ std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t coun
         surfaces[i] = {.albedo = albedo[i],
                        .specular = specular[i],
                        .highlight = static_cast<Highlight>(highlight[i]),
-                       .shape = shape[i]};
+                       .roughness_or_exponent = shape[i]};
     return surfaces;
 }
 

@@ -24,19 +24,19 @@ const prt::Surface Plain = {.albedo = glm::vec3(0.25f)};
 const prt::Surface Gold = {.albedo = glm::vec3(0.0f),
                            .specular = {1.0f, 0.75f, 0.25f},
                            .highlight = prt::Highlight::Ggx,
-                           .shape = 0.9f};
+                           .roughness_or_exponent = 0.9f};
 
 TEST(MaterialOption, EachModel) {
     EXPECT_EQ(parse_material("ggx:roughness=0.3,albedo=0.5,0.25,0.125,f0=0.04").applied_to(Plain),
               (prt::Surface{.albedo = {0.5f, 0.25f, 0.125f},
                             .specular = glm::vec3(0.04f),
                             .highlight = prt::Highlight::Ggx,
-                            .shape = 0.3f}));
+                            .roughness_or_exponent = 0.3f}));
     EXPECT_EQ(parse_material("blinn:exponent=50,kd=0.5,0.25,0.5,ks=0.5").applied_to(Gold),
               (prt::Surface{.albedo = {0.5f, 0.25f, 0.5f},
                             .specular = glm::vec3(0.5f),
                             .highlight = prt::Highlight::BlinnPhong,
-                            .shape = 50.0f}));
+                            .roughness_or_exponent = 50.0f}));
     EXPECT_EQ(parse_material("lambert:albedo=0.5").applied_to(Gold),
               (prt::Surface{.albedo = glm::vec3(0.5f)}));
 }
@@ -45,7 +45,7 @@ TEST(MaterialOption, WhatIsLeftOutIsTheFiles) {
     EXPECT_EQ(parse_material("lambert").applied_to(Plain), Plain);
     const prt::Surface gold = parse_material("ggx:roughness=0.1").applied_to(Gold);
     EXPECT_EQ(gold.specular, Gold.specular);
-    EXPECT_EQ(gold.shape, 0.1f);
+    EXPECT_EQ(gold.roughness_or_exponent, 0.1f);
     const prt::Surface plastic = parse_material("ggx:roughness=0.1").applied_to(Plain);
     EXPECT_EQ(plastic.albedo, Plain.albedo);
     EXPECT_EQ(plastic.specular, glm::vec3(0.04f));
@@ -67,7 +67,7 @@ TEST(MaterialOption, Groups) {
         {parse_material("lambert:albedo=1"), parse_material("a=b:c=ggx:roughness=0.5,albedo=0.5")},
         mesh);
     EXPECT_EQ(both(mesh, 0, Gold).albedo, glm::vec3(1.0f));
-    EXPECT_EQ(both(mesh, 1, Gold).shape, 0.5f);
+    EXPECT_EQ(both(mesh, 1, Gold).roughness_or_exponent, 0.5f);
     const auto unknown = [&mesh] {
         static_cast<void>(surface_override({parse_material("lid=lambert")}, mesh));
     };

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "app/command_line.h"
+
 namespace relumine::app {
 namespace {
 
@@ -18,9 +20,9 @@ TEST(SizeText, AnythingElseIsRefused) {
 }
 
 TEST(SizeText, OneSideIsRead) {
-    EXPECT_EQ(parse_side("64"), 64u);
+    EXPECT_EQ(parse_count("64"), 64u);
     for (const char* text : {"", "64x64", "-1", " 64", "64 ", "4294967296"})
-        EXPECT_FALSE(parse_side(text)) << text;
+        EXPECT_FALSE(parse_count(text)) << text;
 }
 
 } // namespace

@@ -90,7 +90,7 @@ Scene shiny_scene(const Mesh& mesh, const Settings& settings, float roughness,
         .surface = everywhere({.albedo = glm::vec3(0.3f),
                                .specular = glm::vec3(0.5f),
                                .highlight = prt::Highlight::Ggx,
-                               .shape = roughness}),
+                               .roughness_or_exponent = roughness}),
         .glossy_tolerance = settings.glossy_tolerance};
     if (settings.pixels)
         options.receivers = Pixels{.width = 512, .height = 512};

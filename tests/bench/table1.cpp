@@ -173,7 +173,7 @@ nlohmann::json measure_buddha(const Settings& settings, const bench::Inputs& inp
                               .surface = everywhere({.albedo = glm::vec3(0.3f),
                                                      .specular = glm::vec3(0.5f),
                                                      .highlight = prt::Highlight::Ggx,
-                                                     .shape = Roughness})},
+                                                     .roughness_or_exponent = Roughness})},
                              &report);
     const double seconds = watch.seconds();
     const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);

@@ -246,9 +246,9 @@ void write_scenes(const fs::path& folder) {
     scene.transfer = prt::precompute(scene.receivers, rays, options);
     save("vertices");
     prt::look_from(scene.receivers, glm::vec3(0.0f, 1.0f, 3.0f));
-    scene.receivers.surfaces.assign(
-        scene.receivers.size(),
-        {.specular = glm::vec3(0.5f), .highlight = prt::Highlight::Ggx, .shape = 0.5f});
+    scene.receivers.surfaces.assign(scene.receivers.size(), {.specular = glm::vec3(0.5f),
+                                                             .highlight = prt::Highlight::Ggx,
+                                                             .roughness_or_exponent = 0.5f});
     scene.transfer.glossy =
         prt::precompute_glossy(scene.receivers, rays, scene.transfer,
                                {.tolerance = 0.5f, .face_resolution = 4, .bias = 1e-4f});

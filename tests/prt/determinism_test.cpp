@@ -42,7 +42,7 @@ Scene precomputed(Shine shine) {
             scene.receivers.surfaces.push_back(
                 {.specular = glm::vec3(0.04f, 0.3f, 0.9f),
                  .highlight = i % 3 == 2 ? Highlight::None : Highlight::Ggx,
-                 .shape = i % 3 == 0 ? 0.25f : 0.5f});
+                 .roughness_or_exponent = i % 3 == 0 ? 0.25f : 0.5f});
     }
     scene.transfer = precompute(scene.receivers, beams, options);
     if (shine == Shine::Glossy) {

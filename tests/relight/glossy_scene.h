@@ -26,7 +26,7 @@ struct GlossyScene {
             prt::Surface surface{.albedo = {0.6f, 0.4f, 0.2f}, .specular = {0.04f, 0.3f, 0.9f}};
             if (i % 3 != 2) {
                 surface.highlight = i % 3 == 0 ? prt::Highlight::Ggx : prt::Highlight::BlinnPhong;
-                surface.shape =
+                surface.roughness_or_exponent =
                     i % 3 == 0 ? roughness : 2.0f / (roughness * roughness * roughness * roughness);
             }
             receivers.surfaces.push_back(surface);

@@ -45,7 +45,7 @@ prt::Receivers shiny_sphere(float roughness, std::size_t n) {
         receivers.surfaces.push_back({.albedo = glm::vec3(0.0f),
                                       .specular = glm::vec3(1.0f, 0.7f, 0.3f),
                                       .highlight = prt::Highlight::Ggx,
-                                      .shape = roughness});
+                                      .roughness_or_exponent = roughness});
     }
     return receivers;
 }
@@ -116,7 +116,7 @@ TEST(GlossyRelighting, WhiteFurnaceOfARoughPlane) {
         receivers.surfaces.push_back({.albedo = glm::vec3(0.8f),
                                       .specular = glm::vec3(0.04f),
                                       .highlight = prt::Highlight::Ggx,
-                                      .shape = 0.5f});
+                                      .roughness_or_exponent = 0.5f});
     }
     const prt::Transfer transfer = glossy_transfer(receivers, 0.02f, 256);
     cubemap::CubeMap white(16);

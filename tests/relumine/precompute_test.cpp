@@ -112,7 +112,7 @@ TEST(Precompute, HighlightsNeedAView) {
                                     .surface = everywhere({.albedo = glm::vec3(0.3f),
                                                            .specular = glm::vec3(0.5f),
                                                            .highlight = prt::Highlight::Ggx,
-                                                           .shape = 0.6f})};
+                                                           .roughness_or_exponent = 0.6f})};
     PrecomputeReport report;
     const Scene diffuse = precompute(boulder(), options, &report);
     EXPECT_FALSE(diffuse.transfer.glossy);

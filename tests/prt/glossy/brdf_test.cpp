@@ -29,14 +29,14 @@ Surface ggx_surface(float roughness) {
     return {.albedo = glm::vec3(0.5f, 0.25f, 1.0f),
             .specular = glm::vec3(0.04f, 0.5f, 1.0f),
             .highlight = Highlight::Ggx,
-            .shape = roughness};
+            .roughness_or_exponent = roughness};
 }
 
 Surface blinn_surface(float exponent) {
     return {.albedo = glm::vec3(0.5f, 0.25f, 0.0f),
             .specular = glm::vec3(0.5f, 0.25f, 1.0f),
             .highlight = Highlight::BlinnPhong,
-            .shape = exponent};
+            .roughness_or_exponent = exponent};
 }
 
 std::vector<Surface> all_surfaces() {
@@ -50,7 +50,7 @@ std::vector<Surface> all_surfaces() {
 
 std::string name(const Surface& surface) {
     return testing::PrintToString(static_cast<int>(surface.highlight)) + " shape " +
-           testing::PrintToString(surface.shape);
+           testing::PrintToString(surface.roughness_or_exponent);
 }
 
 glm::vec3 direction(double polar, double azimuth) {
@@ -134,8 +134,8 @@ Lobes<double> integral_over_halves(const Surface& surface, const glm::vec3& eye,
 /// The alpha whose highlight is as wide as a surface's.
 double alpha_of(const Surface& surface) {
     if (surface.highlight == Highlight::Ggx)
-        return double{ggx_alpha(surface.shape)};
-    return std::sqrt(2.0 / (double{surface.shape} + 2.0));
+        return double{ggx_alpha(surface.roughness_or_exponent)};
+    return std::sqrt(2.0 / (double{surface.roughness_or_exponent} + 2.0));
 }
 
 TEST(Brdf, LightAndEyeMayChangePlaces) {
@@ -437,7 +437,7 @@ TEST(Brdf, ReflectIsTheFormulaOfGltf) {
         const Surface surface = {.albedo = glm::vec3(base * (1.0 - metallic)),
                                  .specular = glm::vec3(0.04 * (1.0 - metallic) + base * metallic),
                                  .highlight = Highlight::Ggx,
-                                 .shape = static_cast<float>(roughness)};
+                                 .roughness_or_exponent = static_cast<float>(roughness)};
         glm::vec3 v = scenes::random_direction(random), w = scenes::random_direction(random);
         v.y = std::abs(v.y);
         w.y = std::abs(w.y);

@@ -123,13 +123,14 @@ CutErrors errors_of(const Receivers& receivers, const Transfer& transfer, const 
 
 TEST(GlossyPrecompute, CutsKeepTheToleranceWithNothingInTheWay) {
     const scenes::AnalyticBlockers nothing = scenes::no_blockers();
-    for (const Surface& surface : {Surface{.highlight = Highlight::Ggx, .shape = 0.2f},
-                                   Surface{.highlight = Highlight::Ggx, .shape = 0.5f},
-                                   Surface{.highlight = Highlight::Ggx, .shape = 1.0f},
-                                   Surface{.highlight = Highlight::BlinnPhong, .shape = 60.0f}})
+    for (const Surface& surface :
+         {Surface{.highlight = Highlight::Ggx, .roughness_or_exponent = 0.2f},
+          Surface{.highlight = Highlight::Ggx, .roughness_or_exponent = 0.5f},
+          Surface{.highlight = Highlight::Ggx, .roughness_or_exponent = 1.0f},
+          Surface{.highlight = Highlight::BlinnPhong, .roughness_or_exponent = 60.0f}})
         for (const float tolerance : {0.1f, 0.03f}) {
-            SCOPED_TRACE(testing::Message()
-                         << "shape " << surface.shape << " tolerance " << tolerance);
+            SCOPED_TRACE(testing::Message() << "shape " << surface.roughness_or_exponent
+                                            << " tolerance " << tolerance);
             const Receivers receivers = fan(surface);
             const Transfer transfer = with_glossy(receivers, nothing, tolerance);
             const CutErrors errors = errors_of(receivers, transfer, nothing, GlossyLobe::Specular);
@@ -147,7 +148,7 @@ TEST(GlossyPrecompute, CutsKeepTheToleranceWithNothingInTheWay) {
 }
 
 TEST(GlossyPrecompute, CutsFollowShadows) {
-    const Receivers receivers = fan({.highlight = Highlight::Ggx, .shape = 0.4f});
+    const Receivers receivers = fan({.highlight = Highlight::Ggx, .roughness_or_exponent = 0.4f});
     for (const scenes::AnalyticBlockers& blockers :
          {scenes::half_plane_blocker(1.0, -0.4), scenes::sphere_blocker({-0.8, 1.2, 0.1}, 0.4)}) {
         const Transfer transfer = with_glossy(receivers, blockers, 0.05f);
@@ -161,10 +162,10 @@ TEST(GlossyPrecompute, SharperHighlightsTakeFinerCellsNotMore) {
     const scenes::AnalyticBlockers nothing = scenes::no_blockers();
     GlossyStatistics sharp;
     GlossyStatistics broad;
-    const Transfer a =
-        with_glossy(fan({.highlight = Highlight::Ggx, .shape = 0.25f}), nothing, 0.05f, &sharp);
-    const Transfer b =
-        with_glossy(fan({.highlight = Highlight::Ggx, .shape = 0.8f}), nothing, 0.05f, &broad);
+    const Transfer a = with_glossy(
+        fan({.highlight = Highlight::Ggx, .roughness_or_exponent = 0.25f}), nothing, 0.05f, &sharp);
+    const Transfer b = with_glossy(
+        fan({.highlight = Highlight::Ggx, .roughness_or_exponent = 0.8f}), nothing, 0.05f, &broad);
     EXPECT_GT(a.glossy->deepest_level(), b.glossy->deepest_level());
     EXPECT_LT(sharp.num_entries, 6 * broad.num_entries);
 }

@@ -27,7 +27,7 @@ struct RandomBlock {
             to_eye[i] = scenes::random_direction(random);
             const auto highlight = static_cast<Highlight>(random() % 3);
             surfaces[i] = {.highlight = highlight,
-                           .shape =
+                           .roughness_or_exponent =
                                highlight == Highlight::Ggx ? unit(random) : 200.0f * unit(random)};
             block.set(i, surfaces[i], normals[i], to_eye[i]);
         }
@@ -73,12 +73,13 @@ TEST(LobeKernel, ABlockKnowsWhichLobesItHas) {
     const glm::vec3 up(0.0f, 1.0f, 0.0f);
     BlockSurfaces block;
     block.set(0, {.highlight = Highlight::None}, up, up);
-    block.set(1, {.highlight = Highlight::Ggx, .shape = 0.5f}, up, -up); // seen from below
+    block.set(1, {.highlight = Highlight::Ggx, .roughness_or_exponent = 0.5f}, up,
+              -up); // seen from below
     EXPECT_FALSE(block.has(GlossyLobe::Specular));
-    block.set(2, {.highlight = Highlight::BlinnPhong, .shape = 5.0f}, up, up);
+    block.set(2, {.highlight = Highlight::BlinnPhong, .roughness_or_exponent = 5.0f}, up, up);
     EXPECT_TRUE(block.has(GlossyLobe::Specular));
     EXPECT_FALSE(block.has(GlossyLobe::SpecularGrazing));
-    block.set(3, {.highlight = Highlight::Ggx, .shape = 0.5f}, up, up);
+    block.set(3, {.highlight = Highlight::Ggx, .roughness_or_exponent = 0.5f}, up, up);
     EXPECT_TRUE(block.has(GlossyLobe::SpecularGrazing));
     EXPECT_TRUE(block.has(GlossyLobe::DiffuseGrazing));
 }

@@ -45,7 +45,7 @@ TEST(SurfaceSampling, MetallicRoughness) {
                                .roughness = 0.375f};
     const Surface surface = surface_at(square(material), 0, {0.0f, 0.0f});
     EXPECT_EQ(surface.highlight, Highlight::Ggx);
-    EXPECT_EQ(surface.shape, 0.375f);
+    EXPECT_EQ(surface.roughness_or_exponent, 0.375f);
     EXPECT_EQ(surface.albedo, glm::vec3(0.75f, 0.375f, 0.1875f));
     EXPECT_NEAR(glm::distance(surface.specular, glm::vec3(0.28f, 0.155f, 0.0925f)), 0.0f, 1e-6f);
     Material metal = material;
@@ -65,7 +65,7 @@ TEST(SurfaceSampling, PhongIsLambertWithoutKs) {
     EXPECT_EQ(surface_at(mesh, 1, {}), (Surface{.albedo = glm::vec3(0.5f),
                                                 .specular = {0.0f, 0.25f, 0.0f},
                                                 .highlight = Highlight::BlinnPhong,
-                                                .shape = 30.0f}));
+                                                .roughness_or_exponent = 30.0f}));
 }
 
 TEST(SurfaceSampling, TexturesAtBarycentricPlaces) {
@@ -82,15 +82,15 @@ TEST(SurfaceSampling, TexturesAtBarycentricPlaces) {
     // At the second corner of triangle 0: the right texels; half way there from the first: both,
     // evenly.
     const Surface corner = surface_at(mesh, 0, {1.0f, 0.0f});
-    EXPECT_EQ(corner.shape, 0.5f) << "green is roughness";
+    EXPECT_EQ(corner.roughness_or_exponent, 0.5f) << "green is roughness";
     EXPECT_EQ(corner.albedo, glm::vec3(0.0f, 0.0f, 0.5f)) << "blue, metallic, is 0";
     const Surface middle = surface_at(mesh, 0, {0.5f, 0.25f});
-    EXPECT_EQ(middle.shape, 0.25f);
+    EXPECT_EQ(middle.roughness_or_exponent, 0.25f);
     EXPECT_EQ(middle.albedo, glm::vec3(0.1875f, 0.0f, 0.1875f)) << "metallic 1/4";
     // uvs of corners come before those of vertices.
     mesh.corner_uvs = {{{{0.75f, 0.5f}, {0.25f, 0.5f}, {0.25f, 0.5f}}}, {{{0, 0}, {0, 0}, {0, 0}}}};
-    EXPECT_EQ(surface_at(mesh, 0, {0.0f, 0.0f}).shape, 0.5f);
-    EXPECT_EQ(surface_at(mesh, 0, {1.0f, 0.0f}).shape, 0.0f);
+    EXPECT_EQ(surface_at(mesh, 0, {0.0f, 0.0f}).roughness_or_exponent, 0.5f);
+    EXPECT_EQ(surface_at(mesh, 0, {1.0f, 0.0f}).roughness_or_exponent, 0.0f);
 }
 
 TEST(SurfaceSampling, VertexColorsAreAFactorOfGltf) {

@@ -60,7 +60,7 @@ void add_surfaces(Scene& scene) {
         scene.receivers.surfaces.push_back({.albedo = glm::vec3(0.001f * static_cast<float>(i)),
                                             .specular = {0.1f, 0.2f, 0.3f},
                                             .highlight = static_cast<Highlight>(i % 3),
-                                            .shape = 0.5f});
+                                            .roughness_or_exponent = 0.5f});
 }
 
 void expect_same(const Receivers& a, const Receivers& b) {
