@@ -33,9 +33,9 @@ struct SharpLight {
 /// Returns the sharp lights of an environment, clusters ascending. There are a few dozen at most:
 /// large sources have no sharp cells. Deterministic.
 ///
-/// Cells two levels below a cluster are candidates. A candidate is sharp when it holds enough of
-/// the map's power P: a point light of its power may make an error of tolerance times its power in
-/// the cluster, and this error exceeds 0.25 % of the mean radiance P / (4 pi).
+/// Cells two levels below a cluster are candidates. A candidate of power p is sharp when p is large
+/// beside the map's power P. In the cluster, a point light of power p may make an error of
+/// tolerance p. This error must exceed 0.25 % of the mean radiance P / (4 pi).
 ///
 /// Also, the candidate or a sister must hold more than an eighth of the cluster's power. With
 /// `glossy` receivers this condition is dropped: highlights may be smaller than any cluster, so

@@ -55,9 +55,9 @@ struct Verification {
 struct Share {
     /// [num_receivers], albedo 1
     std::vector<glm::vec3> radiance;
-    /// The environment without the rest
+    /// The environment times the region's coverage: black outside of the region.
     cubemap::CubeMap environment;
-    /// Of the light that the scene reflects, 0 to 1
+    /// The part of the scene's reflected light that comes from the region, 0 to 1.
     double share = 0.0;
 };
 
@@ -87,8 +87,8 @@ public:
     /// False for unclustered_scene().
     [[nodiscard]] bool has_clusters() const;
     [[nodiscard]] const prt::RayScene& rays() const;
-    /// What tracing single lights takes, with the scene's own bias and tolerance; empty for
-    /// clusters_only. Points into this object.
+    /// Returns what tracing single lights needs: the rays with the scene's own bias and tolerance.
+    /// Empty for clusters_only. The result points into this object.
     [[nodiscard]] relight::ShadowRays shadow_rays() const;
 
     /// Lights the scene with an environment [JN, Eq. 8], of any resolution. Layers stay over it.
@@ -129,8 +129,8 @@ public:
     /// Throws:  as set_layers(); std::out_of_range for an index.
     UpdateReport set_layer(std::size_t index, const cubemap::LightLayer& layer);
 
-    /// All of editing: undo and redo, rotation, snapshots for other threads. It takes over the
-    /// environment and stays until light() is given lights, which end it.
+    /// Returns the editor, which has undo and redo, rotation, and snapshots for other threads. It
+    /// takes over the environment. A call of light() with a light list destroys the editor.
     ///
     /// Throws:  std::invalid_argument for a scene without clusters.
     [[nodiscard]] relight::LightEditor& editor();
@@ -143,7 +143,8 @@ public:
     /// first light().
     [[nodiscard]] const cubemap::CubeMap& environment() const;
 
-    /// The machine inside, for relight/'s own functions (contribution_map(), transfer_lights()).
+    /// Returns the Relighter inside, for functions of relight/ that take one: contribution_map(),
+    /// transfer_lights().
     ///
     /// Throws:  std::logic_error before the first light() and for a scene without clusters.
     [[nodiscard]] const relight::Relighter& relighter() const;
@@ -162,7 +163,7 @@ public:
     ///          unless an environment lights the scene.
     [[nodiscard]] cubemap::CubeMap contribution_map(std::span<const std::uint32_t> receivers) const;
 
-    /// The other way round: the scene as a region of the environment alone lights it.
+    /// Returns what a region gives to the scene, as if the rest of the environment were black.
     ///
     /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
     [[nodiscard]] Share lit_by(const cubemap::Region& region) const;

@@ -1,4 +1,4 @@
-// Meshes in: what the door loads and precomputes.
+// Meshes, as load_mesh() reads them and precompute() takes them.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@ namespace relumine {
 /// A triangle mesh and its origin. A TriangleMesh made in code converts to it.
 struct Mesh {
     mesh::TriangleMesh geometry;
-    /// The path as it was given, or empty. Messages name it; a scene file keeps its last part.
+    /// The path as it was given, or empty. Messages name the path. A scene file keeps its last
+    /// part.
     std::string source;
     /// xxHash64 of the file's bytes, 0 without a file
     std::uint64_t source_hash = 0;
-    /// n of an n x n floor under the mesh, 0 for none
+    /// n: the last n x n vertices are a floor under the mesh. 0: there is no floor.
     std::uint32_t floor_vertices = 0;
 
     Mesh() = default;
@@ -28,11 +29,11 @@ struct Mesh {
 };
 
 struct MeshOptions {
-    /// The file's normals where it has them, or always smooth ones
+    /// Where normals come from: the file if it has them, or always the faces.
     mesh::NormalSource normals = mesh::NormalSource::File;
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN]
     std::optional<std::uint32_t> floor_vertices = {};
-    /// Side of the floor over the mesh's width
+    /// Side of the floor, in widths of the mesh.
     float floor_scale = 4.0f;
 };
 

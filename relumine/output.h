@@ -30,34 +30,34 @@ using Albedo = std::variant<glm::vec3, MeshColors>;
 
 struct OutputOptions {
     Albedo albedo = glm::vec3(1.0f);
-    /// Stops; draw() leaves it out, save() puts it in
+    /// Exposure in stops. save() applies it, draw() does not.
     double exposure_ev = 0.0;
 
-    /// Only scenes of vertices have a choice: what is drawn, from where, how large
+    /// Size of the picture. Only for scenes of vertices, as are the camera and the rays below.
     std::uint32_t width = 1024;
     std::uint32_t height = 768;
     /// n x n rays a pixel
     std::uint32_t samples_per_axis = 3;
-    /// Nothing: camera_of() the scene
+    /// Empty: camera_of() the scene.
     std::optional<Camera> camera = {};
-    /// Of the automatic camera
+    /// Vertical field of view of the automatic camera.
     float fov_degrees = 35.0f;
 
-    /// Only scenes of pixels: no environment behind, but alpha
+    /// Writes alpha in place of the background. Only for scenes of pixels.
     bool transparent = false;
-    /// Only scenes of texels: texels filled around the charts
+    /// How many texels are filled around the charts. Only for scenes of texels.
     std::uint32_t gutter = 16;
 };
 
-/// Radiance times albedo, [num_receivers].
+/// Returns radiance times albedo, [num_receivers].
 ///
 /// Throws:  std::invalid_argument for another number of radiances, for MeshColors of a mesh without
 ///          colours.
 [[nodiscard]] std::vector<glm::vec3>
 colors_of(const Scene& scene, std::span<const glm::vec3> radiance, const Albedo& albedo = {});
 
-/// Draws and writes what a scene looks like in any light, again and again: what its camera sees is
-/// found once. LitScene::draw() and save() are the short forms.
+/// Draws and writes many pictures of one scene from one camera. What the camera sees is found once.
+/// LitScene::draw() and save() are the short forms for one picture.
 ///
 /// Throws:  std::invalid_argument where radiance does not fit the scene, an environment has no
 ///          texels, a camera has no direction, or the path's extension does not fit (save());
@@ -91,8 +91,8 @@ private:
     bool drew_one_ = false;
 };
 
-/// Whether save() writes the extension for scenes of such receivers: ".png", ".exr" and ".npy" for
-/// all, ".ply" and ".glb" for vertices. In any case.
+/// Returns true if save() can write the path's extension for this scene: ".png", ".exr" and ".npy"
+/// for all scenes, ".ply" and ".glb" for scenes of vertices. Capital letters are allowed.
 [[nodiscard]] bool is_output_of(const std::filesystem::path& path, const Scene& scene);
 
 /// Writes an environment as a lat-long picture: .exr (linear), or .png with the brightest

@@ -44,11 +44,11 @@ struct Texels {
 
 /// A view of the scene.
 struct View {
-    /// Nothing: a camera that shows all of the mesh
+    /// Empty: a camera that shows the whole mesh.
     std::optional<prt::Camera> camera = {};
 };
 
-/// How rays are traced. The results are the same bit by bit.
+/// How rays are traced. Both engines give the same results, bit by bit.
 enum class Engine {
     /// Whole beams of rays at once: the fast one
     Beams,
@@ -81,7 +81,7 @@ enum class Warning {
 struct PrecomputeOptions {
     /// RMS error of the transfer allowed within a cluster, 1/sr; smaller is finer
     float tolerance = prt::PrecomputeOptions{}.tolerance;
-    /// The paper's form of the tolerance in its place; grows lax with the mesh's size
+    /// Replaces `tolerance` if given: the paper's form, which allows larger meshes a larger error.
     std::optional<float> epsilon = {};
     /// Every cell is split at least this often
     std::uint32_t min_level = prt::PrecomputeOptions{}.min_level;
@@ -96,12 +96,14 @@ struct PrecomputeOptions {
     /// The camera of pixels, and the eye that highlights are for. Without one, pixels take the
     /// automatic camera; vertices and texels are seen from anywhere and have no highlights.
     std::optional<View> view = {};
-    /// Surfaces in place of the mesh's materials; empty: those. See everywhere().
+    /// Replaces the mesh's materials; everywhere() makes one surface for the whole mesh. Empty: the
+    /// materials stay.
     prt::SurfaceOverride surface = {};
     /// Relative error of a highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
-    /// Bytes. Work that would take more is refused before it begins, or stopped; none: no limit.
+    /// Bytes. Work that is estimated to take more is refused before it begins. Work that turns out
+    /// to take more is stopped. Empty: no limit.
     std::optional<std::uint64_t> max_memory = {};
 
     /// The .prt file to write as soon as the scene is ready; empty: none
@@ -109,16 +111,16 @@ struct PrecomputeOptions {
     /// Time between two checkpoints in the folder OUTPUT.checkpoint; 0: none. Without an output
     /// there are none. The folder goes away when the scene is written.
     double checkpoint_seconds = 20.0;
-    /// Go on from the checkpoint of the same work, where there is one
+    /// Continues from a checkpoint of the same work if there is one.
     bool resume = false;
 
-    /// Polled a few times a second; Cancelled is thrown
+    /// Polled a few times a second. A stop request makes precompute() throw Cancelled.
     std::stop_token stop = {};
     /// Estimated fraction of a stage in [0, 1], never falling; one call at a time
     std::function<void(Stage, double)> on_progress = {};
-    /// Sentences for people, one call at a time: what should be known at once
+    /// Gets a sentence that the user should read at once. One call at a time.
     std::function<void(Warning, const std::string&)> on_warning = {};
-    /// The same: what helps to understand a run
+    /// Gets a sentence that helps to understand a run. One call at a time.
     std::function<void(const std::string&)> on_note = {};
 };
 
@@ -146,22 +148,22 @@ struct PrecomputeReport {
 
     /// Of the scene file, 0 without one
     std::uint64_t file_bytes = 0;
-    /// The checkpoint folder that an exception has left to be resumed from, or empty
+    /// The checkpoint folder if an exception left one, for `resume`; or empty.
     std::filesystem::path checkpoint = {};
 };
 
-/// Thrown when the work would take more memory than max_memory, or did. "SOURCE: expected X, got
-/// Y".
+/// Thrown when the work would take more memory than max_memory, or takes more. The message is
+/// "SOURCE: expected X, got Y".
 struct MemoryLimitExceeded : std::runtime_error {
-    /// What is too large, and so what would help
+    /// What is too large. This tells what would help.
     enum class Part {
-        /// The mesh and its receivers: nothing but a smaller mesh
+        /// The mesh and its receivers. Only a smaller mesh or fewer receivers help.
         Scene,
-        /// By the estimate: a larger tolerance
+        /// The clusters, as estimated beforehand. A larger tolerance helps.
         Clusters,
-        /// Found while clustering; a checkpoint is left
+        /// The clusters, as found while clustering. A checkpoint is left if there were checkpoints.
         ClustersFound,
-        /// A larger glossy_tolerance
+        /// The highlights. A larger glossy_tolerance helps.
         Highlights,
     };
     MemoryLimitExceeded(Part what, const std::string& message)

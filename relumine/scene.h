@@ -25,14 +25,14 @@ using prt::save_scene;
 
 using relight::Camera;
 
-/// A mesh's vertices without clusters: light lists light them with shadow rays, environments do
-/// not. Costs nothing.
+/// Returns a scene of the mesh's vertices without clusters, at no cost. Light lists light it with
+/// shadow rays. Environments cannot light it.
 [[nodiscard]] Scene unclustered_scene(Mesh mesh);
 
-/// The RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
+/// Returns the RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
 [[nodiscard]] float rms_tolerance(const Scene& scene);
 
-/// Other colours of all surfaces; nothing: as they are.
+/// New colours for all surfaces. An empty colour stays as it is.
 struct SurfaceColors {
     std::optional<glm::vec3> albedo = {};
     /// F0, or Ks of Blinn-Phong
@@ -49,7 +49,9 @@ void set_colors(Scene& scene, const SurfaceColors& colors);
 [[nodiscard]] Camera camera_of(const Scene& scene, const relight::PictureOptions& size = {},
                                float fov_degrees = 35.0f);
 
-/// The receiver nearest to a position. O(receivers). The scene must have one.
+/// Returns the receiver nearest to a position. The scene must have a receiver.
+///
+/// Cost:    O(receivers).
 [[nodiscard]] std::uint32_t nearest_receiver(const Scene& scene, const glm::vec3& position);
 
 } // namespace relumine

@@ -24,12 +24,12 @@ struct MeshPoint {
 [[nodiscard]] glm::vec3 value_at(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> values,
                                  const MeshPoint& point);
 
-/// Returns the unit normal of a triangle whose corners run counter-clockwise seen from the normal's
-/// tip; zero for a triangle without an area.
+/// Returns the unit normal of a triangle, or zero for a triangle without area. The corners run
+/// counter-clockwise as seen from the normal's tip.
 [[nodiscard]] glm::vec3 face_normal(const mesh::TriangleMesh& mesh, std::uint32_t triangle);
 
-/// Returns the interpolated vertex normal, unit length; the face's normal where the vertex normals
-/// cancel.
+/// Returns the interpolated vertex normal with unit length, or the face's normal where the vertex
+/// normals cancel.
 [[nodiscard]] glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
 } // namespace relumine::prt

@@ -52,8 +52,8 @@ struct TexelLayout {
 
 using ReceiverLayout = std::variant<VertexLayout, PixelLayout, TexelLayout>;
 
-/// A limit on samples and texels, which bounds what is allocated: a picture of 8192 x 8192 with
-/// four samples a pixel, more than any needs.
+/// The largest number of samples or texels. It bounds what is allocated. A picture of
+/// 8192 x 8192 with four samples a pixel has as many.
 inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 
 /// Returns the name of one receiver: "vertex", "pixel sample" or "texel".
