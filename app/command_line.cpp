@@ -100,6 +100,7 @@ template<typename T>
 struct Value<std::vector<T>> : Value<T> {
     static std::vector<T> read(const std::vector<std::string>& texts) {
         std::vector<T> values;
+        values.reserve(texts.size());
         for (const std::string& text : texts)
             values.push_back(Value<T>::read(text));
         return values;

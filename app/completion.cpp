@@ -49,6 +49,7 @@ bool is_argument(const OptionTable& option) {
 
 std::vector<std::string> names_of(const std::vector<CommandTable>& commands) {
     std::vector<std::string> names;
+    names.reserve(commands.size());
     for (const CommandTable& command : commands)
         names.push_back(command.name);
     return names;
@@ -149,7 +150,9 @@ void zsh_function(const CommandTable& command, const std::string& words, std::st
         const std::string excluded =
             option.repeats ? "*" : fmt::format("({})", joined(option.names, " "));
         for (const std::string& name : option.names)
-            script += fmt::format(" \\\n        {}", quoted(excluded + name + description + value));
+            script +=
+                fmt::format(" \\\n        {}",
+                            quoted(fmt::format("{}{}{}{}", excluded, name, description, value)));
     }
     if (command.commands.empty()) {
         int position = 0;

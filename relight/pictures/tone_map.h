@@ -16,6 +16,7 @@ namespace relumine::relight {
 /// The luminance of a part of a picture, and the part's weight.
 struct LuminanceSample {
     double luminance = 0.0, weight = 1.0;
+    // NOLINTNEXTLINE(modernize-use-nullptr): clang-tidy 14 sees one in the comparison with 0
     auto operator<=>(const LuminanceSample&) const = default;
 };
 
