@@ -16,34 +16,35 @@ namespace relumine::app {
 
 struct AnimateOptions {
     SceneOptions scene;
-    /// FRAMES
+    /// The argument FRAMES: a pattern of file names.
     std::string frames;
-    /// --frames; empty: all
+    /// --frames. Empty: all frames.
     std::string range;
     EnvironmentOptions environment;
     std::string method = "prt";
-    /// --method prt
+    /// --method prt: only clusters whose light changed by more than this part of it are updated. 0:
+    /// all clusters that changed.
     double bound = 0.0;
-    /// --method importance: lights per frame
+    /// --method importance: lights per frame.
     std::size_t num_lights = 64;
     std::uint64_t seed = 1;
-    /// --method clusters: of all frames
+    /// --method clusters: clusters of all frames together.
     std::size_t num_clusters = 512;
-    /// Of a frame
+    /// Samples of one frame.
     std::size_t num_samples = 1024;
     /// frames
     std::size_t fade = 0;
-    /// The paper's strength
+    /// --method clusters: a light is equally strong in all its frames, as in the paper.
     bool even = false;
-    /// --measure: .npy of all frames, or empty
+    /// --measure: a .npy with the reference of all frames. Empty: nothing is measured.
     std::string reference;
-    /// Of --measure: .svg, or empty
+    /// An .svg plot of what --measure finds. Empty: none.
     std::string plot;
-    /// Path: a pattern, or empty
+    /// Its path is a pattern. Empty: no picture files.
     OutputOptions output;
-    /// .npy, or empty
+    /// A .npy of all frames. Empty: none.
     std::string vertices;
-    /// .mp4, or empty
+    /// An .mp4 movie. Empty: none.
     std::string movie;
     double frames_per_second = 24.0;
     bool resume = false;

@@ -18,11 +18,11 @@ struct OptionTable {
     Value value = Value::None;
     /// What the help calls the value: "FILE", "FLOAT"
     std::string type = {};
-    /// Of Value::Choice
+    /// The allowed values of a Value::Choice.
     std::vector<std::string> choices = {};
     /// "0 to 100"; empty: any
     std::string range = {};
-    /// As the help shows it; empty: none
+    /// The default as the help shows it. Empty: none.
     std::string default_value = {};
     bool is_required = false;
     bool value_is_optional = false;

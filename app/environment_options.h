@@ -14,7 +14,7 @@ namespace relumine::app {
 /// The ENV argument and its options.
 struct EnvironmentOptions {
     std::string path;
-    /// Empty: as the file says
+    /// Layout of the image. Empty: taken from the file.
     std::string layout;
     /// 0: the image's own
     std::uint32_t face_resolution = 0;

@@ -29,7 +29,7 @@ public:
 
 private:
     std::filesystem::path path_;
-    /// Number -> input and output
+    /// Input and output of each finished frame, by its number.
     std::map<std::int64_t, std::string> done_;
 };
 

@@ -11,12 +11,12 @@
 namespace relumine::app {
 
 struct GenerateSequenceOptions {
-    /// Empty where there is none on the command line
+    /// The argument KIND. Empty: not given.
     std::string kind;
     std::size_t num_frames = 100;
-    /// --env
+    /// --env: the environment that the sequence turns.
     std::string environment;
-    /// Which holds the texels of the cube map as they are
+    /// Layout of the frames. A cross holds the cube map's texels unchanged.
     std::string layout = "cross";
 
     void add_to(Command& command);

@@ -9,9 +9,9 @@ namespace relumine::app {
 
 struct EnvironmentInfoOptions {
     std::string path;
-    /// Empty: as the file says
+    /// Layout of the image. Empty: taken from the file.
     std::string layout;
-    /// Empty: none
+    /// The .png to draw. Empty: none.
     std::string picture;
 };
 

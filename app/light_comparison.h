@@ -20,13 +20,13 @@ inline constexpr const char* TransferMethod = "transfer";
 struct ComparisonOptions {
     /// .prt
     std::string scene;
-    /// Of lights
+    /// The numbers of lights to compare.
     std::vector<std::size_t> numbers = {};
-    /// The first of importance sampling, and of the choice of receivers
+    /// The first seed of importance sampling, and the seed that chooses receivers.
     std::uint64_t seed = 1;
-    /// Receivers, 0 for all
+    /// How many receivers are compared. 0: all.
     std::size_t num_samples = 2000;
-    /// .svg, or empty
+    /// An .svg plot of the errors. Empty: none.
     std::string plot = {};
 };
 

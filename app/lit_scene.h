@@ -12,11 +12,11 @@ namespace relumine::app {
 struct SceneOptions {
     std::string path = {};
     bool clusters_only = false;
-    /// A mesh will do: lit without clusters
+    /// The argument may also be a mesh, which is lit without clusters.
     bool mesh_too = false;
-    /// Of all surfaces, in place of the precompute's; empty: those
+    /// Albedo of all surfaces. Empty: the albedo of the precompute.
     std::string albedo = {};
-    /// Of all highlights, likewise
+    /// F0 (Ks) of all highlights. Empty: the values of the precompute.
     std::string specular = {};
 
     void add_to(Command& command);

@@ -16,7 +16,7 @@ namespace relumine::app {
 
 /// What one option says. Colours that it leaves out stay the file's.
 struct MaterialOption {
-    /// Empty: the whole mesh
+    /// The group or material that the option is for. Empty: the whole mesh.
     std::string group = {};
     prt::Highlight highlight = prt::Highlight::None;
     float roughness_or_exponent = 1.0f;

@@ -21,13 +21,13 @@ struct OutputOptions {
     std::string path;
     std::string albedo = "1";
     double exposure_ev = 0.0;
-    /// Empty: automatic
+    /// Camera position X,Y,Z. Empty: automatic.
     std::string eye;
-    /// Empty: automatic
+    /// Point X,Y,Z that the camera looks at. Empty: automatic.
     std::string target;
     float fov_degrees = 35.0f;
     std::string size = "1024x768";
-    /// Pixel receivers: no environment behind
+    /// Pictures of pixel receivers have alpha and no environment behind them.
     bool transparent = false;
     /// Texel receivers: texels around the charts
     std::uint32_t gutter = 16;

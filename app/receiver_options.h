@@ -25,7 +25,7 @@ public:
 
 private:
     std::string receivers_ = "vertices";
-    /// Empty: none
+    /// The text of --view. Empty: not given.
     std::string view_;
 };
 

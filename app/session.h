@@ -30,8 +30,8 @@ public:
     /// Adds --json, --threads, -q and -v to a subcommand.
     void add_common_options(Command& command);
 
-    /// Set by Ctrl-C, SIGTERM and SIGHUP. Another of them, a second later or more, ends the program
-    /// at once.
+    /// Set by Ctrl-C, SIGTERM and SIGHUP. A second signal, at least a second later, ends the
+    /// program at once.
     [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;

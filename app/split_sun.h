@@ -26,7 +26,7 @@ public:
     /// The sun that was split off
     struct Split {
         Report report = {};
-        /// Of the whole map's light
+        /// Share of the whole map's light.
         double share_of_power = 0.0;
     };
     /// Takes the sun out of the map, the sky around it in its place, and writes it to the temporary
