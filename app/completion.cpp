@@ -23,7 +23,7 @@ std::string escaped(std::string_view text, std::string_view special) {
 }
 
 /// A word of bash or zsh.
-std::string quoted(std::string_view text) {
+std::string shell_quoted(std::string_view text) {
     std::string result = "'";
     for (const char c : text)
         if (c == '\'')
@@ -69,7 +69,7 @@ std::string function_name(const std::string& words) {
 std::string bash_value(const OptionTable& option) {
     switch (option.value) {
     case Value::Choice:
-        return fmt::format("kind=words words={}", quoted(joined(option.choices, " ")));
+        return fmt::format("kind=words words={}", shell_quoted(joined(option.choices, " ")));
     case Value::File:
         return "kind=files";
     case Value::Folder:
@@ -85,7 +85,7 @@ std::string bash_value(const OptionTable& option) {
 void bash_commands(const CommandTable& command, const std::string& words, std::string& patterns) {
     for (const CommandTable& below : command.commands) {
         patterns += fmt::format("{}{}", patterns.empty() ? "" : " | ",
-                                quoted(fmt::format("{} {}", words, below.name)));
+                                shell_quoted(fmt::format("{} {}", words, below.name)));
         bash_commands(below, words.empty() ? below.name : words + " " + below.name, patterns);
     }
 }
@@ -106,10 +106,10 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
         }
     }
     if (!command.commands.empty())
-        argument =
-            fmt::format("kind=words words={}", quoted(joined(names_of(command.commands), " ")));
-    script +=
-        fmt::format("    {})\n        options={}\n", quoted(words), quoted(joined(options, " ")));
+        argument = fmt::format("kind=words words={}",
+                               shell_quoted(joined(names_of(command.commands), " ")));
+    script += fmt::format("    {})\n        options={}\n", shell_quoted(words),
+                          shell_quoted(joined(options, " ")));
     script += fmt::format("        case $before in\n{}        *) {} ;;\n        esac ;;\n", values,
                           argument);
     for (const CommandTable& below : command.commands)
@@ -150,20 +150,20 @@ void zsh_function(const CommandTable& command, const std::string& words, std::st
         const std::string excluded =
             option.repeats ? "*" : fmt::format("({})", joined(option.names, " "));
         for (const std::string& name : option.names)
-            script +=
-                fmt::format(" \\\n        {}",
-                            quoted(fmt::format("{}{}{}{}", excluded, name, description, value)));
+            script += fmt::format(
+                " \\\n        {}",
+                shell_quoted(fmt::format("{}{}{}{}", excluded, name, description, value)));
     }
     if (command.commands.empty()) {
         int position = 0;
         for (const OptionTable& option : command.options)
             if (is_argument(option))
-                script +=
-                    fmt::format(" \\\n        {}",
-                                quoted(option.repeats ? fmt::format("*{}", zsh_value(option))
-                                                      : fmt::format("{}{}{}", ++position,
-                                                                    option.is_required ? "" : ":",
-                                                                    zsh_value(option))));
+                script += fmt::format(" \\\n        {}",
+                                      shell_quoted(option.repeats
+                                                       ? fmt::format("*{}", zsh_value(option))
+                                                       : fmt::format("{}{}{}", ++position,
+                                                                     option.is_required ? "" : ":",
+                                                                     zsh_value(option))));
         script += "\n}\n\n";
         return;
     }
@@ -171,7 +171,7 @@ void zsh_function(const CommandTable& command, const std::string& words, std::st
               "        local -a commands=(\n";
     for (const CommandTable& below : command.commands)
         script += fmt::format("            {}\n",
-                              quoted(below.name + ":" + escaped(below.description, ":\\")));
+                              shell_quoted(below.name + ":" + escaped(below.description, ":\\")));
     script += "        )\n        _describe -t commands command commands ;;\n    rest)\n"
               "        case $line[1] in\n";
     for (const CommandTable& below : command.commands)
