@@ -1,7 +1,6 @@
 #include "app/lit_by.h"
 
 #include <algorithm>
-#include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 namespace relumine::files {
@@ -200,6 +201,23 @@ const JsonValue* JsonReader::find(const JsonValue::Object& object, std::string_v
     const auto found = std::find_if(object.begin(), object.end(),
                                     [&](const auto& member) { return member.first == field; });
     return found == object.end() ? nullptr : &found->second;
+}
+
+const JsonValue& JsonReader::required(const JsonValue& owner, const JsonValue::Object& members,
+                                      std::string_view field) const {
+    const JsonValue* found = find(members, field);
+    if (found == nullptr)
+        refuse(owner.line, fmt::format("\"{}\"", field), "none");
+    return *found;
+}
+
+void JsonReader::known(const JsonValue::Object& members, std::span<const std::string_view> names,
+                       std::string_view what) const {
+    for (const auto& [name, value] : members) {
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
+                   fmt::format("\"{}\"", name));
+    }
 }
 
 } // namespace relumine::files

@@ -50,6 +50,15 @@ public:
     [[nodiscard]] static const JsonValue* find(const JsonValue::Object& object,
                                                std::string_view field);
 
+    /// Returns a member of an object. An object without the member is refused.
+    [[nodiscard]] const JsonValue& required(const JsonValue& owner,
+                                            const JsonValue::Object& members,
+                                            std::string_view field) const;
+
+    /// Refuses members with other names. `what` says what the object is.
+    void known(const JsonValue::Object& members, std::span<const std::string_view> names,
+               std::string_view what) const;
+
     [[nodiscard]] const std::string& name() const { return name_; }
 
 private:

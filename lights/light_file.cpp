@@ -58,10 +58,11 @@ public:
     LightList read() const {
         const files::JsonValue root = json_.parse(files::read(path_));
         const auto& members = json_.object(root, "a light list");
-        known(members,
-              std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
-              "a light list");
-        const files::JsonValue& version = required(root, members, "version");
+        json_.known(
+            members,
+            std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
+            "a light list");
+        const files::JsonValue& version = json_.required(root, members, "version");
         if (const double got = json_.number(version, "\"version\""); got != Version)
             json_.refuse(version.line, fmt::format("version {}", Version), fmt::format("{}", got));
         LightList result;
@@ -71,7 +72,7 @@ public:
             result.method = json_.string(*value, "\"method\"");
         if (const auto* value = files::JsonReader::find(members, "seed"))
             result.seed = seed(*value);
-        const files::JsonValue& lights = required(root, members, "lights");
+        const files::JsonValue& lights = json_.required(root, members, "lights");
         for (const files::JsonValue& value : json_.array(lights, "\"lights\""))
             result.lights.push_back(light(value));
         if (result.lights.empty())
@@ -80,24 +81,6 @@ public:
     }
 
 private:
-    const files::JsonValue& required(const files::JsonValue& owner,
-                                     const files::JsonValue::Object& members,
-                                     std::string_view field) const {
-        const files::JsonValue* found = files::JsonReader::find(members, field);
-        if (found == nullptr)
-            json_.refuse(owner.line, fmt::format("\"{}\"", field), "none");
-        return *found;
-    }
-
-    void known(const files::JsonValue::Object& members, std::span<const std::string_view> names,
-               std::string_view what) const {
-        for (const auto& [name, value] : members) {
-            if (std::find(names.begin(), names.end(), name) == names.end())
-                json_.refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
-                             fmt::format("\"{}\"", name));
-        }
-    }
-
     glm::dvec3 vector3(const files::JsonValue& value, std::string_view what) const {
         const auto& array = json_.array(value, what);
         if (array.size() != 3)
@@ -118,11 +101,12 @@ private:
 
     DistantLight light(const files::JsonValue& value) const {
         const auto& members = json_.object(value, "a light");
-        known(members, std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"},
-              "a light");
+        json_.known(members,
+                    std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"},
+                    "a light");
         DistantLight result;
-        result.direction = vector3(required(value, members, "direction"), "\"direction\"");
-        result.irradiance = vector3(required(value, members, "irradiance"), "\"irradiance\"");
+        result.direction = vector3(json_.required(value, members, "direction"), "\"direction\"");
+        result.irradiance = vector3(json_.required(value, members, "irradiance"), "\"irradiance\"");
         if (const auto* solid_angle = files::JsonReader::find(members, "solid_angle"))
             result.solid_angle = json_.number(*solid_angle, "\"solid_angle\"");
         if (const auto wrong = fault(result))

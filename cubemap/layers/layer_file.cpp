@@ -27,16 +27,16 @@ public:
     LightLayers read() const {
         const files::JsonValue root = json_.parse(files::read(path_));
         const auto& members = json_.object(root, "a layer file");
-        known(members, std::array<std::string_view, 4>{"version", "base", "layers", "frames"},
-              "a layer file");
-        const files::JsonValue& version = required(root, members, "version");
+        json_.known(members, std::array<std::string_view, 4>{"version", "base", "layers", "frames"},
+                    "a layer file");
+        const files::JsonValue& version = json_.required(root, members, "version");
         if (const double got = json_.number(version, "\"version\""); got != Version)
             json_.refuse(version.line, fmt::format("version {}", Version), fmt::format("{}", got));
         LightLayers result;
         if (const files::JsonValue* base = files::JsonReader::find(members, "base"))
             result.base = json_.string(*base, "\"base\"");
         for (const files::JsonValue& value :
-             json_.array(required(root, members, "layers"), "\"layers\""))
+             json_.array(json_.required(root, members, "layers"), "\"layers\""))
             result.layers.push_back(layer(value, result.layers));
         if (const files::JsonValue* frames = files::JsonReader::find(members, "frames")) {
             for (const files::JsonValue& value : json_.array(*frames, "\"frames\""))
@@ -46,24 +46,6 @@ public:
     }
 
 private:
-    const files::JsonValue& required(const files::JsonValue& owner,
-                                     const files::JsonValue::Object& members,
-                                     std::string_view field) const {
-        const files::JsonValue* found = files::JsonReader::find(members, field);
-        if (found == nullptr)
-            json_.refuse(owner.line, fmt::format("\"{}\"", field), "none");
-        return *found;
-    }
-
-    void known(const files::JsonValue::Object& members, std::span<const std::string_view> names,
-               std::string_view what) const {
-        for (const auto& [name, value] : members) {
-            if (std::find(names.begin(), names.end(), name) == names.end())
-                json_.refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
-                             fmt::format("\"{}\"", name));
-        }
-    }
-
     std::vector<double> vector3(const files::JsonValue& value, std::string_view what) const {
         const auto& array = json_.array(value, what);
         if (array.size() != 3)
@@ -108,7 +90,7 @@ private:
     ImagePatch image_patch(const files::JsonValue& owner,
                            const files::JsonValue::Object& members) const {
         ImagePatch patch;
-        const files::JsonValue& path = required(owner, members, "path");
+        const files::JsonValue& path = json_.required(owner, members, "path");
         patch.path = json_.string(path, "\"path\"");
         if (const files::JsonValue* blend = files::JsonReader::find(members, "blend")) {
             const std::string& text = json_.string(*blend, "\"blend\"");
@@ -128,17 +110,17 @@ private:
     LightLayer layer(const files::JsonValue& value, const std::vector<LightLayer>& others) const {
         const auto& members = json_.object(value, "a layer");
         LightLayer result;
-        const files::JsonValue& name = required(value, members, "name");
+        const files::JsonValue& name = json_.required(value, members, "name");
         result.name = json_.string(name, "\"name\"");
         if (std::any_of(others.begin(), others.end(),
                         [&](const LightLayer& other) { return other.name == result.name; }))
             json_.refuse(name.line, "layers of different names",
                          fmt::format("a second \"{}\"", result.name));
         result.region =
-            kind<Region>(required(value, members, "type"), "\"type\"",
+            kind<Region>(json_.required(value, members, "type"), "\"type\"",
                          std::array<Region, 4>{Disc{}, Rectangle{}, Lasso{}, Stroke{}}, type_name);
         result.effect =
-            kind<Effect>(required(value, members, "effect"), "\"effect\"",
+            kind<Effect>(json_.required(value, members, "effect"), "\"effect\"",
                          std::array<Effect, 3>{Emit{}, Gain{}, ImagePatch{}}, effect_name);
         std::vector<std::string_view> names = {"name", "type", "effect"};
         for (const LayerField& field : fields(result)) {
@@ -147,15 +129,15 @@ private:
             if (given != nullptr)
                 set_values(field, numbers(field, *given));
             else if (field.required)
-                (void)required(value, members, field.name);
+                (void)json_.required(value, members, field.name);
         }
         if (auto* patch = std::get_if<ImagePatch>(&result.effect)) {
             names.insert(names.end(), {"path", "blend"});
             *patch = image_patch(value, members);
         }
-        known(members, names,
-              fmt::format("a {} with the effect {}", type_name(result.region),
-                          effect_name(result.effect)));
+        json_.known(members, names,
+                    fmt::format("a {} with the effect {}", type_name(result.region),
+                                effect_name(result.effect)));
         try {
             validate(result);
         } catch (const std::invalid_argument& error) {
@@ -167,15 +149,15 @@ private:
 
     KeyFrame frame(const files::JsonValue& value, const LightLayers& before) const {
         const auto& members = json_.object(value, "a key frame");
-        known(members, std::array<std::string_view, 2>{"frame", "layers"}, "a key frame");
+        json_.known(members, std::array<std::string_view, 2>{"frame", "layers"}, "a key frame");
         KeyFrame result;
-        const files::JsonValue& number = required(value, members, "frame");
+        const files::JsonValue& number = json_.required(value, members, "frame");
         result.frame = json_.number(number, "\"frame\"");
         if (!before.frames.empty() && !(result.frame > before.frames.back().frame))
             json_.refuse(number.line, fmt::format("a frame after {}", before.frames.back().frame),
                          fmt::format("{}", result.frame));
         for (const auto& [name, changes] :
-             json_.object(required(value, members, "layers"), "\"layers\" of a key frame")) {
+             json_.object(json_.required(value, members, "layers"), "\"layers\" of a key frame")) {
             const auto found = std::find_if(
                 before.layers.begin(), before.layers.end(),
                 [&, &layer_name = name](const LightLayer& l) { return l.name == layer_name; });
@@ -196,9 +178,9 @@ private:
         names.reserve(all.size());
         for (const LayerField& field : all)
             names.push_back(field.name);
-        known(members, names,
-              fmt::format("a key frame of a {} with the effect {}", type_name(layer.region),
-                          effect_name(layer.effect)));
+        json_.known(members, names,
+                    fmt::format("a key frame of a {} with the effect {}", type_name(layer.region),
+                                effect_name(layer.effect)));
         for (const auto& [name, value] : members) {
             const auto field =
                 std::find_if(all.begin(), all.end(),
