@@ -1,7 +1,9 @@
 #include "app/environment_options.h"
 
 #include <array>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -82,6 +84,11 @@ cubemap::EnvironmentImage load_image(const EnvironmentOptions& options, const Se
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                              const EnvironmentOptions& options) {
     return relumine::cube_map_of(image, options_of(options));
+}
+
+relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                              const EnvironmentOptions& options) {
+    return relumine::backdrop_of(std::move(image), options_of(options));
 }
 
 Environment load_environment(const EnvironmentOptions& options, const Session& session) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,10 @@ struct EnvironmentOptions {
 /// An image resampled to a cube map and rotated.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options);
+
+/// The image as it is seen behind the mesh.
+[[nodiscard]] relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                            const EnvironmentOptions& options);
 
 /// Loads, resamples and rotates. Says on -v what was assumed, and always when pixels were fixed.
 [[nodiscard]] Environment load_environment(const EnvironmentOptions& options,

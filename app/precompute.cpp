@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "app/surface_options.h"
+#include "mesh/floor.h"
 
 namespace relumine::app {
 
@@ -24,6 +26,8 @@ struct Options {
     std::string mesh;
     std::string output;
     std::string normals = "file";
+    /// Of the mesh; empty: as is the custom of its format
+    std::string up;
     std::string engine = "beam";
     MeshOptions mesh_options;
     ReceiverOptions receivers;
@@ -41,6 +45,7 @@ PrecomputeOptions precompute_options(const Options& options, const mesh::Triangl
     result.receivers = options.receivers.receivers();
     result.view = options.receivers.view();
     result.surface = options.surfaces.surface(mesh);
+    result.floor_surface = options.surfaces.floor_surface();
     result.glossy_tolerance = options.surfaces.glossy_tolerance();
     result.max_memory = options.memory.max_bytes();
     result.output = options.output;
@@ -141,6 +146,23 @@ Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts
     return report;
 }
 
+/// How fine the floor's shadows are: what one of its vertices spans.
+Report floor_report(const Mesh& mesh, const Session& session) {
+    const std::size_t n = mesh.floor_vertices;
+    if (n == 0)
+        return {};
+    const auto positions = std::span(mesh.geometry.positions);
+    const mesh::FloorPlace place = mesh::floor_place(positions.last(n * n), mesh.floor_vertices);
+    session.say(fmt::format(
+        "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
+        "{3:.3g} at the edge",
+        n, 2.0f * place.half_side, place.spacing_inside, place.spacing_outside));
+    return {{"vertices", n},
+            {"side", 2.0f * place.half_side},
+            {"spacing_inside", place.spacing_inside},
+            {"spacing_outside", place.spacing_outside}};
+}
+
 void run(const Options& options, Session& session) {
     Stopwatch watch;
     // Found out now, not after a minute of work.
@@ -154,10 +176,20 @@ void run(const Options& options, Session& session) {
     MeshOptions mesh_options = options.mesh_options;
     mesh_options.normals =
         options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
+    if (!options.up.empty())
+        mesh_options.up = options.up == "x"   ? mesh::UpAxis::X
+                          : options.up == "z" ? mesh::UpAxis::Z
+                                              : mesh::UpAxis::Y;
     Mesh mesh = load_mesh(options.mesh, mesh_options);
+    const bool turns_by_custom =
+        options.up.empty() && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
+    if (turns_by_custom)
+        session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
+                                options.mesh));
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
 
+    const Report floor = floor_report(mesh, session);
     const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
     PrecomputeReport facts;
     const Scene scene = precomputed(std::move(mesh), work, facts);
@@ -174,6 +206,9 @@ void run(const Options& options, Session& session) {
         options.output, facts.num_vertices, facts.num_triangles, others, clusters.num_clusters,
         clusters.seconds, static_cast<double>(clusters.num_rays) / clusters.seconds * 1e-6,
         static_cast<double>(facts.file_bytes) * 1e-6));
+    if (!floor.empty())
+        report.set("floor", floor);
+    report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
     report.set("seconds", watch.total());
     session.report(report);
 }
@@ -206,6 +241,10 @@ void add_precompute(Command& program, Session& session) {
                     "side of the floor over the mesh's width")
         .needs("--floor")
         .show_default();
+    command
+        .add_option("--up", options->up,
+                    "the mesh's axis that points up (y; z for .stl, which comes from CAD)")
+        .one_of({"x", "y", "z"});
     command
         .add_option("--normals", options->normals,
                     "vertex normals: the file's where it has them, or always smooth")

@@ -42,16 +42,17 @@ void light_with_environment(const Options& options, Session& session) {
     session.poll();
 
     watch.lap();
-    options.output.save(lit, lit.radiance(), lit.environment());
+    Painter painter(lit, options.output.for_scene(lit.scene()));
+    painter.save(options.output.path, lit.lighting());
     const double seconds_output = watch.lap();
 
-    session.say(fmt::format(
-        "{}: {} receivers under {} (R = {}): load {:.0f}, resample {:.0f}, bin {:.1f}, "
-        "trace {:.1f} ({} lights), relight {:.1f} ms{}",
-        options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
-        1e3 * environment.seconds_load, 1e3 * environment.seconds_resample, 1e3 * times.seconds_bin,
-        1e3 * times.seconds_trace, times.num_sharp_lights, 1e3 * times.seconds_relight,
-        options.output.exposure_hint(scene, lit.radiance(), session)));
+    session.say(
+        fmt::format("{}: {} receivers under {} (R = {}): load {:.0f}, resample {:.0f}, bin {:.1f}, "
+                    "trace {:.1f} ({} lights), relight {:.1f} ms{}",
+                    options.output.path, scene.transfer.num_receivers(), options.environment.path,
+                    resolution, 1e3 * environment.seconds_load, 1e3 * environment.seconds_resample,
+                    1e3 * times.seconds_bin, 1e3 * times.seconds_trace, times.num_sharp_lights,
+                    1e3 * times.seconds_relight, options.output.exposure_text(painter)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -63,6 +64,7 @@ void light_with_environment(const Options& options, Session& session) {
                     {"seconds_trace", times.seconds_trace},
                     {"seconds_relight", times.seconds_relight},
                     {"sharp_lights", times.num_sharp_lights},
+                    {"exposure", painter.exposure_ev(options.output.path)},
                     {"seconds_output", seconds_output}});
 }
 
@@ -76,19 +78,21 @@ void light_with_list(const Options& options, Session& session) {
     lit.light(list.lights);
     const double seconds_light = watch.lap();
     session.poll();
-    options.output.save(lit, lit.radiance(), lit.environment());
+    Painter painter(lit, options.output.for_scene(lit.scene()));
+    painter.save(options.output.path, lit.lighting());
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
         "{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
         lit.radiance().size(), list.lights.size(), options.lights, 1e3 * seconds_light,
         options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
-        options.output.exposure_hint(lit.scene(), lit.radiance(), session)));
+        options.output.exposure_text(painter)));
     session.report({{"receivers", lit.radiance().size()},
                     {"lights", list.lights.size()},
                     {"traced", !options.scene.clusters_only},
                     {"seconds_load_scene", seconds_load_scene},
                     {"seconds_light", seconds_light},
+                    {"exposure", painter.exposure_ev(options.output.path)},
                     {"seconds_output", seconds_output}});
 }
 

@@ -16,7 +16,6 @@
 #include "app/size_text.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
-#include "relight/pictures/exposure.h"
 #include "viewer/view.h"
 #endif
 
@@ -113,13 +112,17 @@ void run(const Options& options, Session& session) {
     editor.set_rotation(options.environment.rotate_degrees);
     editor.set_base(path.empty() ? plain_grey() : load(path));
     viewer::LightDesk desk(editor, path);
-    viewer::ViewState state{
-        .mesh = lit.scene().mesh, .rays = lit.rays(), .desk = desk, .load_environment = load};
+    viewer::ViewState state{.mesh = lit.scene().mesh,
+                            .rays = lit.rays(),
+                            .desk = desk,
+                            .albedo = picture_albedo(lit.scene()),
+                            .load_environment = load};
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
-    state.scene_look.exposure_ev = options.exposure_ev
-                                       ? static_cast<float>(*options.exposure_ev)
-                                       : relight::suitable_exposure_ev(editor.radiance());
+    state.scene_look.exposure_ev =
+        options.exposure_ev
+            ? static_cast<float>(*options.exposure_ev)
+            : static_cast<float>(Painter(lit, {}).choose_exposure_ev(lit.lighting()));
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
     report(viewer::view(state, view), editor, session);
     session.poll();

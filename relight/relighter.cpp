@@ -88,6 +88,7 @@ public:
     void resum();
 
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
     [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
@@ -104,7 +105,10 @@ private:
     void set_pyramid();
     void light_glossy(std::size_t block);
     void write_radiance(std::size_t block);
-    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse) const;
+    void write_radiance(std::size_t block, bool with_sharp_lights,
+                        std::span<glm::vec3> radiance) const;
+    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse,
+                                            bool with_sharp_lights) const;
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
@@ -435,8 +439,10 @@ void Relighter::Impl::light_glossy(std::size_t block) {
 
 /// Returns the radiance that a receiver with a surface sends on. `diffuse` is its radiance for
 /// albedo 1.
-glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& diffuse) const {
-    prt::Lobes<glm::vec3> lobes = traced_.highlights(place);
+glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& diffuse,
+                                           bool with_sharp_lights) const {
+    prt::Lobes<glm::vec3> lobes =
+        with_sharp_lights ? traced_.highlights(place) : prt::Lobes<glm::vec3>();
     lobes.diffuse = diffuse;
     if (!glossy_.empty()) {
         const GlossyLight& light = glossy_[place / prt::BlockSize];
@@ -451,13 +457,27 @@ glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& d
 }
 
 void Relighter::Impl::write_radiance(std::size_t block) {
+    write_radiance(block, true, radiance_);
+}
+
+void Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
+                                     std::span<glm::vec3> radiance) const {
     BlockRadiance sums;
-    block_radiance(normals_[block], light_[block], traced_.diffuse(block), sums);
+    block_radiance(normals_[block], light_[block],
+                   with_sharp_lights ? traced_.diffuse(block) : nullptr, sums);
     const std::size_t begin = block * prt::BlockSize;
-    const std::size_t size = std::min(prt::BlockSize, radiance_.size() - begin);
+    const std::size_t size = std::min(prt::BlockSize, radiance.size() - begin);
     for (std::size_t i = 0; i < size; ++i)
-        radiance_[transfer_.order[begin + i]] =
-            transfer_.surfaces.empty() ? sums.of(i) : through_surface(begin + i, sums.of(i));
+        radiance[transfer_.order[begin + i]] =
+            transfer_.surfaces.empty() ? sums.of(i)
+                                       : through_surface(begin + i, sums.of(i), with_sharp_lights);
+}
+
+std::vector<glm::vec3> Relighter::Impl::soft_radiance() const {
+    std::vector<glm::vec3> radiance(radiance_.size());
+    tbb::parallel_for(std::size_t{0}, light_.size(),
+                      [&](std::size_t block) { write_radiance(block, false, radiance); });
+    return radiance;
 }
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
@@ -494,6 +514,9 @@ void Relighter::resum() {
 
 std::span<const glm::vec3> Relighter::radiance() const {
     return impl_->radiance();
+}
+std::vector<glm::vec3> Relighter::soft_radiance() const {
+    return impl_->soft_radiance();
 }
 const cubemap::CubeMap& Relighter::environment() const {
     return impl_->environment();

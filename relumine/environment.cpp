@@ -1,6 +1,7 @@
 #include "relumine/environment.h"
 
 #include <chrono>
+#include <utility>
 
 #include "cubemap/resample/resample.h"
 
@@ -22,15 +23,23 @@ cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
     return map;
 }
 
+relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                              const EnvironmentOptions& options) {
+    return relight::image_backdrop(std::move(image), cubemap::turn_about_y(options.rotate_degrees));
+}
+
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const cubemap::EnvironmentImage image = load_environment_image(path, options);
+    auto image =
+        std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
     const Clock::time_point loaded = Clock::now();
-    Environment result{.map = cube_map_of(image, options), .assumptions = image.assumptions};
-    result.num_fixed_pixels = image.fixed ? image.bad_pixels.count() : 0;
+    Environment result{
+        .map = cube_map_of(*image, options), .sharp = {}, .assumptions = image->assumptions};
+    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
     result.seconds_load = std::chrono::duration<double>(loaded - start).count();
     result.seconds_resample = std::chrono::duration<double>(Clock::now() - loaded).count();
+    result.sharp = backdrop_of(std::move(image), options);
     return result;
 }
 

@@ -3,11 +3,13 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
+#include "relight/pictures/backdrop.h"
 
 namespace relumine {
 
@@ -26,6 +28,8 @@ struct EnvironmentOptions {
 /// An environment ready to light a scene, and what was found out about its file.
 struct Environment {
     cubemap::CubeMap map;
+    /// The file's own pixels, for what is seen behind the mesh. Keeps the image in memory.
+    relight::Backdrop sharp;
     /// One sentence: which layout and sampling the file has, and why
     std::string assumptions;
     /// Pixels that were replaced
@@ -44,6 +48,10 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
 /// Resamples an image to a cube map and turns it. Keeps the energy of every pixel.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options = {});
+
+/// Returns the image, turned, as what is seen behind a mesh: as sharp as its own pixels.
+[[nodiscard]] relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                            const EnvironmentOptions& options = {});
 
 /// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.
 ///

@@ -99,6 +99,12 @@ public:
     RelightTimes light(cubemap::CubeMap environment);
     RelightTimes light(Environment environment);
 
+    /// Replaces the environment under the layers by another of the same resolution, and updates
+    /// only what differs.
+    ///
+    /// Throws:  as light().
+    UpdateReport update(Environment environment);
+
     /// Lights the scene with distant lights alone, each with shadow rays of its own or, with
     /// clusters_only, through its cluster. The environment and its layers go; the background is
     /// black.
@@ -167,6 +173,12 @@ public:
     ///
     /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
     [[nodiscard]] Share lit_by(const cubemap::Region& region) const;
+
+    /// Returns what a picture is drawn of. It points into this object, and is good until the light
+    /// changes.
+    ///
+    /// Throws:  std::logic_error before the first light().
+    [[nodiscard]] Lighting lighting() const;
 
     /// The scene in its light. For many pictures of one view see Painter.
     ///

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "relight/pictures/picture.h"
+#include "relight/pictures/framing.h"
 #include "viewer/panel_layout.h"
 
 namespace relumine::viewer {

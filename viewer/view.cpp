@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <utility>
+#include <vector>
 
 #include <imgui.h>
 
@@ -34,7 +35,10 @@ public:
         const relight::LightEditor& editor = state.desk.editor();
         if (const auto version = state.desk.version(); version != version_) {
             version_ = version;
-            scene_.upload_radiance(editor.radiance());
+            std::vector<glm::vec3> colors(editor.radiance().begin(), editor.radiance().end());
+            for (std::size_t i = 0; i < colors.size(); ++i)
+                colors[i] *= state.albedo[i];
+            scene_.upload_radiance(colors);
             texture_.upload(editor.environment(), state.desk.take_changed_texels());
         }
         // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.

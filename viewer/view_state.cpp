@@ -12,6 +12,7 @@
 
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/image_pyramid.h"
+#include "relight/pictures/framing.h"
 
 namespace relumine::viewer {
 
@@ -60,9 +61,9 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
 } // namespace
 
 OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh, const PixelRectangle& viewport) {
-    return orbit_camera(relight::automatic_camera(
-        mesh, {.width = static_cast<std::uint32_t>(std::max(viewport.width, 1)),
-               .height = static_cast<std::uint32_t>(std::max(viewport.height, 1))}));
+    return orbit_camera(
+        relight::framed(mesh, {.aspect = static_cast<float>(std::max(viewport.width, 1)) /
+                                         static_cast<float>(std::max(viewport.height, 1))}));
 }
 
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel) {

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/layer_file.h"
@@ -25,6 +26,8 @@ struct ViewState {
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
     LightDesk& desk;
+    /// [num_vertices] what the radiance is multiplied with.
+    std::vector<glm::vec3> albedo;
     /// Reads an environment file as the command line's options say. Throws std::runtime_error.
     std::function<cubemap::CubeMap(const std::filesystem::path&)> load_environment;
 
