@@ -137,10 +137,15 @@ private:
                 fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
     }
 
-    /// Chooses one exposure for all frames from up to nine of them, whichever are there already.
+    /// Chooses one exposure for all frames from up to nine of them, or keeps to that of the frames
+    /// that are there.
     void meter_frames() {
         if (!pattern_ || todo_.empty() || !writer_.needs_light_for(options_.output.path))
             return;
+        if (const std::optional<double> before = record_->exposure_ev()) {
+            writer_.set_exposure_ev(*before);
+            return;
+        }
         constexpr std::size_t MostFrames = 9;
         const std::size_t last = sequence_.size() - 1;
         const std::size_t num_gaps = std::min(MostFrames - 1, last);
@@ -155,6 +160,7 @@ private:
                 relighter.set_lights(frame.lights);
             writer_.meter(lighting_of(relighter));
         }
+        record_->set_exposure_ev(writer_.choose_exposure_ev(lighting_of(relighter)));
     }
 
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.

@@ -142,8 +142,6 @@ std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) con
                     FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
                     environment.face_resolution, environment.fix, environment.rotate_degrees,
                     method, bound, num_lights, seed, output.path, output.settings());
-    if (!output.exposure_ev()) // chosen from all frames
-        all += fmt::format("\n{}", sequence.size());
     if (method == "clusters") { // every frame depends on all
         all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
         for (const cubemap::FrameFile& frame : sequence.files())

@@ -154,14 +154,7 @@ Option OutputOptions::add_to(Command& command) {
                     "outer part of the floor's radius over which it fades into the background")
         .between(0.0, 1.0)
         .show_default();
-    command
-        .add_option("--exposure", exposure,
-                    "stops that brighten pictures and colours, or auto: what suits the picture; 0 "
-                    "for .exr and .npy")
-        .show_default();
-    command.add_option("--tone-map", tone_map, "how a .png shows what is brighter than white")
-        .one_of({relight::ToneCurveNames.begin(), relight::ToneCurveNames.end()})
-        .show_default();
+    add_exposure_options(command, exposure, tone_map);
     camera_options_ = {
         command.add_option("--camera", camera,
                            "AZIMUTH,ELEVATION[,DISTANCE][,FOV]: degrees to the right of the "
@@ -260,14 +253,7 @@ std::string OutputOptions::settings() const {
 }
 
 std::optional<double> OutputOptions::exposure_ev() const {
-    if (exposure == "auto")
-        return std::nullopt;
-    const std::optional<double> stops = parse_number(exposure);
-    if (!stops || !(std::abs(*stops) <= 100.0))
-        throw UsageError(
-            "--exposure",
-            fmt::format("expected auto or stops from -100 to 100, got '{}'", exposure));
-    return stops;
+    return parse_exposure(exposure);
 }
 
 std::string OutputOptions::exposure_text(const Painter& painter) const {
@@ -276,6 +262,29 @@ std::string OutputOptions::exposure_text(const Painter& painter) const {
         return "";
     return fmt::format("; exposure {:.2f}{}", painter.exposure_ev(path),
                        exposure_ev() ? "" : " (auto)");
+}
+
+void add_exposure_options(Command& command, std::string& exposure, std::string& tone_map) {
+    command
+        .add_option("--exposure", exposure,
+                    "stops that brighten pictures and colours, or auto: what suits what is seen; 0 "
+                    "for .exr and .npy")
+        .show_default();
+    command
+        .add_option("--tone-map", tone_map,
+                    "how a screen shows what is brighter than white, in .png and the window")
+        .one_of({relight::ToneCurveNames.begin(), relight::ToneCurveNames.end()})
+        .show_default();
+}
+
+std::optional<double> parse_exposure(const std::string& text) {
+    if (text == "auto")
+        return std::nullopt;
+    const std::optional<double> stops = parse_number(text);
+    if (!stops || !(std::abs(*stops) <= 100.0))
+        throw UsageError("--exposure",
+                         fmt::format("expected auto or stops from -100 to 100, got '{}'", text));
+    return stops;
 }
 
 std::string extension_of(const std::string& path) {

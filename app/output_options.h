@@ -67,6 +67,12 @@ private:
     std::vector<Option> background_options_;
 };
 
+/// Adds --exposure and --tone-map.
+void add_exposure_options(Command& command, std::string& exposure, std::string& tone_map);
+
+/// Stops of --exposure; empty for auto. Throws UsageError.
+[[nodiscard]] std::optional<double> parse_exposure(const std::string& text);
+
 /// A path's extension in small letters, with the dot.
 [[nodiscard]] std::string extension_of(const std::string& path);
 

@@ -147,12 +147,11 @@ Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts
 }
 
 /// How fine the floor's shadows are: what one of its vertices spans.
-Report floor_report(const Mesh& mesh, const Session& session) {
-    const std::size_t n = mesh.floor_vertices;
-    if (n == 0)
-        return {};
-    const auto positions = std::span(mesh.geometry.positions);
-    const mesh::FloorPlace place = mesh::floor_place(positions.last(n * n), mesh.floor_vertices);
+Report floor_report(const Scene& scene, const Session& session) {
+    const std::size_t n = scene.settings.floor_vertices;
+    const auto positions = std::span(scene.mesh.positions);
+    const mesh::FloorPlace place =
+        mesh::floor_place(positions.last(n * n), scene.settings.floor_vertices);
     session.say(fmt::format(
         "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
         "{3:.3g} at the edge",
@@ -189,7 +188,6 @@ void run(const Options& options, Session& session) {
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
 
-    const Report floor = floor_report(mesh, session);
     const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
     PrecomputeReport facts;
     const Scene scene = precomputed(std::move(mesh), work, facts);
@@ -206,8 +204,8 @@ void run(const Options& options, Session& session) {
         options.output, facts.num_vertices, facts.num_triangles, others, clusters.num_clusters,
         clusters.seconds, static_cast<double>(clusters.num_rays) / clusters.seconds * 1e-6,
         static_cast<double>(facts.file_bytes) * 1e-6));
-    if (!floor.empty())
-        report.set("floor", floor);
+    if (scene.settings.floor_vertices != 0)
+        report.set("floor", floor_report(scene, session));
     report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
     report.set("seconds", watch.total());
     session.report(report);

@@ -341,6 +341,10 @@ double Painter::choose_exposure_ev(const Lighting& lighting) {
     return impl_->exposure(lighting);
 }
 
+void Painter::set_exposure_ev(double ev) {
+    impl_->options.exposure_ev = ev;
+}
+
 bool Painter::needs_light_for(const std::filesystem::path& path) const {
     return !is_linear_data(extension_of(path)) && !impl_->options.exposure_ev && !impl_->chosen_ev;
 }

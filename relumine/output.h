@@ -155,6 +155,9 @@ public:
     /// to it.
     [[nodiscard]] double choose_exposure_ev(const Lighting& lighting);
 
+    /// Keeps to an exposure that was chosen before.
+    void set_exposure_ev(double ev);
+
     /// Returns the exposure of files with this extension; 0 before it is chosen.
     [[nodiscard]] double exposure_ev(const std::filesystem::path& path) const;
 

@@ -28,6 +28,7 @@ struct OrbitCamera {
     void zoom(float steps);
 
     [[nodiscard]] glm::vec3 eye() const;
+    bool operator==(const OrbitCamera&) const = default;
 };
 
 struct Ray {

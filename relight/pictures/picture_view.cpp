@@ -47,7 +47,8 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
     samples_.resize(num_samples);
     const std::size_t per_row = std::size_t{options.width} * grid_.samples_per_pixel();
     tbb::parallel_for(std::uint32_t{0}, options.height, [&](std::uint32_t y) {
-        trace(y, 0, options_.width, std::span(samples_).subspan(y * per_row, per_row));
+        if (!options_.stop.stop_requested())
+            trace(y, 0, options_.width, std::span(samples_).subspan(y * per_row, per_row));
     });
 }
 
@@ -305,14 +306,17 @@ Picture PictureView::cut_out(const MeshLight& light) const {
     const std::uint32_t num_columns = (options_.width + TileSize - 1) / TileSize;
     const std::uint32_t num_rows = (options_.height + TileSize - 1) / TileSize;
     tbb::parallel_for(std::uint32_t{0}, num_columns * num_rows, [&](std::uint32_t tile) {
-        Tile(*this, light, packets)
-            .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, picture);
+        if (!options_.stop.stop_requested())
+            Tile(*this, light, packets)
+                .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, picture);
     });
     return picture;
 }
 
 void PictureView::put_behind(Picture& cut_out, const Backdrop& backdrop) const {
     tbb::parallel_for(std::uint32_t{0}, options_.height, [&](std::uint32_t y) {
+        if (options_.stop.stop_requested())
+            return;
         const Row row(*this, y, 0, options_.width);
         for (std::uint32_t x = 0; x < options_.width; ++x) {
             const std::size_t pixel = std::size_t{y} * options_.width + x;

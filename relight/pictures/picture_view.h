@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -28,6 +29,8 @@ struct PictureOptions {
     std::uint32_t height = 768;
     /// n: each pixel has n x n rays and a box filter.
     std::uint32_t samples_per_axis = 3;
+    /// Polled between parts of the picture. What is drawn after a stop request is unfinished.
+    std::stop_token stop = {};
 
     [[nodiscard]] float aspect() const {
         return static_cast<float>(width) / static_cast<float>(height);

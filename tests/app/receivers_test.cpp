@@ -76,9 +76,10 @@ TEST_F(Receivers, AllCommandsTakePixels) {
     make_pixels();
     write("frame.0001.hdr", lamp_hdr(32));
     write("frame.0002.hdr", lamp_hdr(64));
-    succeed({"animate", "px.prt", "frame.%04d.hdr", "-o", "lit.%04d.png", "--vertices", "all.npy"});
+    succeed({"animate", "px.prt", "frame.%04d.hdr", "-o", "lit.%04d.png", "--vertices", "all.npy",
+             "--exposure", "1"});
     EXPECT_EQ(png_size(read("lit.0002.png")), (Size{24, 16}));
-    succeed({"relight", "px.prt", "frame.0002.hdr", "-o", "one.png"});
+    succeed({"relight", "px.prt", "frame.0002.hdr", "-o", "one.png", "--exposure", "1"});
     EXPECT_EQ(read("lit.0002.png"), read("one.png"));
     succeed({"edit", "px.prt", "white.hdr", "-o", "edited.png", "--disc", "0,1,0", "--gain", "3"});
     EXPECT_EQ(png_size(read("edited.png")), (Size{24, 16}));
@@ -150,7 +151,7 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
     }
     fail({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"},
-         {"--transparent", "pixels"});
+         {"--transparent", "texels"});
     fail({"relight", "px.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, {"colours"});
 }
 
