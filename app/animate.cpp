@@ -88,6 +88,8 @@ public:
                 vertices->append(writer_.values(relighter_.radiance()));
             totals_.seconds_write += watch.lap();
             ++totals_.num_lit;
+            if (!options_.output.path.empty())
+                Session::set_cancelled_message(cancelled_message());
             if (progress)
                 progress(static_cast<double>(i + 1) / static_cast<double>(todo_.size()));
         }
@@ -97,13 +99,17 @@ public:
         if (!options_.reference.empty())
             measure();
         seconds_frames_ = watch_.lap();
+        const Patience for_ffmpeg;
         if (!options_.movie.empty())
             make_movie(find_ffmpeg(options_.movie), options_.movie, output_paths(),
                        options_.frames_per_second, session_.stop());
         report();
     }
 
-    [[nodiscard]] std::size_t num_written() const { return num_kept_ + num_written_; }
+    [[nodiscard]] std::string cancelled_message() const {
+        return fmt::format("cancelled; {} of {} frames are written, --resume goes on",
+                           num_kept_ + num_written_, sequence_.size());
+    }
 
 private:
     [[nodiscard]] std::string output_path(std::size_t frame) const {
@@ -338,9 +344,7 @@ void run(const AnimateOptions& options, Session& session) {
     } catch (const prt::Cancelled&) {
         if (options.output.path.empty())
             throw;
-        throw std::runtime_error(
-            fmt::format("cancelled; {} of {} frames are written, --resume goes on",
-                        animation.num_written(), sequence.size()));
+        throw std::runtime_error(animation.cancelled_message());
     }
 }
 

@@ -160,7 +160,10 @@ void run(const Options& options, Session& session) {
 
     const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
     PrecomputeReport facts;
-    const Scene scene = precomputed(std::move(mesh), work, facts);
+    const Scene scene = [&] {
+        const Patience for_checkpoints;
+        return precomputed(std::move(mesh), work, facts);
+    }();
     session.end_progress();
 
     Report report = report_of(work, facts, scene, session);
