@@ -60,14 +60,16 @@ void light_with_environment(const Options& options, Session& session) {
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
-        "{}: {} receivers under {} (R = {}){}: load {:.0f}, resample {:.0f}, bin {:.1f}, "
-        "trace {:.1f} ({} lights), relight {:.1f} ms{}",
+        "{}: {} receivers under {} (R = {}){} in {:.2f} s: scene {:.0f}, environment {:.0f}, "
+        "resample "
+        "{:.0f}, bin {:.1f}, trace {:.1f} ({} lights), relight {:.1f}, output {:.0f} ms{}",
         options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
         num_lights == 0 ? ""
                         : fmt::format(" and {} lights of {} ({:.1f} ms)", num_lights,
                                       options.lights, 1e3 * seconds_list),
-        1e3 * environment.seconds_load, 1e3 * environment.seconds_resample, 1e3 * times.seconds_bin,
-        1e3 * times.seconds_trace, times.num_sharp_lights, 1e3 * times.seconds_relight,
+        watch.total(), 1e3 * seconds_load_scene, 1e3 * environment.seconds_load,
+        1e3 * environment.seconds_resample, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
+        times.num_sharp_lights, 1e3 * times.seconds_relight, 1e3 * seconds_output,
         options.output.exposure_hint(scene, radiance, session)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
@@ -82,7 +84,8 @@ void light_with_environment(const Options& options, Session& session) {
                     {"sharp_lights", times.num_sharp_lights},
                     {"lights", num_lights},
                     {"seconds_list", seconds_list},
-                    {"seconds_output", seconds_output}});
+                    {"seconds_output", seconds_output},
+                    {"seconds", watch.total()}});
 }
 
 void light_with_list(const Options& options, Session& session) {
@@ -99,8 +102,10 @@ void light_with_list(const Options& options, Session& session) {
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
-        "{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
-        lit.radiance().size(), list.lights.size(), options.lights, 1e3 * seconds_light,
+        "{}: {} receivers under {} lights of {} in {:.2f} s: scene {:.0f}, light {:.1f}, output "
+        "{:.0f} ms, {}{}",
+        options.output.path, lit.radiance().size(), list.lights.size(), options.lights,
+        watch.total(), 1e3 * seconds_load_scene, 1e3 * seconds_light, 1e3 * seconds_output,
         options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
         options.output.exposure_hint(lit.scene(), lit.radiance(), session)));
     session.report({{"receivers", lit.radiance().size()},
@@ -108,7 +113,8 @@ void light_with_list(const Options& options, Session& session) {
                     {"traced", !options.scene.clusters_only},
                     {"seconds_load_scene", seconds_load_scene},
                     {"seconds_light", seconds_light},
-                    {"seconds_output", seconds_output}});
+                    {"seconds_output", seconds_output},
+                    {"seconds", watch.total()}});
 }
 
 void run(const Options& options, Session& session) {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <tbb/parallel_for.h>
 
 #include "cubemap/resample/pixel_links.h"
 #include "cubemap/resample/pixel_points.h"
@@ -161,6 +162,16 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
 
 using Pixels = std::vector<glm::vec3>;
 
+constexpr std::size_t ChunkSize = 1 << 14;
+
+/// Calls `work(chunk, begin, end)` for chunks of pixels, in parallel.
+template<typename Work>
+void for_each_chunk(std::size_t size, const Work& work) {
+    tbb::parallel_for(std::size_t{0}, (size + ChunkSize - 1) / ChunkSize, [&](std::size_t chunk) {
+        work(chunk, chunk * ChunkSize, std::min((chunk + 1) * ChunkSize, size));
+    });
+}
+
 /// Multiplies `grown` by the ratio of the image to `back(grown)`, spread over the footprints by
 /// `forth` (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, makes
 /// nothing negative, and leaves a constant as it is.
@@ -173,11 +184,16 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
              Pixels& grown) {
     // A product never leaves zero, and the interpolation may have missed a part of a wide pixel. So
     // pixels of zero start from the mean.
-    const Pixels means = forth(image);
-    for (std::size_t i = 0; i < grown.size(); ++i) {
-        for (int channel = 0; channel < 3; ++channel) {
-            if (grown[i][channel] <= 0.0f)
-                grown[i][channel] = means[i][channel];
+    const auto has_zero = [](const glm::vec3& pixel) {
+        return pixel.x <= 0.0f || pixel.y <= 0.0f || pixel.z <= 0.0f;
+    };
+    if (std::any_of(grown.begin(), grown.end(), has_zero)) {
+        const Pixels means = forth(image);
+        for (std::size_t i = 0; i < grown.size(); ++i) {
+            for (int channel = 0; channel < 3; ++channel) {
+                if (grown[i][channel] <= 0.0f)
+                    grown[i][channel] = means[i][channel];
+            }
         }
     }
     Pixels start = grown;
@@ -187,14 +203,26 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
     int run = 0;
     for (int round = 0; round < num_rounds; ++round) {
         Pixels ratio = back(start);
-        double difference = 0.0, sum = 0.0;
-        for (std::size_t i = 0; i < ratio.size(); ++i) {
-            for (int channel = 0; channel < 3; ++channel) {
-                const float have = ratio[i][channel], want = image[i][channel];
-                difference += std::abs(static_cast<double>(have) - want);
-                sum += want;
-                ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
+        // Chunks are summed in parallel, and their sums in order.
+        struct Sums {
+            double difference = 0.0, all = 0.0;
+        };
+        std::vector<Sums> chunks((ratio.size() + ChunkSize - 1) / ChunkSize);
+        for_each_chunk(ratio.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+            Sums& sums = chunks[chunk];
+            for (std::size_t i = begin; i < end; ++i) {
+                for (int channel = 0; channel < 3; ++channel) {
+                    const float have = ratio[i][channel], want = image[i][channel];
+                    sums.difference += std::abs(static_cast<double>(have) - want);
+                    sums.all += want;
+                    ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
+                }
             }
+        });
+        double difference = 0.0, sum = 0.0;
+        for (const Sums& sums : chunks) {
+            difference += sums.difference;
+            sum += sums.all;
         }
         const Pixels factor = forth(ratio);
         // The difference rose, so the step was too long: restart.
@@ -217,11 +245,13 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         // Least value relative to the pixel. The next round multiplies, so a value must not come
         // near zero.
         constexpr float Least = 0.25f;
-        for (std::size_t i = 0; i < grown.size(); ++i) {
-            const glm::vec3 end = start[i] * factor[i];
-            start[i] = glm::max(end + further * (end - grown[i]), Least * end);
-            grown[i] = end;
-        }
+        for_each_chunk(grown.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::vec3 after = start[i] * factor[i];
+                start[i] = glm::max(after + further * (after - grown[i]), Least * after);
+                grown[i] = after;
+            }
+        });
         if (is_last)
             return;
     }
