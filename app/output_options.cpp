@@ -148,7 +148,7 @@ Option OutputOptions::add_to(Command& command) {
                     "the mesh's own, else 0.5 in pictures and 1 in .npy")
         .show_default();
     command.add_option("--floor-albedo", floor_albedo,
-                       "reflectance of the floor of --floor: a number or R,G,B (0.4; 1 in .npy)");
+                       "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)");
     command
         .add_option("--floor-fade", floor_fade,
                     "outer part of the floor's radius over which it fades into the background")

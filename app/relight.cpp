@@ -1,7 +1,12 @@
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -19,10 +24,24 @@ namespace {
 struct Options {
     SceneOptions scene{.mesh_too = true};
     EnvironmentOptions environment;
-    /// A light list in place of an environment
+    /// A light list, alone or added to the environment
     std::string lights;
     OutputOptions output;
 };
+
+/// Adds the light of a list. `radiance` is the list's, and becomes the sum.
+void add(Lighting& lighting, Lighting list, std::vector<glm::vec3>& radiance) {
+    const auto sum = [](std::span<const glm::vec3> a, std::vector<glm::vec3>& b) {
+        std::transform(a.begin(), a.end(), b.begin(), b.begin(), std::plus<>());
+    };
+    std::vector<glm::vec3> soft = list.lights.empty() ? radiance : std::move(list.soft);
+    sum(lighting.lights.empty() ? lighting.radiance : std::span<const glm::vec3>(lighting.soft),
+        soft);
+    lighting.soft = std::move(soft);
+    lighting.lights.insert(lighting.lights.end(), list.lights.begin(), list.lights.end());
+    sum(lighting.radiance, radiance);
+    lighting.radiance = radiance;
+}
 
 void light_with_environment(const Options& options, Session& session) {
     Stopwatch watch;
@@ -36,23 +55,42 @@ void light_with_environment(const Options& options, Session& session) {
     const double seconds_load_scene = watch.lap();
     session.poll();
 
+    // Of the sum, where there is a list, too.
+    std::vector<glm::vec3> radiance;
+    std::optional<Lighting> from_list;
+    std::size_t num_lights = 0;
+    if (!options.lights.empty()) {
+        const lights::LightList list = lights::load_lights(options.lights);
+        num_lights = list.lights.size();
+        lit.light(list.lights);
+        radiance.assign(lit.radiance().begin(), lit.radiance().end());
+        from_list = lit.lighting();
+    }
+    const double seconds_list = watch.lap();
     Environment environment = load_environment(options.environment, session);
-    const RelightTimes times = lit.light(std::move(environment.map));
+    const RelightTimes times = lit.light(std::move(environment));
     const std::uint32_t resolution = lit.environment().resolution;
     session.poll();
-
     watch.lap();
+    Lighting lighting = lit.lighting();
+    if (from_list)
+        add(lighting, std::move(*from_list), radiance);
     Painter painter(lit, options.output.for_scene(lit.scene()));
-    painter.save(options.output.path, lit.lighting());
+    painter.save(options.output.path, lighting);
     const double seconds_output = watch.lap();
 
-    session.say(
-        fmt::format("{}: {} receivers under {} (R = {}): load {:.0f}, resample {:.0f}, bin {:.1f}, "
-                    "trace {:.1f} ({} lights), relight {:.1f} ms{}",
-                    options.output.path, scene.transfer.num_receivers(), options.environment.path,
-                    resolution, 1e3 * environment.seconds_load, 1e3 * environment.seconds_resample,
-                    1e3 * times.seconds_bin, 1e3 * times.seconds_trace, times.num_sharp_lights,
-                    1e3 * times.seconds_relight, options.output.exposure_text(painter)));
+    session.say(fmt::format(
+        "{}: {} receivers under {} (R = {}){} in {:.2f} s: scene {:.0f}, environment {:.0f}, "
+        "resample "
+        "{:.0f}, bin {:.1f}, trace {:.1f} ({} lights), relight {:.1f}, output {:.0f} ms{}",
+        options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
+        num_lights == 0 ? ""
+                        : fmt::format(" and {} lights of {} ({:.1f} ms)", num_lights,
+                                      options.lights, 1e3 * seconds_list),
+        watch.total(), 1e3 * seconds_load_scene, 1e3 * environment.seconds_load,
+        1e3 * environment.seconds_resample, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
+        times.num_sharp_lights, 1e3 * times.seconds_relight, 1e3 * seconds_output,
+        options.output.exposure_text(painter)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -65,7 +103,10 @@ void light_with_environment(const Options& options, Session& session) {
                     {"seconds_relight", times.seconds_relight},
                     {"sharp_lights", times.num_sharp_lights},
                     {"exposure", painter.exposure_ev(options.output.path)},
-                    {"seconds_output", seconds_output}});
+                    {"lights", num_lights},
+                    {"seconds_list", seconds_list},
+                    {"seconds_output", seconds_output},
+                    {"seconds", watch.total()}});
 }
 
 void light_with_list(const Options& options, Session& session) {
@@ -83,8 +124,10 @@ void light_with_list(const Options& options, Session& session) {
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
-        "{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
-        lit.radiance().size(), list.lights.size(), options.lights, 1e3 * seconds_light,
+        "{}: {} receivers under {} lights of {} in {:.2f} s: scene {:.0f}, light {:.1f}, output "
+        "{:.0f} ms, {}{}",
+        options.output.path, lit.radiance().size(), list.lights.size(), options.lights,
+        watch.total(), 1e3 * seconds_load_scene, 1e3 * seconds_light, 1e3 * seconds_output,
         options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
         options.output.exposure_text(painter)));
     session.report({{"receivers", lit.radiance().size()},
@@ -93,19 +136,23 @@ void light_with_list(const Options& options, Session& session) {
                     {"seconds_load_scene", seconds_load_scene},
                     {"seconds_light", seconds_light},
                     {"exposure", painter.exposure_ev(options.output.path)},
-                    {"seconds_output", seconds_output}});
+                    {"seconds_output", seconds_output},
+                    {"seconds", watch.total()}});
 }
 
 void run(const Options& options, Session& session) {
-    if (options.environment.path.empty() == options.lights.empty())
-        throw UsageError("relight", "expected either ENV or --lights");
-    const bool with_list = !options.lights.empty();
-    options.output.check(
-        {options.scene.path, with_list ? options.lights : options.environment.path});
-    if (with_list)
-        light_with_list(options, session);
-    else
+    const bool has_environment = !options.environment.path.empty();
+    if (!has_environment && options.lights.empty())
+        throw UsageError("relight", "expected ENV, --lights or both");
+    std::vector<std::string> inputs = {options.scene.path};
+    for (const std::string& path : {options.environment.path, options.lights})
+        if (!path.empty())
+            inputs.push_back(path);
+    options.output.check(inputs);
+    if (has_environment)
         light_with_environment(options, session);
+    else
+        light_with_list(options, session);
 }
 
 } // namespace
@@ -118,9 +165,10 @@ void add_relight(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
     command
-        .add_option("--lights", options->lights,
-                    "in place of ENV: a light list (.json, from `relumine lights`), a shadow "
-                    "ray for each light")
+        .add_option(
+            "--lights", options->lights,
+            "a light list (.json, from `relumine lights` or `env convert --split-sun`), a shadow "
+            "ray for each light; with ENV, both light together")
         .file();
     options->output.add_to(command);
     session.add_common_options(command);

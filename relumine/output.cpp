@@ -53,7 +53,7 @@ namespace {
 /// Whether the colours are looked at or computed with.
 enum class Purpose { Show, Compute };
 
-constexpr float PlasterAlbedo = 0.5f, FloorAlbedo = 0.4f;
+constexpr float PlasterAlbedo = 0.5f, FloorAlbedo = 0.3f;
 
 /// Returns what each receiver's radiance is multiplied with, [num_receivers].
 std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {

@@ -74,7 +74,7 @@ struct Lighting {
 
 struct OutputOptions {
     Albedo albedo = AutomaticAlbedo{};
-    /// Of an added floor, where it has no surface of its own. Empty: 0.4 in pictures and colours, 1
+    /// Of an added floor, where it has no surface of its own. Empty: 0.3 in pictures and colours, 1
     /// in data.
     std::optional<glm::vec3> floor_albedo = {};
     /// The outer part of an added floor's radius over which it fades into the background; 0: none.
