@@ -94,6 +94,7 @@ TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     mesh.groups = std::move(soup.groups);
     mesh.textures = std::move(soup.textures);
     mesh.missing = std::move(soup.missing);
+    mesh.warnings = std::move(soup.warnings);
     if (source == NormalSource::Smooth || mesh.normals.empty() || !normalize_normals(mesh))
         mesh.normals = smooth_normals(mesh);
     if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), is_finite))
