@@ -79,11 +79,14 @@ Texture in_rows_of_v(const DecodedImage& image, VOrigin origin, const Texel& tex
 
 Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
     const DecodedImage image = decode_image(file);
-    return in_rows_of_v(image, origin, [&](std::size_t pixel) {
+    Texture texture = in_rows_of_v(image, origin, [&](std::size_t pixel) {
         Channels texel{};
         std::memcpy(texel.data(), image.bytes.get() + 3 * pixel, texel.size());
         return texel;
     });
+    texture.file.assign(file.begin(), file.end());
+    texture.origin = origin;
+    return texture;
 }
 
 Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin) {
