@@ -84,6 +84,55 @@ std::vector<std::byte> base64(std::string_view text) {
     return bytes;
 }
 
+/// Returns the length of the UTF-8 character at the front, 0 if there is none. Continuation bytes
+/// alone are checked; the JSON parser checks the rest.
+std::size_t utf8_length(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    const std::size_t length = first < 0x80                    ? 1
+                               : first >= 0xc2 && first < 0xe0 ? 2
+                               : first >= 0xe0 && first < 0xf0 ? 3
+                               : first >= 0xf0 && first < 0xf5 ? 4
+                                                               : 0;
+    if (length == 0 || length > text.size())
+        return 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((static_cast<unsigned char>(text[i]) & 0xc0u) != 0x80u)
+            return 0;
+    return length;
+}
+
+/// Turns bytes that are no UTF-8 into the characters of Latin-1.
+std::string with_latin1(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) {
+            const auto byte = static_cast<unsigned char>(text[0]);
+            result += static_cast<char>(0xc0u | byte >> 6u);
+            result += static_cast<char>(0x80u | (byte & 0x3fu));
+        } else {
+            result += text.substr(0, length);
+        }
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return result;
+}
+
+/// Turns the characters of Latin-1 back into bytes.
+std::string latin1_bytes(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        if ((byte == 0xc2 || byte == 0xc3) && i + 1 < text.size())
+            result += static_cast<char>((byte & 3u) << 6u |
+                                        (static_cast<unsigned char>(text[++i]) & 0x3fu));
+        else
+            result += text[i];
+    }
+    return result;
+}
+
 /// Decodes %20 and the like.
 std::string percent_decoded(std::string_view uri) {
     const auto digit = [](char c) {
@@ -217,7 +266,12 @@ Document::Document(std::span<const std::byte> file, std::filesystem::path folder
     if (json_text_.starts_with("glTF"))
         split_glb(file);
     try {
-        root_ = Json::parse(json_text_);
+        try {
+            root_ = Json::parse(json_text_);
+        } catch (const Json::parse_error&) {
+            // A name in the encoding of an old program must not make the whole file unreadable.
+            root_ = Json::parse(with_latin1(json_text_));
+        }
     } catch (const Json::parse_error& error) {
         fail("glTF's JSON", fmt::format("a syntax error at byte {}", error.byte));
     } catch (const Json::exception&) {
@@ -374,7 +428,10 @@ std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) co
             fail("base64 in a data URI", excerpt(uri));
         return base64(std::string_view(uri).substr(comma + 1));
     }
-    const std::filesystem::path path = find_file(folder_, percent_decoded(uri));
+    const std::string name = percent_decoded(uri);
+    std::filesystem::path path = find_file(folder_, name);
+    if (path.empty())
+        path = find_file(folder_, latin1_bytes(name));
     if (path.empty())
         return std::nullopt;
     return files::read(path);

@@ -280,6 +280,22 @@ TEST_F(GltfTest, SpecularGlossiness) {
                    "material 0: expected numbers of 0 to 1 as \"specularFactor\", got 2");
 }
 
+TEST_F(GltfTest, NamesInLatin1) {
+    Model model = square();
+    static_cast<void>(write("gr\xfcn.png", four_colors()));
+    model.json["nodes"][0]["name"] = "w\xc3\xa4nde";
+    model.json["images"] = {{{"uri", "gr?n.png"}}};
+    model.json["textures"] = {{{"source", 0}}};
+    model.json["materials"] = {
+        {{"name", "gr?n"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    const TriangleMesh mesh =
+        load(write("a.gltf", replace_all(model.embedded(), "gr?n", "gr\xfcn")));
+    EXPECT_THAT(mesh.groups, ElementsAre("w\xc3\xa4nde")) << "UTF-8 stays";
+    EXPECT_EQ(mesh.materials[0].name, "gr\xc3\xbcn");
+    EXPECT_THAT(mesh.missing, ElementsAre());
+    EXPECT_EQ(mesh.textures.size(), 1u);
+}
+
 TEST_F(GltfTest, Instances) {
     Model model = square();
     const double h = std::sqrt(0.5);
