@@ -109,6 +109,12 @@ std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& ma
                            base.r, base.g, base.b, texture(material.base_color_texture),
                            material.metallic, material.roughness,
                            texture(material.metallic_roughness_texture));
+    if (material.model == mesh::MaterialModel::SpecularGlossiness)
+        return fmt::format("specular-glossiness, diffuse {} {} {}{}, F0 {} {} {}{}, roughness {}{}",
+                           base.r, base.g, base.b, texture(material.base_color_texture),
+                           material.specular.r, material.specular.g, material.specular.b,
+                           texture(material.specular_texture), material.roughness,
+                           texture(material.metallic_roughness_texture));
     const std::string diffuse =
         fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
     if (material.specular == glm::vec3(0.0f))
@@ -121,19 +127,26 @@ Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
         return slot ? Report(mesh.textures[slot->texture].name) : Report(nullptr);
     };
-    const bool is_phong = material.model == mesh::MaterialModel::Phong;
+    using Model = mesh::MaterialModel;
+    const Model model = material.model;
     Report result = {{"name", material.name},
-                     {"model", is_phong ? "phong" : "metallic-roughness"},
+                     {"model", model == Model::Phong               ? "phong"
+                               : model == Model::MetallicRoughness ? "metallic-roughness"
+                                                                   : "specular-glossiness"},
                      {"base_color", material.base_color},
                      {"base_color_texture", texture(material.base_color_texture)}};
-    if (is_phong) {
+    if (model != Model::MetallicRoughness)
         result.set("specular", material.specular);
+    if (model == Model::Phong) {
         result.set("exponent", material.exponent);
     } else {
-        result.set("metallic", material.metallic);
         result.set("roughness", material.roughness);
         result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
     }
+    if (model == Model::MetallicRoughness)
+        result.set("metallic", material.metallic);
+    else if (model == Model::SpecularGlossiness)
+        result.set("specular_texture", texture(material.specular_texture));
     return result;
 }
 
@@ -160,6 +173,8 @@ void describe_mesh(const Options& options, const Session& session) {
         session.say(fmt::format("group               {}", group));
     for (const std::string& name : mesh.missing)
         session.say(fmt::format("not found           {}", name));
+    for (const std::string& warning : mesh.warnings)
+        session.say(fmt::format("left out            {}", warning));
     session.report({{"kind", "mesh"},
                     {"vertices", mesh.num_vertices()},
                     {"triangles", mesh.num_triangles()},
@@ -170,7 +185,8 @@ void describe_mesh(const Options& options, const Session& session) {
                     {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
                     {"materials", materials},
                     {"groups", mesh.groups},
-                    {"missing", mesh.missing}});
+                    {"missing", mesh.missing},
+                    {"left_out", mesh.warnings}});
 }
 
 void run(const Options& options, const Session& session) {

@@ -12,6 +12,7 @@
 
 #include "files/output_file.h"
 #include "prt/scene/glossy_sections.h"
+#include "prt/scene/material_sections.h"
 #include "prt/scene/receiver_sections.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_reader.h"
@@ -77,6 +78,7 @@ private:
             if (std::any_of(triangle.begin(), triangle.end(),
                             [&](auto i) { return i >= mesh.num_vertices(); }))
                 reader_.fail("triangles", "indices of vertices");
+        read_material_sections(reader_, mesh);
         const auto finite = [](const glm::vec3& p) {
             return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
         };
@@ -201,6 +203,8 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
         sections["colors"] = bytes_of(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())
         sections["uvs"] = bytes_of(scene.mesh.uvs);
+    if (on_vertices && !scene.receivers.surfaces.empty())
+        add_material_sections(sections, scene.mesh);
     add_receiver_sections(sections, scene.receivers, scene.layout);
     sections["order"] = bytes_of(scene.transfer.order);
     sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
