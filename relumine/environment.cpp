@@ -1,6 +1,7 @@
 #include "relumine/environment.h"
 
 #include <chrono>
+#include <memory>
 
 #include "cubemap/resample/resample.h"
 
@@ -25,10 +26,14 @@ cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const cubemap::EnvironmentImage image = load_environment_image(path, options);
+    const auto image =
+        std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
     const Clock::time_point loaded = Clock::now();
-    Environment result{.map = cube_map_of(image, options), .assumptions = image.assumptions};
-    result.num_fixed_pixels = image.fixed ? image.bad_pixels.count() : 0;
+    Environment result{
+        .map = cube_map_of(*image, options),
+        .file = {.image = image, .turn = cubemap::turn_about_y(options.rotate_degrees)},
+        .assumptions = image->assumptions};
+    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
     result.seconds_load = std::chrono::duration<double>(loaded - start).count();
     result.seconds_resample = std::chrono::duration<double>(Clock::now() - loaded).count();
     return result;

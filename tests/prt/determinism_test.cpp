@@ -55,6 +55,8 @@ Scene precomputed(Shine shine) {
                       .min_level = options.min_level,
                       .face_resolution = options.face_resolution,
                       .bias = options.bias};
+    if (shine == Shine::Glossy)
+        scene.settings.glossy_tolerance = 0.1f;
     return scene;
 }
 
