@@ -208,7 +208,7 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     const Sections good = read_sections(file_);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<std::pair<const char*, const char*>> floats = {
-        {"r_positions", "coordinates within"},    {"r_normals", "normals of length 1 or 0"},
+        {"r_positions", "coordinates"},           {"r_normals", "normals of length 1 or 0"},
         {"r_to_eye", "to the eye of length 1"},   {"r_albedo", "albedo 0 to 1"},
         {"r_specular", "specular colour 0 to 1"}, {"r_shape", "roughness of 0 to 1"},
         {"r_barycentric", "'r_barycentric'"}};
