@@ -276,6 +276,7 @@ void write_scenes(const fs::path& folder) {
     }
     texels.transfer = prt::precompute(texels.receivers, rays, options);
     texels.settings = scene.settings;
+    texels.settings.glossy_tolerance.reset();
     std::swap(scene, texels);
     save("texels");
 }
