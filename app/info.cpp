@@ -14,7 +14,6 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "mesh/load.h"
-#include "prt/scene/scene_check.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::app {
@@ -48,9 +47,7 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
 }
 
 void describe_scene(const Options& options, const Session& session) {
-    const prt::Scene scene = prt::load_scene(options.path); // which checks all that it needs
-    if (options.check)
-        prt::check_scene(scene, options.path);
+    const prt::Scene scene = prt::load_scene(options.path); // which checks all of it
     const prt::SceneSettings& settings = scene.settings;
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const auto file_bytes = std::filesystem::file_size(options.path);
