@@ -38,6 +38,8 @@ void tell(const EnvironmentOptions& options, const std::string& assumptions,
           std::size_t num_fixed_pixels, const Session& session) {
     session.detail(fmt::format("{}: {}", options.path, assumptions));
     if (num_fixed_pixels != 0)
+        session.add_to_report("replaced_pixels", num_fixed_pixels);
+    if (num_fixed_pixels != 0)
         session.say(fmt::format("{}: replaced {} bad pixels", options.path, num_fixed_pixels));
     session.poll();
 }
@@ -63,6 +65,7 @@ void EnvironmentOptions::add_conversion_to(Command& command) {
     command
         .add_option("--face-resolution", face_resolution,
                     "texels along a cube face's edge, 0 for the environment's own")
+        .between(0, 16384)
         .show_default();
     command.add_flag("--fix-env", fix,
                      "replace NaN and negative radiance by 0, infinite by the largest finite");

@@ -5,11 +5,13 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cubemap/layers/layer_fields.h"
+#include "cubemap/layers/layer_list.h"
 #include "files/json_value.h"
 #include "files/output_file.h"
 
@@ -21,11 +23,12 @@ constexpr double Version = 1.0;
 
 class LayerFileReader {
 public:
-    explicit LayerFileReader(const std::filesystem::path& path)
-        : path_(path), json_(path.string()) {}
+    /// Pictures are looked for in the folder.
+    LayerFileReader(const files::JsonReader& json, std::filesystem::path folder)
+        : folder_(std::move(folder)), json_(json) {}
 
-    LightLayers read() const {
-        const files::JsonValue root = json_.parse(files::read(path_));
+    LightLayers read(const std::filesystem::path& path) const {
+        const files::JsonValue root = json_.parse(files::read(path));
         const auto& members = json_.object(root, "a layer file");
         json_.known(members, std::array<std::string_view, 4>{"version", "base", "layers", "frames"},
                     "a layer file");
@@ -35,13 +38,18 @@ public:
         LightLayers result;
         if (const files::JsonValue* base = files::JsonReader::find(members, "base"))
             result.base = json_.string(*base, "\"base\"");
-        for (const files::JsonValue& value :
-             json_.array(json_.required(root, members, "layers"), "\"layers\""))
-            result.layers.push_back(layer(value, result.layers));
+        result.layers = layers(json_.required(root, members, "layers"));
         if (const files::JsonValue* frames = files::JsonReader::find(members, "frames")) {
             for (const files::JsonValue& value : json_.array(*frames, "\"frames\""))
                 result.frames.push_back(frame(value, result));
         }
+        return result;
+    }
+
+    std::vector<LightLayer> layers(const files::JsonValue& list) const {
+        std::vector<LightLayer> result;
+        for (const files::JsonValue& value : json_.array(list, "\"layers\""))
+            result.push_back(layer(value, result));
         return result;
     }
 
@@ -100,7 +108,7 @@ private:
             patch.blend = text == "add" ? ImagePatch::Blend::Add : ImagePatch::Blend::Replace;
         }
         try {
-            patch.picture = load_image_pyramid(path_.parent_path() / patch.path);
+            patch.picture = load_image_pyramid(folder_ / patch.path);
         } catch (const std::runtime_error& error) {
             json_.refuse(path.line, "a picture", error.what());
         }
@@ -207,14 +215,20 @@ private:
         }
     }
 
-    std::filesystem::path path_;
-    files::JsonReader json_;
+    std::filesystem::path folder_;
+    const files::JsonReader& json_;
 };
 
 } // namespace
 
 LightLayers load_layers(const std::filesystem::path& path) {
-    return LayerFileReader(path).read();
+    const files::JsonReader json(path.string());
+    return LayerFileReader(json, path.parent_path()).read(path);
+}
+
+std::vector<LightLayer> read_layers(const files::JsonReader& json, const files::JsonValue& list,
+                                    const std::filesystem::path& folder) {
+    return LayerFileReader(json, folder).layers(list);
 }
 
 } // namespace relumine::cubemap

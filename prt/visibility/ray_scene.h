@@ -13,6 +13,10 @@
 
 namespace relumine::prt {
 
+/// The limit on coordinates of triangles and of rays' origins: Embree drops triangles beyond it
+/// (its FLT_LARGE), and rays from there end the process.
+inline constexpr float LargestCoordinate = 1.844e18f;
+
 /// The point where a ray first meets the mesh.
 struct Hit {
     std::uint32_t triangle = 0;

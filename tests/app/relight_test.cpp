@@ -151,7 +151,8 @@ TEST_F(Relight, AlbedoOfTheMeshIsItsVertexColours) {
     EXPECT_EQ(values[0][1], 0.0f);
     EXPECT_NEAR(values[1][1], 0.5f, 2e-3f);
     EXPECT_EQ(values[2][0], 0.0f);
-    fail({"relight", "scene.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, {"colours"});
+    misuse({"relight", "scene.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"},
+           "--albedo: expected a mesh with vertex colours");
 }
 
 TEST_F(Relight, PictureHasTheSizeAskedFor) {
@@ -213,7 +214,8 @@ TEST_F(Relight, NumbersThatCannotBeMeantAreRefused) {
 TEST_F(Relight, UnknownKindsOfOutputAreRefused) {
     for (const char* name :
          {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", ".npy", "sub/new.npy/"})
-        fail({"relight", "scene.prt", "white.hdr", "-o", name}, {"expected"});
+        misuse({"relight", "scene.prt", "white.hdr", "-o", name},
+               "--output: expected a name that ends in .png, .exr, .ply, .glb or .npy, got");
 }
 
 TEST_F(Relight, OutputsThatCannotBeWrittenAreFoundOutAndNothingIsLost) {
