@@ -5,9 +5,11 @@
 #include <array>
 #include <cerrno>
 #include <climits>
+#include <cstdint>
 #include <cstring>
-#include <optional>
+#include <functional>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -184,42 +186,46 @@ files::Descriptor new_socket() {
     return files::Descriptor(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
 }
 
-/// Whether a program answers at that socket. A full queue is an answer.
-bool is_served(const fs::path& path) {
-    const files::Descriptor probe = new_socket();
-    const sockaddr_un address = address_of(path);
-    return ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) ==
-               0 ||
-           errno == EAGAIN || errno == EINPROGRESS;
+[[noreturn]] void refuse_socket_in_use(const fs::path& path) {
+    throw std::runtime_error(
+        fmt::format("{}: expected a socket that nobody serves, got one in use", path.string()));
 }
 
-bool is_a_socket(const fs::path& path) {
+/// Takes the socket's name for this process, for as long as the result lives. Of several programs
+/// that start together one gets it. The lock is a name in the system's abstract namespace, which
+/// leaves no file behind; nobody listens there.
+files::Descriptor name_lock(const fs::path& path) {
+    const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
     struct stat status {};
-    return ::lstat(path.c_str(), &status) == 0 && S_ISSOCK(status.st_mode);
+    if (::stat(folder.c_str(), &status) != 0)
+        fail_to_serve(path, errno);
+    const std::string name = fmt::format("relumine {:x} {:x} {:x}", status.st_dev, status.st_ino,
+                                         std::hash<std::string>{}(path.filename().native()));
+    sockaddr_un address{};
+    address.sun_family = AF_UNIX;
+    name.copy(address.sun_path + 1, sizeof address.sun_path - 1); // after a zero
+    files::Descriptor lock = new_socket();
+    if (::bind(lock.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0)
+        return lock;
+    if (errno == EADDRINUSE)
+        refuse_socket_in_use(path);
+    fail_to_serve(path, errno);
 }
 
-/// Removes a socket that nobody serves. `aside` is a name of this process. The socket is looked at
-/// under that name: of several programs that start together one alone can take it there, and a
-/// socket that turns out to be served gets its name back.
-void remove_stale(const fs::path& path, const fs::path& aside) {
-    if (!is_a_socket(path))
+/// Refuses a name that is not free. A socket that nobody serves is.
+void require_free(const fs::path& path) {
+    struct stat status {};
+    if (::lstat(path.c_str(), &status) != 0)
+        return;
+    if (!S_ISSOCK(status.st_mode))
         throw std::runtime_error(fmt::format(
             "{}: expected a new name, or a socket, got a file of another kind", path.string()));
-    if (is_served(path))
-        throw std::runtime_error(
-            fmt::format("{}: expected a socket that nobody serves, got one in use", path.string()));
-    if (::rename(path.c_str(), aside.c_str()) != 0) {
-        if (errno == ENOENT)
-            return;
-        fail_to_serve(path, errno);
-    }
-    const bool is_stale = is_a_socket(aside) && !is_served(aside);
-    if (!is_stale)
-        static_cast<void>(::link(aside.c_str(), path.c_str()));
-    ::unlink(aside.c_str());
-    if (!is_stale)
-        throw std::runtime_error(
-            fmt::format("{}: expected a socket that nobody serves, got one in use", path.string()));
+    // A program elsewhere, in a container, may not see the lock.
+    const files::Descriptor probe = new_socket();
+    const sockaddr_un address = address_of(path);
+    if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 ||
+        errno != ECONNREFUSED)
+        refuse_socket_in_use(path);
 }
 
 } // namespace
@@ -235,48 +241,37 @@ void serve_standard_streams(const LineService& service, const std::stop_token& s
 }
 
 LineSocket::LineSocket(const fs::path& path) : path_(path) {
-    // The socket gets its name when it is ready, so that every name that others see is of a socket
-    // that is served or stale.
+    // The socket gets its name when programs can connect to it.
     fs::path hidden = path;
     hidden += fmt::format(".{}", ::getpid());
-    fs::path aside = hidden;
-    aside += "~";
     constexpr std::size_t MaxLength = sizeof(sockaddr_un::sun_path) - 1;
-    if (aside.native().size() > MaxLength)
-        throw std::runtime_error(fmt::format(
-            "{}: expected a name of at most {} bytes, got {}", path.string(),
-            MaxLength - (aside.native().size() - path.native().size()), path.native().size()));
-    files::Descriptor listener = new_socket();
+    const std::size_t num_added = hidden.native().size() - path.native().size();
+    if (hidden.native().size() > MaxLength)
+        throw std::runtime_error(fmt::format("{}: expected a name of at most {} bytes, got {}",
+                                             path.string(), MaxLength - num_added,
+                                             path.native().size()));
+    lock_ = name_lock(path);
+    require_free(path);
+    listener_ = new_socket();
     ::unlink(hidden.c_str()); // of an earlier process of this number
     const sockaddr_un address = address_of(hidden);
     const mode_t mask = ::umask(0177);
     const int bound =
-        ::bind(listener.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
+        ::bind(listener_.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address);
     const int bind_error = errno;
     ::umask(mask);
     if (bound != 0)
         fail_to_serve(path, bind_error);
+    constexpr int QueueLength = 16;
     struct stat status {};
-    constexpr int QueueLength = 16, MaxTries = 8;
-    int error = ::listen(listener.get(), QueueLength) == 0 && ::lstat(hidden.c_str(), &status) == 0
-                    ? EEXIST
-                    : errno;
-    try {
-        for (int i = 0; error == EEXIST && i < MaxTries; ++i) {
-            error = ::link(hidden.c_str(), path.c_str()) == 0 ? 0 : errno;
-            if (error == EEXIST)
-                remove_stale(path, aside);
-        }
-    } catch (...) {
+    if (::listen(listener_.get(), QueueLength) != 0 || ::lstat(hidden.c_str(), &status) != 0 ||
+        ::rename(hidden.c_str(), path.c_str()) != 0) {
+        const int error = errno;
         ::unlink(hidden.c_str());
-        throw;
-    }
-    ::unlink(hidden.c_str());
-    if (error != 0)
         fail_to_serve(path, error);
+    }
     device_ = status.st_dev;
     inode_ = status.st_ino;
-    listener_ = std::move(listener);
 }
 
 LineSocket::~LineSocket() {

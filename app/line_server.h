@@ -44,6 +44,7 @@ public:
 
 private:
     std::filesystem::path path_;
+    files::Descriptor lock_;
     files::Descriptor listener_;
     /// Device and inode of the socket's name, so that no other is removed.
     unsigned long long device_ = 0, inode_ = 0;

@@ -13,6 +13,7 @@
 #include "cubemap/layers/layer_fields.h"
 #include "cubemap/layers/layer_list.h"
 #include "files/json_value.h"
+#include "files/nearest_name.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -92,7 +93,7 @@ private:
             names.push_back(name(candidate));
         }
         json_.refuse(value.line, fmt::format("{} to be one of {}", what, fmt::join(names, ", ")),
-                     fmt::format("\"{}\"", text));
+                     fmt::format("\"{}\"{}", text, files::did_you_mean(text, names)));
     }
 
     ImagePatch image_patch(const files::JsonValue& owner,
@@ -169,8 +170,13 @@ private:
             const auto found = std::find_if(
                 before.layers.begin(), before.layers.end(),
                 [&, &layer_name = name](const LightLayer& l) { return l.name == layer_name; });
-            if (found == before.layers.end())
-                json_.refuse(changes.line, "the name of a layer", fmt::format("\"{}\"", name));
+            if (found == before.layers.end()) {
+                std::vector<std::string> names;
+                for (const LightLayer& each : before.layers)
+                    names.push_back(each.name);
+                json_.refuse(changes.line, "the name of a layer",
+                             fmt::format("\"{}\"{}", name, files::did_you_mean(name, names)));
+            }
             keyed_layer(*found, changes, before, result);
         }
         return result;

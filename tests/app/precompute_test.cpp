@@ -120,7 +120,7 @@ TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
     EXPECT_NE(error.find(" rays and "), std::string::npos) << error;
     misuse(with({"--epsilon", "0"}), "--epsilon: expected ");
     misuse(with({"--min-depth", "10"}), "--min-depth: expected ");
-    misuse(with({"--tolerance", "0.1", "--epsilon", "0.1"}), "--epsilon excludes --tolerance");
+    misuse(with({"--tolerance", "0.1", "--epsilon", "0.1"}), "--tolerance excludes --epsilon");
 }
 
 TEST_F(Precompute, OptionsThatAreOftenMistaken) {

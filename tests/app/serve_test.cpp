@@ -1,8 +1,14 @@
 // `relumine serve`: requests over stdin and stdout, and over a Unix socket.
+#include <algorithm>
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
+#include <memory>
+#include <sstream>
 #include <thread>
 
 #include <fcntl.h>
