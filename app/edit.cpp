@@ -32,14 +32,14 @@ struct Options {
     EnvironmentOptions environment;
     std::string layers;
     OutputOptions output;
-    /// Direction of the quick edit
+    /// Direction of the quick edit, X,Y,Z. Empty: LAYERS are given.
     std::string disc;
     double radius_degrees = 10.0;
     std::string gain = "2";
     std::string saved_environment;
-    /// position
+    /// --who: a position X,Y,Z. Empty: not asked for.
     std::string who;
-    /// A layer or a disc
+    /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
     std::string lit_by;
     bool watch = false;
 };

@@ -33,13 +33,14 @@ struct Options {
     EnvironmentOptions environment;
     std::string path;
     std::string picture;
-    /// Empty: by the output's extension
+    /// Empty: the output's extension decides.
     std::string format;
     std::string method = std::string(lights::name(lights::Method::VarianceCut));
     std::vector<std::size_t> numbers = {64};
-    /// .prt: the lights' error on it is said; the transfer method chooses for it
+    /// A .prt file. The error of the lights on it is printed, and the transfer method chooses for
+    /// it. Empty: none.
     std::string scene;
-    /// .prt: all methods are compared on it
+    /// A .prt file on which all methods are compared. Empty: none.
     std::string compare;
     std::string plot;
     std::size_t num_samples = 2000;
