@@ -287,7 +287,8 @@ void Service::Impl::declare_help(Command& command) {
             Command below = line.root().add_command(request.name, request.description);
             (this->*request.declare)(below);
             Report members;
-            for (const OptionTable& option : line.table().commands.front().options)
+            const CommandTable table = line.table();
+            for (const OptionTable& option : table.commands.front().options)
                 if (member_of(option) != "help")
                     members.set(member_of(option), option.description);
             all.push_back(

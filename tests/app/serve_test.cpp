@@ -85,7 +85,8 @@ protected:
     /// The answers to lines on stdin.
     std::vector<json> answers(const std::string& lines) const {
         write("requests", lines);
-        const Result result = relumine({"serve", "-"}, {.stdin_path = "requests"});
+        const Result result =
+            relumine({"serve", "-"}, {.stdin_path = (folder() / "requests").string()});
         EXPECT_EQ(result.exit_code, 0) << result.described();
         EXPECT_EQ(result.err, "");
         std::vector<json> all;
