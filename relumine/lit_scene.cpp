@@ -27,6 +27,11 @@ struct LitScene::Impl {
                 .tolerance = rms_tolerance(scene)};
     }
 
+    /// Of sharp lights; 0 where they are not traced.
+    [[nodiscard]] float sharp_tolerance() const {
+        return clusters_only ? 0.0f : rms_tolerance(scene);
+    }
+
     void require_clusters() const {
         if (!has_clusters())
             throw std::invalid_argument(
@@ -133,6 +138,20 @@ RelightTimes LitScene::light(Environment environment) {
     if (!impl_->editor)
         impl_->file = std::move(environment.file);
     return times;
+}
+
+BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
+    impl_->require_clusters();
+    return relight::EnvironmentBinner(impl_->scene.transfer, impl_->sharp_tolerance())
+        .bin(std::move(environment));
+}
+
+void LitScene::light(BinnedEnvironment environment) {
+    if (impl_->editor)
+        impl_->editor->set_base(std::move(environment.map));
+    else
+        impl_->plain_relighter().set_frame(std::move(environment));
+    impl_->is_lit_by_list = false;
 }
 
 RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {

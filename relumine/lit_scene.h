@@ -17,6 +17,7 @@
 #include "cubemap/texel_rectangle.h"
 #include "lights/light_list.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/binned_environment.h"
 #include "relight/exact.h"
 #include "relight/light_editor.h"
 #include "relight/relighter.h"
@@ -26,6 +27,7 @@
 
 namespace relumine {
 
+using relight::BinnedEnvironment;
 using relight::RelightTimes;
 using relight::UpdateReport;
 
@@ -100,6 +102,19 @@ public:
     /// Cost:    milliseconds, see docs/measurements.md.
     RelightTimes light(cubemap::CubeMap environment);
     RelightTimes light(Environment environment);
+
+    /// Sums an environment into the scene's clusters, for light(). An environment that comes again
+    /// need not be summed again.
+    ///
+    /// Throws:  as light().
+    /// Cost:    O(6 R^2), and the memory of the map.
+    [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap environment) const;
+
+    /// Lights the scene with an environment that bin() of this scene has summed. Clusters whose
+    /// light stays are not summed again, so the last bits may differ from light() of the map.
+    ///
+    /// Throws:  std::invalid_argument for an environment of another scene.
+    void light(BinnedEnvironment environment);
 
     /// Lights the scene with distant lights alone, each with shadow rays of its own or, with
     /// clusters_only, through its cluster. The environment and its layers go; the background is

@@ -60,7 +60,7 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
     EXPECT_NE(succeed({"info", "scene.prt", "--check"}).out.find("checked: whole and sound"),
               std::string::npos);
     EXPECT_EQ(succeed({"info", "scene.prt", "--check", "--json"}).json()["checked"], true);
-    fail({"info", "mesh.obj", "--check"}, {"mesh.obj: expected a scene (.prt) to --check"});
+    misuse({"info", "mesh.obj", "--check"}, "--check: expected a scene (.prt), got 'mesh.obj'");
     const std::string whole = read("scene.prt");
     // All over the file; tests of prt flip every bit.
     for (std::size_t i = 0; i < 60; ++i) {
