@@ -242,7 +242,7 @@ private:
         result.seconds_load = watch.lap();
         cubemap::CubeMap map = cube_map_of(*image, options_.environment);
         if (pattern_)
-            result.sharp = backdrop_of(std::move(image), options_.environment);
+            result.sharp = backdrop_of(image, options_.environment);
         result.seconds_resample = watch.lap();
         // One warning is enough for all frames.
         if (!has_warned_) {
@@ -364,10 +364,18 @@ private:
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };
 
+cubemap::FrameRange frame_range(const std::string& text) {
+    try {
+        return cubemap::FrameRange::parse(text);
+    } catch (const std::runtime_error& error) {
+        throw UsageError("--frames", error.what());
+    }
+}
+
 void run(const AnimateOptions& options, Session& session) {
     std::optional<cubemap::FrameRange> range;
     if (!options.range.empty())
-        range = cubemap::FrameRange::parse(options.range);
+        range = frame_range(options.range);
     const cubemap::FrameSequence sequence(cubemap::find_frames(options.frames, range),
                                           [&](const std::filesystem::path& path) {
                                               EnvironmentOptions environment = options.environment;

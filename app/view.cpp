@@ -65,6 +65,9 @@ viewer::Shading shading_of(const Scene& scene) {
     return {.albedo = picture_albedo(scene),
             .floor = picture_floor(scene),
             .surfaces = scene.receivers.surfaces,
+            .textures = scene.transfer.glossy
+                            ? relight::SurfaceColors()
+                            : relight::SurfaceColors(scene.mesh, scene.receivers.surfaces),
             .eye = scene.settings.view ? std::optional(scene.settings.view->eye) : std::nullopt,
             .bias = scene.settings.bias};
 }
@@ -118,7 +121,7 @@ void run(const Options& options, Session& session) {
         environment.rotate_degrees = 0.0; // the window turns it itself
         Environment loaded = load_environment(environment, session);
         return viewer::LoadedEnvironment{.map = std::move(loaded.map),
-                                         .sharp = std::move(loaded.sharp)};
+                                         .sharp = relight::backdrop_of(loaded.file)};
     };
     relight::LightEditor& editor = lit.editor();
     const std::string& path = options.environment.path;

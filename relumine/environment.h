@@ -13,6 +13,7 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
+#include "relight/exact.h"
 #include "relight/pictures/backdrop.h"
 
 namespace relumine {
@@ -38,8 +39,8 @@ struct EnvironmentOptions {
 /// An environment ready to light a scene, and what was found out about its file.
 struct Environment {
     cubemap::CubeMap map;
-    /// The file's own pixels, for what is seen behind the mesh. Keeps the image in memory.
-    relight::Backdrop sharp;
+    /// What the map was made from
+    relight::EnvironmentFile file;
     /// One sentence: which layout and sampling the file has, and why
     std::string assumptions;
     /// Pixels that were replaced

@@ -85,6 +85,21 @@ std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options,
     return result;
 }
 
+namespace {
+
+/// Radiance is finite, but its product with albedo and exposure need not be.
+void require_finite(const std::filesystem::path& path, std::span<const glm::vec3> values,
+                    double exposure_ev = 0.0) {
+    const double scale = std::exp2(exposure_ev);
+    for (const glm::vec3& value : values)
+        if (!(scale * std::max({value.r, value.g, value.b}) <= std::numeric_limits<float>::max()))
+            throw std::runtime_error(
+                fmt::format("{}: expected radiance times albedo and exposure within {}, got more",
+                            path.string(), std::numeric_limits<float>::max()));
+}
+
+} // namespace
+
 std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
     std::vector<glm::vec3> result(a.begin(), a.end());
     for (std::size_t i = 0; i < result.size(); ++i)
@@ -133,7 +148,10 @@ Lighting lighting_of(const relight::Relighter& relighter) {
 struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
         : scene(lit.scene()), rays(lit.rays()), options(given),
-          floor(picture_floor(scene, options)) {}
+          floor(picture_floor(scene, options)) {
+        if (is_on_vertices() && !scene.transfer.glossy)
+            textures = {scene.mesh, scene.receivers.surfaces};
+    }
 
     [[nodiscard]] bool is_on_vertices() const {
         return std::holds_alternative<prt::VertexLayout>(scene.layout);
@@ -159,7 +177,7 @@ struct Painter::Impl {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
         const std::vector<glm::vec3> colors =
             product(traces ? lighting.soft : lighting.radiance, shown_factors());
-        relight::MeshLight light{.radiance = colors};
+        relight::MeshLight light{.radiance = colors, .textures = &textures};
         if (traces) {
             light.lights = lighting.lights;
             light.albedo = shown_factors();
@@ -282,6 +300,8 @@ struct Painter::Impl {
     const prt::RayScene& rays;
     OutputOptions options;
     relight::FadingFloor floor;
+    /// Of vertices without highlights.
+    relight::SurfaceColors textures;
     std::vector<glm::vec3> shown;
     /// Made when a second picture is drawn
     std::optional<relight::PictureView> view;
@@ -317,19 +337,26 @@ void Painter::save(const std::filesystem::path& path, const Lighting& lighting) 
             path.string(),
             std::holds_alternative<prt::VertexLayout>(scene.layout) ? ", .ply, .glb" : "",
             prt::description(scene.layout), extension));
+    if (is_picture(extension)) {
+        const Picture picture = draw(lighting);
+        relight::Development development{.exposure_ev = impl_->options.exposure_ev.value_or(0.0),
+                                         .tone = impl_->options.tone};
+        if (extension == ".exr")
+            require_finite(path, picture.pixels, development.exposure_ev);
+        else
+            development.exposure_ev = impl_->exposure(lighting);
+        relight::save_picture(path, picture, development);
+        return;
+    }
+    const std::vector<glm::vec3> numbers =
+        extension == ".npy"
+            ? values(lighting.radiance)
+            : impl_->exposed(lighting.radiance, impl_->shown_factors(), impl_->exposure(lighting));
+    require_finite(path, numbers);
     if (extension == ".npy")
-        relight::save_npy(path, values(lighting.radiance));
-    else if (extension == ".exr")
-        relight::save_picture(path, draw(lighting),
-                              {.exposure_ev = impl_->options.exposure_ev.value_or(0.0)});
-    else if (extension == ".png")
-        relight::save_picture(
-            path, draw(lighting),
-            {.exposure_ev = impl_->exposure(lighting), .tone = impl_->options.tone});
+        relight::save_npy(path, numbers);
     else
-        mesh::save(
-            path, scene.mesh,
-            impl_->exposed(lighting.radiance, impl_->shown_factors(), impl_->exposure(lighting)));
+        mesh::save(path, scene.mesh, numbers);
 }
 
 void Painter::meter(const Lighting& lighting) {

@@ -28,6 +28,7 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                              .lights = moment.lights,
                                              .albedo = shading.albedo,
                                              .surfaces = shading.surfaces,
+                                             .textures = &shading.textures,
                                              .eye = shading.eye,
                                              .bias = shading.bias});
     if (moment.backdrop)

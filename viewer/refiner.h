@@ -23,6 +23,7 @@ struct Shading {
     relight::FadingFloor floor = {};
     /// [num_vertices] or empty; must outlive its user.
     std::span<const prt::Surface> surfaces = {};
+    relight::SurfaceColors textures = {};
     /// The eye that highlights are for.
     std::optional<glm::vec3> eye = {};
     /// Lift of shadow rays.

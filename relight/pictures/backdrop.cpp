@@ -171,6 +171,10 @@ Backdrop image_backdrop(std::shared_ptr<const EnvironmentImage> image, const glm
     };
 }
 
+Backdrop backdrop_of(const EnvironmentFile& file) {
+    return file.image ? image_backdrop(file.image, file.turn) : Backdrop();
+}
+
 Backdrop edited_backdrop(Backdrop sharp, const cubemap::CubeMap& base,
                          const cubemap::CubeMap& edited) {
     if (base.resolution == 0 || edited.resolution == 0)

@@ -9,6 +9,7 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
+#include "relight/exact.h"
 
 namespace relumine::relight {
 
@@ -27,6 +28,9 @@ using Backdrop = std::function<glm::vec3(const glm::vec3& direction)>;
 /// to the world's, as in cubemap::turned().
 [[nodiscard]] Backdrop image_backdrop(std::shared_ptr<const cubemap::EnvironmentImage> image,
                                       const glm::dmat3& turn = glm::dmat3(1.0));
+
+/// The same for an environment's file; empty where there is none.
+[[nodiscard]] Backdrop backdrop_of(const EnvironmentFile& file);
 
 /// Shows what an edit made of a sharp backdrop: darker in proportion where the edited map is darker
 /// than the base, brighter by the difference where it is brighter. So what was not edited stays as

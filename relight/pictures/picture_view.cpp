@@ -161,6 +161,10 @@ private:
         return {.triangle = sample.triangle, .barycentric = {sample.second, sample.third}};
     }
 
+    [[nodiscard]] bool has_texture(const Sample& sample) const {
+        return light_.textures != nullptr && light_.textures->has(sample.triangle);
+    }
+
     /// Finds the lights that reach a sample.
     void look(const Sample& sample, std::span<std::uint16_t> lanes) const {
         const prt::MeshPoint at = point(sample);
@@ -215,7 +219,9 @@ private:
             const float opacity = view_.opacity(sample);
             if (opacity == 0.0f)
                 continue;
-            glm::vec3 radiance = prt::value_at(mesh_, light_.radiance, point(sample));
+            glm::vec3 radiance = has_texture(sample)
+                                     ? light_.textures->radiance(light_.radiance, point(sample))
+                                     : prt::value_at(mesh_, light_.radiance, point(sample));
             if (traces && !is_dark) {
                 if (!even)
                     look(sample, lanes_);
@@ -239,7 +245,9 @@ private:
             light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
         if (light_.surfaces.empty())
             return albedo * glm::vec3(packets_.radiance(normal, lanes_));
-        const prt::Surface surface = surface_at(at);
+        prt::Surface surface = surface_at(at);
+        if (has_texture(sample))
+            surface.albedo = light_.textures->albedo(at);
         if (surface.highlight == prt::Highlight::None || !light_.eye)
             return albedo *
                    prt::reflect(surface, {.diffuse = glm::vec3(packets_.radiance(normal, lanes_))});

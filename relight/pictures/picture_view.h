@@ -17,6 +17,7 @@
 #include "prt/receivers/camera.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/backdrop.h"
+#include "relight/pictures/surface_colors.h"
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
@@ -64,6 +65,9 @@ struct MeshLight {
     std::span<const glm::vec3> albedo = {};
     /// [num_vertices], or empty: Lambert of albedo 1.
     std::span<const prt::Surface> surfaces = {};
+    /// Triangles with a texture take its colour at the point, and the light of the vertices. Null:
+    /// there are none. Must fit the vertices' surfaces.
+    const SurfaceColors* textures = nullptr;
     /// The eye that highlights are for. Empty: there are none.
     std::optional<glm::vec3> eye = {};
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
