@@ -5,6 +5,7 @@
 #include <cctype>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -47,16 +48,12 @@ bool has_mesh_extension(const std::filesystem::path& path) {
 
 TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
     const std::string extension = extension_of(path);
+    // A name that is not there says so first.
+    static_cast<void>(files::size(path));
     if (!has_mesh_extension(path))
         throw std::runtime_error(fmt::format(
             "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
             path.string(), extension));
-    // Opening a pipe would wait for a writer.
-    std::error_code error;
-    if (const auto status = std::filesystem::status(path, error);
-        std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        throw std::runtime_error(
-            fmt::format("{}: expected a regular file, got another kind", path.string()));
     const std::vector<std::byte> bytes = files::read(path);
     try {
         return to_mesh(read_soup(path, extension, bytes), normals);
