@@ -15,6 +15,7 @@
 #include "app/commands.h"
 #include "app/frame_record.h"
 #include "app/movie.h"
+#include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/frame_sequence.h"
 #include "cubemap/image/read_ahead.h"
 #include "files/output_file.h"
@@ -87,6 +88,8 @@ public:
                 vertices->append(writer_.values(relighter_.radiance()));
             totals_.seconds_write += watch.lap();
             ++totals_.num_lit;
+            if (!options_.output.path.empty())
+                Session::set_cancelled_message(cancelled_message());
             if (progress)
                 progress(static_cast<double>(i + 1) / static_cast<double>(todo_.size()));
         }
@@ -96,13 +99,17 @@ public:
         if (!options_.reference.empty())
             measure();
         seconds_frames_ = watch_.lap();
+        const Patience for_ffmpeg;
         if (!options_.movie.empty())
             make_movie(find_ffmpeg(options_.movie), options_.movie, output_paths(),
                        options_.frames_per_second, session_.stop());
         report();
     }
 
-    [[nodiscard]] std::size_t num_written() const { return num_kept_ + num_written_; }
+    [[nodiscard]] std::string cancelled_message() const {
+        return fmt::format("cancelled; {} of {} frames are written, --resume goes on",
+                           num_kept_ + num_written_, sequence_.size());
+    }
 
 private:
     [[nodiscard]] std::string output_path(std::size_t frame) const {
@@ -137,7 +144,8 @@ private:
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
     [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
         cubemap::EnvironmentImage image = sequence_.read(frame);
-        if (options_.environment.rotate_degrees == 0.0 && options_.environment.face_resolution == 0)
+        if (options_.environment.world_from_image(image.layout) == glm::dmat3(1.0) &&
+            options_.environment.face_resolution == 0)
             return image;
         return lights::lat_long_of(cube_map_of(image, options_.environment));
     }
@@ -197,7 +205,7 @@ private:
                                                                      options_.frames)));
     }
 
-    /// Runs on another thread; touches no state but the binner.
+    /// Runs on another thread; touches no state but the binner and has_warned_.
     PreparedFrame prepare(std::size_t frame) {
         PreparedFrame result;
         Stopwatch watch;
@@ -205,6 +213,13 @@ private:
         result.seconds_load = watch.lap();
         cubemap::CubeMap map = cube_map_of(image, options_.environment);
         result.seconds_resample = watch.lap();
+        // One warning is enough for all frames.
+        if (!has_warned_) {
+            EnvironmentOptions frame_options = options_.environment;
+            frame_options.path = sequence_.path(frame).string();
+            has_warned_ =
+                warn_about(frame_options, image, cubemap::light_from_below(map), session_);
+        }
         try {
             if (options_.method == "prt") {
                 result.binned = binner_.bin(std::move(map));
@@ -308,6 +323,7 @@ private:
     lights::FrameLights frame_lights_;
     Report extra_report_;
     std::vector<double> seconds_relight_frames_;
+    bool has_warned_ = false;
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };
 
@@ -328,9 +344,7 @@ void run(const AnimateOptions& options, Session& session) {
     } catch (const prt::Cancelled&) {
         if (options.output.path.empty())
             throw;
-        throw std::runtime_error(
-            fmt::format("cancelled; {} of {} frames are written, --resume goes on",
-                        animation.num_written(), sequence.size()));
+        throw std::runtime_error(animation.cancelled_message());
     }
 }
 

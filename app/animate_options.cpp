@@ -138,9 +138,8 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
     std::string all = fmt::format(
-        "{} {} {}\n{} {} {} {}\n{} {} {} {}\n{} {} {} {} {} {} {} {} {}", RELUMINE_VERSION,
-        FrameRecord::stamp(scene.path), scene.clusters_only, environment.layout,
-        environment.face_resolution, environment.fix, environment.rotate_degrees, method, bound,
+        "{} {} {}\n{}\n{} {} {} {}\n{} {} {} {} {} {} {} {} {}", RELUMINE_VERSION,
+        FrameRecord::stamp(scene.path), scene.clusters_only, environment.settings(), method, bound,
         num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye, output.target,
         output.fov_degrees, output.size, output.transparent, output.gutter);
     if (method == "clusters") { // every frame depends on all

@@ -122,7 +122,9 @@ public:
     void run() {
         check_receivers();
         Environment environment = load_environment(options_.environment, session_);
-        const RelightTimes full = editor_.set_base(std::move(environment.map));
+        RelightTimes full = editor_.set_base(std::move(environment.map));
+        if (layers_.rotate_degrees)
+            full = editor_.set_rotation(*layers_.rotate_degrees);
         seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
         apply_one_by_one();
         write_output();

@@ -22,11 +22,8 @@ namespace relumine::app {
 namespace {
 
 struct Options {
-    std::string input;
+    EnvironmentOptions input;
     std::string output;
-    /// Of the input; empty: as the file says
-    std::string layout;
-    std::string from = "openexr";
     /// Empty: what `to` usually reads
     std::string to_layout;
     std::string to = "openexr";
@@ -34,47 +31,8 @@ struct Options {
     std::string size;
     std::uint32_t face_resolution = 0;
     std::string samples = "auto";
-    double rotate_degrees = 0.0;
-    bool fix = false;
     bool split_sun = false;
 };
-
-/// The layouts' names on the command line, in words.
-std::string layouts_of(const cubemap::Convention& convention) {
-    std::vector<std::string> names;
-    for (const cubemap::Layout layout : convention.layouts)
-        names.push_back(option_name(layout));
-    return fmt::format("{}", fmt::join(names, ", "));
-}
-
-cubemap::EnvironmentImage load(const Options& options, const cubemap::Convention& from,
-                               const Session& session) {
-    cubemap::LoadOptions load_options{.fix_bad_pixels = options.fix};
-    if (!options.layout.empty()) {
-        load_options.layout = parse_layout(options.layout);
-        if (!from.reads(*load_options.layout))
-            throw UsageError("--layout", fmt::format("expected {} with --from {}, got {}",
-                                                     layouts_of(from), from.name, options.layout));
-    } else if (from.layouts.size() == 1) {
-        load_options.layout = from.layouts.front();
-    }
-    cubemap::EnvironmentImage image = cubemap::load_environment(options.input, load_options);
-    if (!from.reads(image.layout))
-        throw std::runtime_error(fmt::format("{}: expected {} with --from {}, got a {}",
-                                             options.input, layouts_of(from), from.name,
-                                             cubemap::name(image.layout)));
-    // Programs other than OpenEXR's own do not look at the attribute.
-    if (!from.has_attribute && image.sampling == cubemap::Sampling::Borders) {
-        image.sampling = cubemap::Sampling::TexelCentres;
-        image.assumptions = fmt::format("{} as {} reads it, samples at texel centres",
-                                        cubemap::name(image.layout), from.name);
-    }
-    session.detail(fmt::format("{}: {}", options.input, image.assumptions));
-    if (image.fixed)
-        session.say(
-            fmt::format("{}: replaced {} bad pixels", options.input, image.bad_pixels.count()));
-    return image;
-}
 
 /// --size: W, or WxH.
 std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
@@ -149,23 +107,23 @@ cubemap::Layout target_layout(const Options& options, const cubemap::Environment
     return layout;
 }
 
-Report described(const cubemap::EnvironmentImage& image, const cubemap::Convention& convention) {
-    const glm::dvec3 mean = cubemap::statistics(image).mean_radiance;
+Report described(const cubemap::Convention& convention, const cubemap::EnvironmentImage& image,
+                 const cubemap::EnvironmentStatistics& statistics) {
     return {{"layout", cubemap::name(image.layout)},
             {"convention", convention.name},
             {"width", image.width},
             {"height", image.height},
             {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
-            {"mean_radiance", mean}};
+            {"mean_radiance", statistics.mean_radiance}};
 }
 
 void run(const Options& options, Session& session) {
-    const cubemap::Convention& from = *cubemap::find_convention(options.from);
+    const cubemap::Convention& from = *cubemap::find_convention(options.input.from);
     const cubemap::Convention& to = *cubemap::find_convention(options.to);
     cubemap::check_environment_name(options.output);
     static_cast<void>(parse_size(options.size));
     std::vector<std::string> inputs;
-    for (const auto& path : cubemap::environment_files(options.input))
+    for (const auto& path : cubemap::environment_files(options.input.path))
         inputs.push_back(path.string());
     for (const auto& path : cubemap::environment_files(options.output))
         check_output(path.string(), inputs);
@@ -176,7 +134,7 @@ void run(const Options& options, Session& session) {
     }
 
     Stopwatch watch;
-    cubemap::EnvironmentImage image = load(options, from, session);
+    cubemap::EnvironmentImage image = load_image(options.input, session);
     const double seconds_load = watch.lap();
     session.poll();
 
@@ -187,19 +145,17 @@ void run(const Options& options, Session& session) {
                                      : cubemap::Sampling::TexelCentres;
     if (options.samples == "centres")
         sampling = cubemap::Sampling::TexelCentres;
-    Report result = {{"input", described(image, from)}};
+    Report result = {{"input", described(from, image, cubemap::statistics(image))}};
     watch.lap();
-    if (from.swaps_z_faces)
-        cubemap::swap_z_faces(image);
-    const cubemap::Reorientation turn = {.world_from_source = from.world_from(image.layout),
-                                         .degrees_about_y = options.rotate_degrees,
-                                         .world_from_target = to.world_from(layout)};
+    const glm::dmat3 world_from_image = options.input.world_from_image(image.layout);
     SunFile::Split sun;
     if (sun_file)
-        sun = sun_file->split(image, turn.world_from_target * turn.target_from_source(),
-                              options.input);
+        sun = sun_file->split(image, world_from_image, options.input.path);
     cubemap::EnvironmentImage converted =
-        cubemap::convert(image, {layout, sampling, size.width, size.height}, turn);
+        cubemap::convert(image, {layout, sampling, size.width, size.height},
+                         glm::transpose(to.world_from(layout)) * world_from_image);
+    const cubemap::EnvironmentStatistics statistics = cubemap::statistics(converted);
+    warn_about(options.input, image, statistics.light_from_below, session);
     if (to.swaps_z_faces)
         cubemap::swap_z_faces(converted);
     const double seconds_convert = watch.lap();
@@ -216,7 +172,7 @@ void run(const Options& options, Session& session) {
                                 100.0 * sun.share_of_power));
     if (sun_file)
         result.set("sun", sun.report);
-    result.set("output", described(converted, to));
+    result.set("output", described(to, converted, statistics));
     result.set("assumptions", image.assumptions);
     result.set("seconds_load", seconds_load);
     result.set("seconds_convert", seconds_convert);
@@ -236,7 +192,7 @@ void add_convert(Command& group, Session& session) {
     }
     command.footer(list);
     command
-        .add_option("IN", options->input,
+        .add_option("IN", options->input.path,
                     "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
         .file()
         .required();
@@ -244,11 +200,7 @@ void add_convert(Command& group, Session& session) {
         .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
         .file()
         .required();
-    command.add_option("--layout", options->layout, "layout of IN, where the file does not tell")
-        .one_of(layout_names());
-    command.add_option("--from", options->from, "whose convention IN follows")
-        .one_of(names)
-        .show_default();
+    options->input.add_reading_to(command);
     command
         .add_option("--to-layout", options->to_layout,
                     "layout of OUT (IN's; with --to, what that program reads)")
@@ -268,16 +220,9 @@ void add_convert(Command& group, Session& session) {
                     "lat-long and cube")
         .one_of({"auto", "centres"})
         .show_default();
-    command
-        .add_option("--rotate", options->rotate_degrees,
-                    "turn the environment about +Y, degrees: +Z goes to +X at 90")
-        .between(-36000.0, 36000.0)
-        .show_default();
     command.add_flag("--split-sun", options->split_sun,
                      "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
                      "light, in world axes");
-    command.add_flag("--fix-env", options->fix,
-                     "replace NaN and negative radiance by 0, infinite by the largest finite");
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -28,7 +28,7 @@ const data_gen::Sequence& named(const std::string& kind) {
 data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& options,
                                            const data_gen::Sequence& sequence,
                                            std::optional<std::uint32_t> face_resolution,
-                                           const Session& session) {
+                                           Session& session) {
     data_gen::SequenceOptions result{.num_frames = options.num_frames};
     if (face_resolution)
         result.face_resolution = *face_resolution;

@@ -16,6 +16,7 @@
 #include "cubemap/doctor/sky_angles.h"
 #include "cubemap/doctor/statistics.h"
 #include "cubemap/doctor/sun.h"
+#include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/environment.h"
 #include "relight/pictures/environment_picture.h"
 
@@ -58,8 +59,11 @@ void say_image(const cubemap::EnvironmentImage& image, const Session& session) {
         fmt::format("as a cube map       6 x {0} x {0}", cubemap::natural_resolution(image)));
     session.say(fmt::format("bad pixels          {} NaN, {} infinite, {} negative{}", bad.num_nan,
                             bad.num_infinite, bad.num_negative,
-                            bad.count() == 0
-                                ? ""
+                            bad.count() == 0 ? ""
+                            : bad.is_harmless()
+                                ? fmt::format(" ({:.2g} % of the light, read as 0); first at ({}, "
+                                              "{})",
+                                              100.0 * bad.negative_share, bad.first_x, bad.first_y)
                                 : fmt::format("; first at ({}, {}); what follows is with "
                                               "--fix-env, light with it too",
                                               bad.first_x, bad.first_y)));
@@ -93,6 +97,8 @@ void say_light(const Findings& found, const Session& session) {
 }
 
 void say_doubts(const Findings& found, const Session& session) {
+    if (const auto doubt = cubemap::upside_down(found.statistics.light_from_below))
+        session.say(fmt::format("suspect             {}", *doubt));
     if (found.clipped)
         session.say(
             fmt::format("suspect             a clipped or veiled sun is likely towards {}: {}",
@@ -129,10 +135,13 @@ Report report(const cubemap::EnvironmentImage& image, const Findings& found) {
                      {"dynamic_range_ev", s.dynamic_range_ev},
                      {"brightest_direction", s.brightest_direction},
                      {"irradiance", irradiance},
+                     {"light_from_below", s.light_from_below},
+                     {"upside_down", cubemap::upside_down(s.light_from_below).has_value()},
                      {"pixel_diameter_degrees", found.search.pixel_diameter_degrees},
                      {"num_nan", image.bad_pixels.num_nan},
                      {"num_infinite", image.bad_pixels.num_infinite},
                      {"num_negative", image.bad_pixels.num_negative},
+                     {"negative_share", image.bad_pixels.negative_share},
                      {"sun", nullptr},
                      {"clipped_sun", nullptr},
                      {"seam_faults", faults}};

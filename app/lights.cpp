@@ -16,6 +16,8 @@
 #include "app/lit_scene.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
+#include "cubemap/doctor/statistics.h"
+#include "cubemap/doctor/upside_down.h"
 #include "lights/light_export.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
@@ -89,12 +91,16 @@ void check_outputs(const Options& options) {
 
 /// A lat-long as it is in the file; everything else, and what is turned or given another
 /// resolution, by way of a cube map.
-cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, const Session& session) {
+cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, Session& session) {
     cubemap::EnvironmentImage image = load_image(options, session);
-    if (image.layout == cubemap::Layout::LatLong && options.face_resolution == 0 &&
-        options.rotate_degrees == 0.0)
+    const bool is_turned = options.world_from_image(image.layout) != glm::dmat3(1.0);
+    if (image.layout == cubemap::Layout::LatLong && options.face_resolution == 0 && !is_turned) {
+        warn_about(options, image, cubemap::statistics(image).light_from_below, session);
         return image;
-    return lights::lat_long_of(cube_map_of(image, options));
+    }
+    const cubemap::CubeMap map = cube_map_of(image, options);
+    warn_about(options, image, cubemap::light_from_below(map), session);
+    return lights::lat_long_of(map);
 }
 
 /// A scene under the environment, for what depends on both.
@@ -156,9 +162,10 @@ void compare(const Options& options, Session& session) {
 std::unique_ptr<Lit> light_scene(const Options& options, const cubemap::EnvironmentImage& map) {
     if (options.scene.empty())
         return nullptr;
-    EnvironmentOptions turned = options.environment;
-    turned.rotate_degrees = 0.0; // load_lat_long() has done that
-    return std::make_unique<Lit>(options.scene, cube_map_of(map, turned));
+    // load_lat_long() has turned the map.
+    return std::make_unique<Lit>(
+        options.scene,
+        relumine::cube_map_of(map, {.face_resolution = options.environment.face_resolution}));
 }
 
 void save(const Options& options, const cubemap::EnvironmentImage& map,
@@ -202,12 +209,45 @@ Report describe(const Options& options, const cubemap::EnvironmentImage& map,
             {"seconds_place", seconds_place}};
 }
 
+void warn_of_lost_softness(const Options& options, Session& session) {
+    if (options.export_options.soft && !options.path.empty() &&
+        !lights::holds_soft_lights(format_of(options)))
+        session.warn(fmt::format("{}: --soft has no effect: distant lights of {} have no size",
+                                 options.path, lights::name(format_of(options))));
+}
+
+bool is_light_list(const std::string& path) {
+    return std::filesystem::path(path).extension() == ".json";
+}
+
+/// Writes a light list in another format.
+void convert_list(const Options& options, Session& session) {
+    if (options.path.empty() || !options.picture.empty() || !options.scene.empty())
+        throw UsageError("lights", "expected -o, and neither --picture nor --scene, with a light "
+                                   "list as input");
+    check_outputs(options);
+    const lights::LightList list = lights::load_lights(options.environment.path);
+    warn_of_lost_softness(options, session);
+    lights::export_lights(options.path, list, format_of(options), options.export_options);
+    const glm::dvec3 power = lights::total_irradiance(list.lights);
+    session.say(fmt::format("{}: {} lights of {}", options.path, list.lights.size(),
+                            options.environment.path));
+    session.report({{"lights", list.lights.size()}, {"power", power}});
+}
+
 void run(const Options& options, Session& session) {
+    if (is_light_list(options.environment.path)) {
+        if (!options.compare.empty())
+            throw UsageError("--compare", "expected an environment, got a light list");
+        convert_list(options, session);
+        return;
+    }
     if (!options.compare.empty()) {
         compare(options, session);
         return;
     }
     check_outputs(options);
+    warn_of_lost_softness(options, session);
     if (options.method == TransferMethod && options.scene.empty())
         throw UsageError("--method", "expected --scene SCENE.prt with transfer");
     Stopwatch watch;
@@ -303,8 +343,10 @@ void add_format_options(Command& command, Options& options) {
     command
         .add_option("--format", options.format, "format of the light list, whatever its extension")
         .one_of(formats);
-    command.add_flag("--soft", options.export_options.soft,
-                     "lights as wide as the part of the sphere they stand for (USD, Blender)");
+    command.add_flag(
+        "--soft", options.export_options.soft,
+        "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
+        "CSV have the solid angle)");
     command
         .add_option("--lumens-per-watt", options.export_options.lumens_per_watt,
                     "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
@@ -320,7 +362,9 @@ void add_lights(Command& program, Session& session) {
     Command command =
         program.add_command("lights", "a few distant lights that stand for an environment");
     auto options = std::make_shared<Options>();
-    options->environment.add_to(command);
+    options->environment.add_to(command).description(
+        "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz; or a light "
+        "list (.json), which -o writes in another format");
     add_output_options(command, *options);
     add_scene_options(command, *options);
     add_method_options(command, *options);

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
@@ -19,7 +21,7 @@ namespace {
 struct Options {
     SceneOptions scene{.mesh_too = true};
     EnvironmentOptions environment;
-    /// A light list in place of an environment
+    /// A light list, alone or added to the environment
     std::string lights;
     OutputOptions output;
 };
@@ -36,22 +38,39 @@ void light_with_environment(const Options& options, Session& session) {
     const double seconds_load_scene = watch.lap();
     session.poll();
 
+    std::vector<glm::vec3> radiance;
+    std::size_t num_lights = 0;
+    if (!options.lights.empty()) {
+        const lights::LightList list = lights::load_lights(options.lights);
+        num_lights = list.lights.size();
+        lit.light(list.lights);
+        radiance.assign(lit.radiance().begin(), lit.radiance().end());
+    }
+    const double seconds_list = watch.lap();
     Environment environment = load_environment(options.environment, session);
     const RelightTimes times = lit.light(std::move(environment.map));
     const std::uint32_t resolution = lit.environment().resolution;
     session.poll();
+    radiance.resize(lit.radiance().size(), glm::vec3(0.0f));
+    std::transform(radiance.begin(), radiance.end(), lit.radiance().begin(), radiance.begin(),
+                   std::plus<>());
 
     watch.lap();
-    options.output.save(lit, lit.radiance(), lit.environment());
+    options.output.save(lit, radiance, lit.environment());
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
-        "{}: {} receivers under {} (R = {}): load {:.0f}, resample {:.0f}, bin {:.1f}, "
-        "trace {:.1f} ({} lights), relight {:.1f} ms{}",
+        "{}: {} receivers under {} (R = {}){} in {:.2f} s: scene {:.0f}, environment {:.0f}, "
+        "resample "
+        "{:.0f}, bin {:.1f}, trace {:.1f} ({} lights), relight {:.1f}, output {:.0f} ms{}",
         options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
-        1e3 * environment.seconds_load, 1e3 * environment.seconds_resample, 1e3 * times.seconds_bin,
-        1e3 * times.seconds_trace, times.num_sharp_lights, 1e3 * times.seconds_relight,
-        options.output.exposure_hint(scene, lit.radiance(), session)));
+        num_lights == 0 ? ""
+                        : fmt::format(" and {} lights of {} ({:.1f} ms)", num_lights,
+                                      options.lights, 1e3 * seconds_list),
+        watch.total(), 1e3 * seconds_load_scene, 1e3 * environment.seconds_load,
+        1e3 * environment.seconds_resample, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
+        times.num_sharp_lights, 1e3 * times.seconds_relight, 1e3 * seconds_output,
+        options.output.exposure_hint(scene, radiance, session)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -63,7 +82,10 @@ void light_with_environment(const Options& options, Session& session) {
                     {"seconds_trace", times.seconds_trace},
                     {"seconds_relight", times.seconds_relight},
                     {"sharp_lights", times.num_sharp_lights},
-                    {"seconds_output", seconds_output}});
+                    {"lights", num_lights},
+                    {"seconds_list", seconds_list},
+                    {"seconds_output", seconds_output},
+                    {"seconds", watch.total()}});
 }
 
 void light_with_list(const Options& options, Session& session) {
@@ -80,8 +102,10 @@ void light_with_list(const Options& options, Session& session) {
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
-        "{}: {} receivers under {} lights of {} in {:.1f} ms, {}{}", options.output.path,
-        lit.radiance().size(), list.lights.size(), options.lights, 1e3 * seconds_light,
+        "{}: {} receivers under {} lights of {} in {:.2f} s: scene {:.0f}, light {:.1f}, output "
+        "{:.0f} ms, {}{}",
+        options.output.path, lit.radiance().size(), list.lights.size(), options.lights,
+        watch.total(), 1e3 * seconds_load_scene, 1e3 * seconds_light, 1e3 * seconds_output,
         options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
         options.output.exposure_hint(lit.scene(), lit.radiance(), session)));
     session.report({{"receivers", lit.radiance().size()},
@@ -89,19 +113,23 @@ void light_with_list(const Options& options, Session& session) {
                     {"traced", !options.scene.clusters_only},
                     {"seconds_load_scene", seconds_load_scene},
                     {"seconds_light", seconds_light},
-                    {"seconds_output", seconds_output}});
+                    {"seconds_output", seconds_output},
+                    {"seconds", watch.total()}});
 }
 
 void run(const Options& options, Session& session) {
-    if (options.environment.path.empty() == options.lights.empty())
-        throw UsageError("relight", "expected either ENV or --lights");
-    const bool with_list = !options.lights.empty();
-    options.output.check(
-        {options.scene.path, with_list ? options.lights : options.environment.path});
-    if (with_list)
-        light_with_list(options, session);
-    else
+    const bool has_environment = !options.environment.path.empty();
+    if (!has_environment && options.lights.empty())
+        throw UsageError("relight", "expected ENV, --lights or both");
+    std::vector<std::string> inputs = {options.scene.path};
+    for (const std::string& path : {options.environment.path, options.lights})
+        if (!path.empty())
+            inputs.push_back(path);
+    options.output.check(inputs);
+    if (has_environment)
         light_with_environment(options, session);
+    else
+        light_with_list(options, session);
 }
 
 } // namespace
@@ -114,9 +142,10 @@ void add_relight(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
     command
-        .add_option("--lights", options->lights,
-                    "in place of ENV: a light list (.json, from `relumine lights`), a shadow "
-                    "ray for each light")
+        .add_option(
+            "--lights", options->lights,
+            "a light list (.json, from `relumine lights` or `env convert --split-sun`), a shadow "
+            "ray for each light; with ENV, both light together")
         .file();
     options->output.add_to(command);
     session.add_common_options(command);

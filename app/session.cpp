@@ -1,10 +1,12 @@
 #include "app/session.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <mutex>
 #include <optional>
 #include <sstream>
 #include <string_view>
@@ -16,6 +18,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include "files/output_file.h"
 #include "prt/precompute.h"
 
 namespace relumine::app {
@@ -59,6 +62,28 @@ std::optional<glm::vec3> three_numbers(const std::string& text) {
     return result;
 }
 
+/// What the thread of signals shares with the others. It may outlive the Session.
+struct Shared {
+    std::atomic<int> num_patient = 0;
+    std::atomic<bool> is_bar_open = false;
+    std::mutex mutex;
+    std::string cancelled_message = "cancelled; nothing was written";
+};
+Shared& shared() {
+    static auto& all = *new Shared;
+    return all;
+}
+
+[[noreturn]] void end_now() {
+    files::abandon_outputs();
+    std::string text = shared().is_bar_open ? "\r\033[K" : "";
+    // Nobody holds the mutex for long.
+    const std::scoped_lock lock(shared().mutex);
+    text += fmt::format("relumine: {}\n", shared().cancelled_message);
+    static_cast<void>(!::write(STDERR_FILENO, text.data(), text.size()));
+    ::_exit(1);
+}
+
 } // namespace
 
 Session::Session() {
@@ -74,16 +99,31 @@ Session::Session() {
         sigwait(&signals, &signal);
         const double first = now();
         source.request_stop();
+        // What polls ends by itself before, with its own message. Libraries that read, write or
+        // compress do not poll.
+        constexpr double MostPatience = 0.15; // seconds
         // `timeout` and batch systems signal a process and then its whole group: the same wish
         // twice, not impatience.
         constexpr double SameWish = 1.0; // seconds
-        do
-            sigwait(&signals, &signal);
-        while (now() - first < SameWish);
-        constexpr std::string_view Message = "relumine: cancelled at once\n";
-        static_cast<void>(!::write(STDERR_FILENO, Message.data(), Message.size()));
-        ::_exit(1);
+        constexpr timespec Tick = {.tv_sec = 0, .tv_nsec = 10'000'000};
+        bool is_impatient = false;
+        while (!is_impatient && (shared().num_patient > 0 || now() - first < MostPatience))
+            is_impatient = sigtimedwait(&signals, nullptr, &Tick) > 0 && now() - first >= SameWish;
+        end_now();
     }).detach();
+}
+
+void Session::set_cancelled_message(const std::string& message) {
+    const std::scoped_lock lock(shared().mutex);
+    shared().cancelled_message = message;
+}
+
+Patience::Patience() {
+    ++shared().num_patient;
+}
+
+Patience::~Patience() {
+    --shared().num_patient;
 }
 
 void Session::add_common_options(Command& command) {
@@ -131,6 +171,7 @@ std::function<void(double)> Session::progress(const std::string& what) {
             fmt::print(stderr, "\r{}: {:3.0f} %, about {} left   ", what, 100.0 * fraction, left);
             std::fflush(stderr);
             bar_open_ = true;
+            shared().is_bar_open = true;
         } else if (const int tenth = static_cast<int>(10.0 * fraction); tenth > state.last_tenth) {
             state.last_tenth = tenth;
             fmt::print(stderr, "{}: {} %, about {} left\n", what, 10 * tenth, left);
@@ -143,6 +184,7 @@ void Session::end_progress() {
     if (bar_open_)
         fmt::print(stderr, "\r\033[K");
     bar_open_ = false;
+    shared().is_bar_open = false;
 }
 
 void Session::say(const std::string& line) const {

@@ -30,11 +30,13 @@ public:
     /// Adds --json, --threads, -q and -v to a subcommand.
     void add_common_options(Command& command);
 
-    /// Set by Ctrl-C, SIGTERM and SIGHUP. A second signal, at least a second later, ends the
-    /// program at once.
+    /// Set by Ctrl-C, SIGTERM and SIGHUP. Work that goes on for more than 0.15 s is ended
+    /// from outside: outputs that are not complete disappear. See Patience.
     [[nodiscard]] std::stop_token stop() const { return stop_source_.get_token(); }
     /// Throws prt::Cancelled after Ctrl-C.
     void poll() const;
+    /// What is said when the work is ended from outside, at first "cancelled; nothing was written".
+    static void set_cancelled_message(const std::string& message);
 
     /// Shows a bar with the time left on a terminal, a line every tenth elsewhere, nothing in the
     /// first second or with -q. To be called with fractions in [0, 1].
@@ -55,6 +57,16 @@ private:
     std::stop_source stop_source_;
     std::mutex mutex_;
     bool bar_open_ = false;
+};
+
+/// While it exists, Ctrl-C waits for the work to end by itself, as where another program must be
+/// told. A second signal, at least a second later, ends the program nevertheless.
+class Patience {
+public:
+    Patience();
+    ~Patience();
+    Patience(const Patience&) = delete;
+    Patience& operator=(const Patience&) = delete;
 };
 
 /// Seconds since it was made or last asked.

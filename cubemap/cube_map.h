@@ -64,15 +64,25 @@ struct CubeMap {
 /// Returns the integral of radiance over the sphere, per channel, in double.
 [[nodiscard]] glm::dvec3 total_power(const CubeMap& map);
 
-/// Returns the map turned by a matrix that carries axes to axes; mirror images are allowed. What
-/// was seen in direction w is then seen in direction `turn` w. Texels are moved, not mixed.
+/// Returns the map turned by an orthogonal matrix; mirror images are allowed. What was seen in
+/// direction w is then seen in direction `turn` w. A matrix that carries axes to axes moves texels.
+/// Any other mixes them, and energy is kept as in resample().
 [[nodiscard]] CubeMap turned(const CubeMap& map, const glm::dmat3& turn);
 
-/// Returns the matrix that rotated() uses. The matrix is exact for multiples of 90 degrees.
+/// Returns true if a matrix carries axes to axes.
+[[nodiscard]] bool carries_axes_to_axes(const glm::dmat3& turn);
+
+/// Returns the turn about +Y by an angle in degrees. Light from +Z comes from +X after 90 degrees:
+/// counter-clockwise seen from above, right-handed. The matrix is exact for multiples of 90
+/// degrees.
 [[nodiscard]] glm::dmat3 turn_about_y(double degrees);
 
-/// Returns the map turned about +Y by an angle in degrees. Light from +Z comes from +X after 90
-/// degrees: counter-clockwise seen from above, right-handed. Energy is kept as in resample().
+/// Returns the turn about +X, right-handed: light from +Y comes from +Z after 90 degrees. The
+/// matrix is exact for multiples of 90 degrees.
+[[nodiscard]] glm::dmat3 turn_about_x(double degrees);
+
+/// Returns the map turned by turn_about_y().
+/// Throws:  std::invalid_argument for an angle that is not finite.
 [[nodiscard]] CubeMap rotated(const CubeMap& map, double degrees_about_y);
 
 } // namespace relumine::cubemap

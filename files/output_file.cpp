@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdlib>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -56,6 +58,16 @@ bool is_own(int file, const std::filesystem::path& name) {
            opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
 }
 
+/// The temporary files that exist. Whoever renames or removes one holds the mutex.
+struct Temporaries {
+    std::mutex mutex;
+    std::set<std::filesystem::path> names;
+};
+Temporaries& temporaries() {
+    static auto& all = *new Temporaries; // outlives the outputs of other static objects
+    return all;
+}
+
 } // namespace
 
 OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)) {
@@ -68,7 +80,9 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
             fmt::format("{}: cannot write: not a regular file", target_.string()));
     }
     place_ = followed(target_);
+    const std::scoped_lock lock(temporaries().mutex);
     open_temporary();
+    temporaries().names.insert(temporary_);
 }
 
 // Temporary names are numbered. A name belongs to the process that has locked its file. The file of
@@ -122,8 +136,11 @@ void OutputFile::open_temporary() {
 }
 
 OutputFile::~OutputFile() {
-    if (!committed_)
-        ::unlink(temporary_.c_str()); // before the lock ends with the descriptor
+    if (committed_)
+        return;
+    const std::scoped_lock lock(temporaries().mutex);
+    ::unlink(temporary_.c_str()); // before the lock ends with the descriptor
+    temporaries().names.erase(temporary_);
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
@@ -144,10 +161,20 @@ void OutputFile::commit() {
     // Some file systems report a full disk only now.
     if (::fsync(file_.get()) != 0)
         fail_to_write(target_, errno, std::max(expected_size_, size_), file_.get());
-    if (::rename(temporary_.c_str(), place_.c_str()) != 0)
-        fail(target_, "write", errno);
-    committed_ = true;
+    {
+        const std::scoped_lock lock(temporaries().mutex);
+        if (::rename(temporary_.c_str(), place_.c_str()) != 0)
+            fail(target_, "write", errno);
+        committed_ = true;
+        temporaries().names.erase(temporary_);
+    }
     sync_folder(folder_of(place_));
+}
+
+void abandon_outputs() {
+    temporaries().mutex.lock();
+    for (const std::filesystem::path& name : temporaries().names)
+        ::unlink(name.c_str());
 }
 
 void save_text(const std::filesystem::path& path, std::string_view text) {

@@ -62,6 +62,10 @@ private:
     bool committed_ = false;
 };
 
+/// Removes the temporary files of all OutputFiles of this process. Later calls of commit() wait for
+/// ever. For a process that calls _exit() now.
+void abandon_outputs();
+
 /// Writes a text file. The file appears whole or not at all.
 /// Throws:  as OutputFile.
 void save_text(const std::filesystem::path& path, std::string_view text);

@@ -109,23 +109,25 @@ std::string csv_text(const LightList& list) {
     return text;
 }
 
+/// Axes as in the pictures that `relumine env convert --to pbrt` writes.
 std::string pbrt_text(const LightList& list) {
     std::string text = fmt::format(
-        "# {}\n# {}\n# {}\n"
-        "# pbrt-v4: paste after WorldBegin, under no transformation but that of the meshes. "
-        "\"from\" \"to\" "
-        "say where the light goes: from\n"
+        "# {}\n# {}\n"
+        "# Axes: +Z up, as `relumine env convert --to pbrt` writes pictures: (x, y, z) of the "
+        "environment is (x, -z, y) here.\n"
+        "# Meshes with +Y up stand upright after Rotate 90 1 0 0.\n"
+        "# pbrt-v4: paste after WorldBegin. \"from\" \"to\" say where the light goes: from\n"
         "# the light's direction to the scene. \"L\" of a distant light is its irradiance on a "
         "surface "
         "facing it; a white diffuse\n"
         "# surface shows L / pi. No \"illuminance\": it would replace the strengths given here.\n",
-        title(list), Unit, Axes);
+        title(list), Unit);
     for (const auto& [d, e, solid_angle] : list.lights)
         fmt::format_to(
             Out(text),
             "LightSource \"distant\" \"point3 from\" [ {} {} {} ] \"point3 to\" [ 0 0 0 ] \"rgb "
             "L\" [ {} {} {} ]\n",
-            d.x, d.y, d.z, e.r, e.g, e.b);
+            d.x, 0.0 - d.z, d.y, e.r, e.g, e.b);
     return text;
 }
 
@@ -147,22 +149,27 @@ std::string mitsuba_text(const LightList& list) {
 }
 
 std::string usd_text(const LightList& list, const ExportOptions& options) {
+    // UsdLux's own angle is 0.53, the sun's. Renderers disagree about 0, and beyond a half-sphere
+    // intensity with `normalize` is no longer the irradiance.
+    constexpr double SmallestAngle = 0.53, LargestAngle = 180.0;
     std::string text = fmt::format(
         "#usda 1.0\n(\n    defaultPrim = \"Lights\"\n    upAxis = \"Y\"\n    doc = "
         "\"\"\"{}\n{}\n{}\n"
         "A DistantLight shines along its local -Z. With inputs:normalize = 1, intensity times "
         "color is the "
         "irradiance on a surface\n"
-        "facing the light, whatever inputs:angle (degrees across; 0: all light from one "
-        "direction).\"\"\"\n)\n\n"
+        "facing the light, whatever inputs:angle (degrees across, {} to {}).\"\"\"\n)\n\n"
         "def Scope \"Lights\"\n{{\n",
-        title(list), Unit, Axes);
+        title(list), Unit, Axes, SmallestAngle, LargestAngle);
     std::size_t index = 0;
     for (const DistantLight& light : list.lights) {
         const auto [colour, intensity] = split(light.irradiance);
         const auto [right, up, back] = frame_of(light.direction);
         const double degrees =
-            options.soft ? angular_diameter(light.solid_angle) * 180.0 / std::numbers::pi : 0.0;
+            options.soft
+                ? std::clamp(angular_diameter(light.solid_angle) * 180.0 / std::numbers::pi,
+                             SmallestAngle, LargestAngle)
+                : SmallestAngle;
         fmt::format_to(
             Out(text),
             "    def DistantLight \"Light_{}\"\n    {{\n"
@@ -269,6 +276,11 @@ std::optional<LightFormat> light_format_of(const std::filesystem::path& path) {
         if (entry.extension == path.extension().string())
             return entry.format;
     return std::nullopt;
+}
+
+bool holds_soft_lights(LightFormat format) {
+    return format != LightFormat::Pbrt && format != LightFormat::Mitsuba &&
+           format != LightFormat::Gltf;
 }
 
 std::string light_text(const LightList& list, LightFormat format, const ExportOptions& options) {

@@ -42,10 +42,14 @@ inline constexpr std::array AllLightFormats = {
 /// Returns the format of a path's extension. Nothing for any other extension.
 [[nodiscard]] std::optional<LightFormat> light_format_of(const std::filesystem::path& path);
 
+/// Returns true if a light of the format has a size: its solid angle or an angle.
+[[nodiscard]] bool holds_soft_lights(LightFormat format);
+
 /// Choices of the formats that have them.
 struct ExportOptions {
     /// True: lights are as wide as the part of the sphere they stand for, in formats with an angle
-    /// (USD, Blender), and shadows are softer. False: all light comes from one direction.
+    /// (holds_soft_lights()), and shadows are softer. False: all light comes from one direction; in
+    /// USD from the width of the sun, the least that all its renderers take.
     bool soft = false;
     /// Factor for glTF, whose unit is the lux. 1 suits most viewers, which take the lux for the
     /// unit of the materials and other lights. 683 gives true lux for an environment in W/(m^2 sr).

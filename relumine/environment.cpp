@@ -1,25 +1,92 @@
 #include "relumine/environment.h"
 
+#include <algorithm>
 #include <chrono>
+#include <stdexcept>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "cubemap/doctor/upside_down.h"
+#include "cubemap/image/convention.h"
 #include "cubemap/resample/resample.h"
 
 namespace relumine {
 
+namespace {
+
+const cubemap::Convention& convention_of(const EnvironmentOptions& options) {
+    const cubemap::Convention* found = cubemap::find_convention(options.from);
+    if (found == nullptr)
+        throw std::invalid_argument(
+            fmt::format("environment: expected a known convention, got '{}'", options.from));
+    return *found;
+}
+
+glm::dmat3 flipped(char axis) {
+    glm::dmat3 result(1.0);
+    if (axis != 0) {
+        const int index = axis - 'x';
+        if (index < 0 || index > 2)
+            throw std::invalid_argument(
+                fmt::format("environment: expected x, y or z as the axis to flip, got '{}'", axis));
+        result[index][index] = -1.0;
+    }
+    return result;
+}
+
+} // namespace
+
 cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& path,
                                                  const EnvironmentOptions& options) {
-    return cubemap::load_environment(
-        path, {.layout = options.layout, .fix_bad_pixels = options.fix_bad_pixels});
+    const cubemap::Convention& from = convention_of(options);
+    cubemap::LoadOptions load{.layout = options.layout, .fix_bad_pixels = options.fix_bad_pixels};
+    if (!load.layout && from.layouts.size() == 1)
+        load.layout = from.layouts.front();
+    cubemap::EnvironmentImage image = cubemap::load_environment(path, load);
+    if (!from.reads(image.layout)) {
+        std::vector<std::string_view> names;
+        for (const cubemap::Layout layout : from.layouts)
+            names.push_back(cubemap::name(layout));
+        throw std::runtime_error(fmt::format("{}: expected a {} in the convention of {}, got a {}",
+                                             path.string(), fmt::join(names, " or "), from.name,
+                                             cubemap::name(image.layout)));
+    }
+    // Programs other than OpenEXR's own do not look at the attribute.
+    if (!from.has_attribute && image.sampling == cubemap::Sampling::Borders) {
+        image.sampling = cubemap::Sampling::TexelCentres;
+        image.assumptions = fmt::format("{} as {} reads it, samples at texel centres",
+                                        cubemap::name(image.layout), from.name);
+    }
+    if (from.swaps_z_faces)
+        cubemap::swap_z_faces(image);
+    return image;
+}
+
+glm::dmat3 world_from_image(cubemap::Layout layout, const EnvironmentOptions& options) {
+    return cubemap::turn_about_y(options.rotate_degrees) *
+           cubemap::turn_about_x(options.tilt_degrees) * flipped(options.flip) *
+           convention_of(options).world_from(layout);
 }
 
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                              const EnvironmentOptions& options) {
     const std::uint32_t resolution =
         options.face_resolution != 0 ? options.face_resolution : cubemap::natural_resolution(image);
-    cubemap::CubeMap map = cubemap::resample(image, resolution);
-    if (options.rotate_degrees != 0.0)
-        map = cubemap::rotated(map, options.rotate_degrees);
-    return map;
+    return cubemap::turned(cubemap::resample(image, resolution),
+                           world_from_image(image.layout, options));
+}
+
+std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
+                                        double light_from_below) {
+    std::vector<std::string> result;
+    const cubemap::BadPixels& bad = image.bad_pixels;
+    if (image.fixed && bad.is_harmless())
+        result.push_back(fmt::format("{} negative pixels became 0 ({:.2g} % of the light)",
+                                     bad.num_negative, 100.0 * bad.negative_share));
+    if (const auto doubt = cubemap::upside_down(light_from_below))
+        result.push_back(*doubt);
+    return result;
 }
 
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
@@ -29,6 +96,7 @@ Environment load_environment(const std::filesystem::path& path, const Environmen
     const Clock::time_point loaded = Clock::now();
     Environment result{.map = cube_map_of(image, options), .assumptions = image.assumptions};
     result.num_fixed_pixels = image.fixed ? image.bad_pixels.count() : 0;
+    result.warnings = warnings_about(image, cubemap::light_from_below(result.map));
     result.seconds_load = std::chrono::duration<double>(loaded - start).count();
     result.seconds_resample = std::chrono::duration<double>(Clock::now() - loaded).count();
     return result;

@@ -5,6 +5,10 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/mat3x3.hpp>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
@@ -14,12 +18,18 @@ namespace relumine {
 struct EnvironmentOptions {
     /// Overrides what the file says; a square picture does not say
     std::optional<cubemap::Layout> layout = {};
+    /// Whose convention the file follows: a name of cubemap::conventions()
+    std::string_view from = "openexr";
     /// R, texels along a cube face's edge; 0: as many as keep the file's resolution
     std::uint32_t face_resolution = 0;
     /// NaN and negative radiance becomes 0, infinite radiance the largest finite one; otherwise
-    /// such files are refused
+    /// such files are refused, but for the few negative pixels that resampling leaves
     bool fix_bad_pixels = false;
-    /// Turns the environment about +Y, degrees: light from +Z comes from +X at 90
+    /// Mirrors the environment along this axis of the world, 'x', 'y' or 'z'; applied first. 0: no
+    char flip = 0;
+    /// Turns the environment about +X, degrees: light from +Y comes from +Z at 90; applied second
+    double tilt_degrees = 0.0;
+    /// Turns the environment about +Y, degrees: light from +Z comes from +X at 90; applied last
     double rotate_degrees = 0.0;
 };
 
@@ -30,20 +40,34 @@ struct Environment {
     std::string assumptions;
     /// Pixels that were replaced
     std::size_t num_fixed_pixels = 0;
+    /// What a user should know, one clause each: negative pixels that became 0, a ground that is
+    /// brighter than the sky
+    std::vector<std::string> warnings = {};
     double seconds_load = 0.0;
-    /// With the rotation
+    /// With the turn
     double seconds_resample = 0.0;
 };
 
-/// Reads the image as the file has it: `layout` and `fix_bad_pixels` of the options count.
+/// Reads the image as the file has it: `layout`, `from` and `fix_bad_pixels` of the options count.
+/// A map of OpenGL or Direct3D gets the faces +Z and -Z of OpenEXR.
 ///
-/// Throws:  std::runtime_error "path: expected X, got Y".
+/// Throws:  std::runtime_error "path: expected X, got Y"; std::invalid_argument for an unknown
+///          convention.
 [[nodiscard]] cubemap::EnvironmentImage
 load_environment_image(const std::filesystem::path& path, const EnvironmentOptions& options = {});
+
+/// Returns the matrix of convention, flip, tilt and rotation, from the image's own directions to
+/// the world's.
+[[nodiscard]] glm::dmat3 world_from_image(cubemap::Layout layout,
+                                          const EnvironmentOptions& options = {});
 
 /// Resamples an image to a cube map and turns it. Keeps the energy of every pixel.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options = {});
+
+/// Returns Environment::warnings of an image; `light_from_below` as in cubemap::upside_down().
+[[nodiscard]] std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
+                                                      double light_from_below);
 
 /// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.
 ///

@@ -50,6 +50,8 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
         if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
             patch->path =
                 std::filesystem::absolute(path.parent_path() / patch->path).lexically_normal();
+    if (file.rotate_degrees)
+        state.desk.set_rotation(*file.rotate_degrees);
     state.desk.replace(std::move(file.layers));
     state.desk.select(std::nullopt);
     state.frames = std::move(file.frames);
@@ -139,6 +141,7 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
 bool save_layers(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
         cubemap::LightLayers file{
+            .rotate_degrees = state.desk.editor().rotation(),
             .layers = {state.desk.layers().begin(), state.desk.layers().end()},
             .frames = state.frames};
         const std::filesystem::path folder =

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include "cubemap/doctor/bright_spot.h"
 #include "cubemap/image/image_layout.h"
@@ -42,32 +43,38 @@ double median(std::vector<double> values) {
     return quantile(std::move(values), 0.5);
 }
 
-/// Returns the luminance of every pixel in stops.
-std::vector<double> stops(const EnvironmentImage& image) {
-    double mean = 0.0;
-    for (const glm::vec3& pixel : image.pixels)
-        mean += luminance(glm::dvec3(pixel));
-    mean /= static_cast<double>(image.pixels.size());
-    std::vector<double> result;
-    result.reserve(image.pixels.size());
-    for (const glm::vec3& pixel : image.pixels)
-        result.push_back(mean > 0.0 ? std::log2(luminance(glm::dvec3(pixel)) / mean + DarkPart)
-                                    : 0.0);
-    return result;
-}
+/// The luminance of an image's pixels in stops. Pixels are computed when asked for: a large map
+/// would not fit into memory twice.
+class Stops {
+public:
+    explicit Stops(const EnvironmentImage& image) : image_(image) {
+        double sum = 0.0;
+        for (const glm::vec3& pixel : image.pixels)
+            sum += luminance(glm::dvec3(pixel));
+        mean_ = sum / static_cast<double>(image.pixels.size());
+    }
+    [[nodiscard]] double operator[](std::size_t pixel) const {
+        return mean_ > 0.0
+                   ? std::log2(luminance(glm::dvec3(image_.pixels[pixel])) / mean_ + DarkPart)
+                   : 0.0;
+    }
+
+private:
+    const EnvironmentImage& image_;
+    double mean_ = 0.0;
+};
 
 class LatLongCheck {
 public:
     LatLongCheck(const EnvironmentImage& image, std::vector<SeamFault>& faults)
-        : width_(image.width), height_(image.height), stops_(stops(image)),
+        : width_(image.width), height_(image.height), stops_(image),
           rows_(detail::lat_long_rows({image.layout, image.sampling, image.width, image.height})),
           faults_(faults) {}
 
     void wrap() const {
-        std::vector<double> steps;
-        for (std::size_t x = 0; x + 1 < width_; ++x)
-            steps.push_back(step(x, x + 1));
-        const double seam = step(width_ - 1, 0);
+        std::vector<double> steps = mean_steps();
+        const double seam = steps.back();
+        steps.pop_back();
         const double usual = quantile(steps, 0.99);
         if (seam > WrapFactor * usual && seam > WrapLeastEv)
             faults_.push_back({"left and right edge", seam, median(steps)});
@@ -76,11 +83,14 @@ public:
     void pole(bool is_top) const {
         const auto row = [&](std::size_t i) {
             const std::size_t y = is_top ? i : height_ - 1 - i;
-            return std::span(stops_).subspan(y * width_, width_);
+            std::vector<double> values(width_);
+            for (std::size_t x = 0; x < width_; ++x)
+                values[x] = stops_[y * width_ + x];
+            return values;
         };
         std::vector<double> levels;
         for (std::size_t i = 0; i <= NumPoleRows; ++i)
-            levels.push_back(median({row(i).begin(), row(i).end()}));
+            levels.push_back(median(row(i)));
         // Rows differ from one to the next. Grain also makes the pole differ from the mean, since
         // all its pixels may be one sample.
         double usual = 0.0;
@@ -97,10 +107,11 @@ public:
             return;
         }
         // All pixels of the row lie within one row's height of each other.
+        const std::vector<double> first = row(0), second = row(1);
         std::vector<double> around, down;
         for (std::size_t x = 0; x < width_; ++x) {
-            around.push_back(std::abs(row(0)[x] - levels[0]));
-            down.push_back(std::abs(row(0)[x] - row(1)[x]));
+            around.push_back(std::abs(first[x] - levels[0]));
+            down.push_back(std::abs(first[x] - second[x]));
         }
         const double spread = median(around), beside = median(down);
         if (spread > AroundFactor * beside && spread > AroundLeastEv)
@@ -108,19 +119,40 @@ public:
     }
 
 private:
-    /// Returns the mean step between two columns. Rows are weighted with their solid angles.
-    [[nodiscard]] double step(std::size_t first, std::size_t second) const {
-        double sum = 0.0, weights = 0.0;
-        for (std::size_t y = 0; y < height_; ++y) {
-            sum += rows_[y].height *
-                   std::abs(stops_[y * width_ + first] - stops_[y * width_ + second]);
-            weights += rows_[y].height;
+    /// Returns the mean step from each column to the next one, and from the last to the first. Rows
+    /// are weighted with their solid angles.
+    [[nodiscard]] std::vector<double> mean_steps() const {
+        // Bands of rows are summed in parallel, and the bands in order.
+        constexpr std::size_t BandHeight = 64;
+        std::vector<std::vector<double>> bands((height_ + BandHeight - 1) / BandHeight);
+        tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
+            std::vector<double>& sums = bands[band];
+            sums.assign(width_, 0.0);
+            const std::size_t end = std::min((band + 1) * BandHeight, height_);
+            for (std::size_t y = band * BandHeight; y < end; ++y) {
+                const double first = stops_[y * width_];
+                double here = first;
+                for (std::size_t x = 0; x < width_; ++x) {
+                    const double next = x + 1 < width_ ? stops_[y * width_ + x + 1] : first;
+                    sums[x] += rows_[y].height * std::abs(next - here);
+                    here = next;
+                }
+            }
+        });
+        double weights = 0.0;
+        for (const detail::LatLongRow& row : rows_)
+            weights += row.height;
+        std::vector<double> steps(width_, 0.0);
+        for (std::size_t x = 0; x < width_; ++x) {
+            for (const std::vector<double>& sums : bands)
+                steps[x] += sums[x];
+            steps[x] /= weights;
         }
-        return sum / weights;
+        return steps;
     }
 
     std::size_t width_, height_;
-    std::vector<double> stops_;
+    Stops stops_;
     std::vector<detail::LatLongRow> rows_;
     std::vector<SeamFault>& faults_;
 };
@@ -170,7 +202,7 @@ std::string_view axis_name(Face face) {
 void check_edges(const EnvironmentImage& image, const FaceSquares& squares,
                  std::vector<SeamFault>& faults) {
     const std::uint32_t resolution = squares.resolution();
-    const std::vector<double> values = stops(image);
+    const Stops values(image);
     const auto at = [&](const Texel& texel) {
         return values[squares.pixel(texel.face, texel.x, texel.y)];
     };

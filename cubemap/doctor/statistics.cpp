@@ -23,7 +23,7 @@ bool is_good(const glm::vec3& radiance) {
 EnvironmentStatistics statistics(const EnvironmentImage& image) {
     EnvironmentStatistics result;
     double smallest = std::numeric_limits<double>::infinity();
-    double solid_angle = 0.0;
+    double solid_angle = 0.0, below = 0.0;
     for_each_pixel(
         {image.layout, image.sampling, image.width, image.height},
         [&](std::size_t index, const PixelPlace& place) {
@@ -39,6 +39,8 @@ EnvironmentStatistics statistics(const EnvironmentImage& image) {
                     power * std::abs(cosine);
             }
             const double value = luminance(radiance);
+            if (place.direction.y <= 0.0)
+                below += (place.direction.y < 0.0 ? 1.0 : 0.5) * value * place.solid_angle;
             if (value > result.max_luminance) {
                 result.max_luminance = value;
                 result.brightest_direction = place.direction;
@@ -49,6 +51,8 @@ EnvironmentStatistics statistics(const EnvironmentImage& image) {
     if (solid_angle > 0.0)
         result.mean_radiance /= solid_angle;
     result.mean_luminance = luminance(result.mean_radiance);
+    if (result.mean_luminance > 0.0)
+        result.light_from_below = below / (solid_angle * result.mean_luminance);
     if (result.max_luminance > 0.0) {
         result.min_positive_luminance = smallest;
         result.dynamic_range_ev = std::log2(result.max_luminance / smallest);

@@ -25,6 +25,8 @@ struct EnvironmentStatistics {
     glm::dvec3 brightest_direction{0.0};
     /// Irradiance of unshadowed surfaces that face +X, -X, +Y (up), -Y, +Z, -Z: the order of Face.
     std::array<glm::dvec3, 6> axis_irradiance{};
+    /// Share of the light (luminance) from below the horizon, 0 to 1.
+    double light_from_below = 0.0;
 };
 
 /// Computes the figures of an image.

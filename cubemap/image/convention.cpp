@@ -24,8 +24,8 @@ glm::dmat3 diagonal(double x, double y, double z) {
 /// A quarter turn about +Y. It carries +Z, the middle of OpenEXR's lat-long, to +X.
 const glm::dmat3 QuarterTurn = {{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {1.0, 0.0, 0.0}};
 
-const std::array<Convention, 8>& table() {
-    static const std::array<Convention, 8> Table = {
+const std::array<Convention, 9>& table() {
+    static const std::array<Convention, 9> Table = {
         // Source:  ImfEnvmap.h.
         Convention{
             .name = "openexr",
@@ -97,6 +97,14 @@ const std::array<Convention, 8>& table() {
                                   "(x, z, -y)",
                    .usual_layout = Layout::Octahedral,
                    .layouts = OctahedralOnly},
+        // Source:  pbrt-v2 and pbrt-v3, InfiniteAreaLight::Le(): s = SphericalPhi(w) / 2 pi, t =
+        //          SphericalTheta(w) / pi.
+        Convention{.name = "pbrt-v2",
+                   .mathematics = "u = atan2(y, x) / 2 pi mod 1, v = acos(z) / pi in pbrt's axes, "
+                                  "Z up (also pbrt-v3): pbrt's (x, y, z) is our (x, z, -y)",
+                   .usual_layout = Layout::LatLong,
+                   .layouts = LatLongOnly,
+                   .world_from_lat_long = {{0.0, 0.0, -1.0}, {0.0, 1.0, 0.0}, {-1.0, 0.0, 0.0}}},
     };
     return Table;
 }

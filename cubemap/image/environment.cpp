@@ -118,6 +118,20 @@ BadPixels find_bad_pixels(const EnvironmentImage& image) {
     return bad;
 }
 
+/// Returns BadPixels::negative_share.
+double negative_share(const EnvironmentImage& image) {
+    double below = 0.0, above = 0.0;
+    for_each_pixel({image.layout, image.sampling, image.width, image.height},
+                   [&](std::size_t index, const PixelPlace& place) {
+                       for (int channel = 0; channel < 3; ++channel) {
+                           const double value = image.pixels[index][channel];
+                           if (std::isfinite(value))
+                               (value < 0.0 ? below : above) += std::abs(value) * place.solid_angle;
+                       }
+                   });
+    return below == 0.0 ? 0.0 : below / above; // infinite without any light
+}
+
 /// NaN and negative values become 0, infinity becomes the largest finite value.
 void fix_bad_pixels(EnvironmentImage& image) {
     float largest = 0.0f;
@@ -206,16 +220,22 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
         image.assumptions = fmt::format("cube of six files, {}", image.assumptions);
 
     image.bad_pixels = find_bad_pixels(image);
-    if (image.bad_pixels.count() == 0)
+    BadPixels& bad = image.bad_pixels;
+    if (bad.count() == 0)
         return image;
-    if (options.fix_bad_pixels)
+    if (bad.num_negative > 0)
+        bad.negative_share = negative_share(image);
+    if (options.fix_bad_pixels || (bad.is_harmless() && options.refuse_bad_pixels))
         fix_bad_pixels(image);
     else if (options.refuse_bad_pixels)
         throw std::runtime_error(fmt::format(
-            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels, first at "
+            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels{}, first at "
             "({}, {}); use --fix-env",
-            path.string(), image.bad_pixels.num_nan + image.bad_pixels.num_infinite,
-            image.bad_pixels.num_negative, image.bad_pixels.first_x, image.bad_pixels.first_y));
+            path.string(), bad.num_nan + bad.num_infinite, bad.num_negative,
+            bad.num_negative == 0
+                ? ""
+                : fmt::format(" ({:.2g} % of the light)", 100.0 * bad.negative_share),
+            bad.first_x, bad.first_y));
     return image;
 }
 

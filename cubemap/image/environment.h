@@ -59,6 +59,9 @@ enum class Sampling {
 
 /// Count of pixels whose values are no radiance.
 struct BadPixels {
+    /// Largest negative_share that is taken for what a resampling filter left.
+    static constexpr double MostNegativeLight = 0.01;
+
     /// Pixels with a NaN channel.
     std::size_t num_nan = 0;
     /// Pixels with an infinite channel and no NaN.
@@ -68,7 +71,14 @@ struct BadPixels {
     /// Column and row of the first bad pixel in reading order. 0 if there is none.
     std::uint32_t first_x = 0;
     std::uint32_t first_y = 0;
+    /// The light below zero over the light above zero: sums over the sphere and the channels, of
+    /// finite values.
+    double negative_share = 0.0;
     [[nodiscard]] std::size_t count() const { return num_nan + num_infinite + num_negative; }
+    /// Returns true for what resampling filters leave: some negative pixels with hardly any light.
+    [[nodiscard]] bool is_harmless() const {
+        return count() == num_negative && negative_share <= MostNegativeLight;
+    }
 };
 
 /// An environment's picture as read from a file, with what was found out or assumed about it.
@@ -80,7 +90,8 @@ struct EnvironmentImage : Picture {
     std::string assumptions;
     /// Bad pixels as they were in the file.
     BadPixels bad_pixels;
-    /// True if bad pixels were replaced.
+    /// True if bad pixels were replaced: all of them, or the few negative ones that every file may
+    /// have.
     bool fixed = false;
 };
 
@@ -91,8 +102,8 @@ struct LoadOptions {
     /// True: NaN and negative values become 0, infinity becomes the largest finite value of the
     /// image.
     bool fix_bad_pixels = false;
-    /// True: an image with bad pixels that are not fixed is an error. False: it is loaded as it is,
-    /// for `info`.
+    /// True: an image with bad pixels that are not fixed is an error, but harmless ones become 0.
+    /// False: an image is loaded as it is.
     bool refuse_bad_pixels = true;
 };
 

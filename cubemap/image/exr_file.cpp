@@ -17,9 +17,11 @@
 #include <ImfRgbaFile.h>
 #include <ImfStandardAttributes.h>
 #include <ImfStdIO.h>
+#include <ImfThreading.h>
 #include <ImfTileDescription.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include "cubemap/image/exr_header.h"
@@ -379,6 +381,27 @@ ImageSize exr_size(const std::filesystem::path& path) {
     return with_own_messages(name, [&] { return ExrDecoder({}, name).size(path); });
 }
 
+namespace {
+
+/// Returns the number of OpenEXR's threads that compress a picture; the file is the same for any
+/// number. Small pictures are written by the caller's thread. Large ones switch on OpenEXR's pool,
+/// for as many threads as this program may have.
+int num_writers(const Picture& picture) {
+    constexpr std::size_t Small = std::size_t{1} << 18;
+    if (picture.pixels.size() <= Small)
+        return 0;
+    static const int num_threads = [] {
+        const auto allowed = static_cast<int>(
+            tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+        if (allowed > 1)
+            Imf::setGlobalThreadCount(allowed);
+        return allowed > 1 ? allowed : 0;
+    }();
+    return num_threads;
+}
+
+} // namespace
+
 std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
@@ -405,7 +428,7 @@ std::vector<std::byte> encode_exr(const EnvironmentImage& image) {
     }
     MemoryOutput stream;
     {
-        Imf::OutputFile file(stream, header, 0);
+        Imf::OutputFile file(stream, header, num_writers(image));
         file.setFrameBuffer(buffer);
         file.writePixels(static_cast<int>(image.height));
     }

@@ -27,7 +27,9 @@ public:
     LightLayers read() const {
         const files::JsonValue root = json_.parse(files::read(path_));
         const auto& members = json_.object(root, "a layer file");
-        json_.known(members, std::array<std::string_view, 4>{"version", "base", "layers", "frames"},
+        json_.known(members,
+                    std::array<std::string_view, 5>{"version", "base", "rotate_degrees", "layers",
+                                                    "frames"},
                     "a layer file");
         const files::JsonValue& version = json_.required(root, members, "version");
         if (const double got = json_.number(version, "\"version\""); got != Version)
@@ -35,6 +37,8 @@ public:
         LightLayers result;
         if (const files::JsonValue* base = files::JsonReader::find(members, "base"))
             result.base = json_.string(*base, "\"base\"");
+        if (const files::JsonValue* turn = files::JsonReader::find(members, "rotate_degrees"))
+            result.rotate_degrees = json_.number(*turn, "\"rotate_degrees\"");
         for (const files::JsonValue& value :
              json_.array(json_.required(root, members, "layers"), "\"layers\""))
             result.layers.push_back(layer(value, result.layers));

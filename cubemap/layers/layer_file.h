@@ -34,6 +34,9 @@ struct LightLayers {
     /// The environment below the layers, relative to the file's folder as the file names it: open
     /// `file.parent_path() / *base`. Empty: the file names none.
     std::optional<std::filesystem::path> base = {};
+    /// Turns the environment and the layers together about +Y, degrees, as cubemap::rotated().
+    /// Empty: the file does not say.
+    std::optional<double> rotate_degrees = {};
     /// Layers, the lowest first. No two have the same name.
     std::vector<LightLayer> layers = {};
     /// Key frames, frame numbers ascending.

@@ -103,6 +103,8 @@ void check_for_save(const LightLayers& layers) {
                 fmt::format("key frames: expected ascending frames, got {} after {}",
                             layers.frames[i].frame, layers.frames[i - 1].frame));
     }
+    if (!std::isfinite(layers.rotate_degrees.value_or(0.0)))
+        throw std::invalid_argument("light layers: expected a finite rotation");
     for (const KeyFrame& key : layers.frames)
         (void)layers_at(layers, key.frame);
 }
@@ -114,6 +116,8 @@ void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
     Json root = {{"version", 1}};
     if (layers.base)
         root["base"] = layers.base->string();
+    if (layers.rotate_degrees)
+        root["rotate_degrees"] = *layers.rotate_degrees;
     root["layers"] = Json::array();
     for (const LightLayer& layer : layers.layers)
         root["layers"].push_back(json(layer));

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
+#include <tbb/parallel_for.h>
 
 #include "cubemap/resample/pixel_links.h"
 #include "cubemap/resample/pixel_points.h"
@@ -46,7 +47,7 @@ std::uint32_t natural_resolution(const ImageShape& shape) {
 
 /// Copies pixel by pixel. Returns nothing unless every target pixel lies on a source pixel.
 std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const ImageShape& target,
-                                       const Reorientation& reorientation) {
+                                       const glm::dmat3& target_from_source) {
     if (has_faces(image.layout) != has_faces(target.layout) ||
         (!has_faces(image.layout) && image.layout != target.layout) ||
         image.sampling != target.sampling ||
@@ -54,9 +55,9 @@ std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const Imag
         return std::nullopt;
     // In a lat-long with samples on the borders, the whole row at a pole is one direction.
     if (image.layout == Layout::LatLong && image.sampling == Sampling::Borders &&
-        reorientation.target_from_source() != glm::dmat3(1.0))
+        target_from_source != glm::dmat3(1.0))
         return std::nullopt;
-    const glm::dmat3 source_from_target = glm::transpose(reorientation.target_from_source());
+    const glm::dmat3 source_from_target = glm::transpose(target_from_source);
     if (shape_of(image) == target && source_from_target == glm::dmat3(1.0))
         return image;
     EnvironmentImage result = empty_image(target);
@@ -80,19 +81,6 @@ std::uint32_t exact_resolution(const ImageShape& shape) {
     return shape.sampling == Sampling::Borders && faces > 1 ? 2 * (faces - 1) : faces;
 }
 
-bool is_quarter(const Reorientation& reorientation) {
-    const double quarters = reorientation.degrees_about_y / 90.0;
-    return quarters == std::round(quarters);
-}
-
-CubeMap reoriented(const CubeMap& map, const Reorientation& reorientation) {
-    if (is_quarter(reorientation))
-        return turned(map, reorientation.target_from_source());
-    const CubeMap world =
-        rotated(turned(map, reorientation.world_from_source), reorientation.degrees_about_y);
-    return turned(world, glm::transpose(reorientation.world_from_target));
-}
-
 /// Returns the resolution of the cube map between source and target: the resolution of a layout
 /// with faces, otherwise one fine enough that its blur does not matter.
 std::uint32_t resolution_between(const ImageShape& source, const ImageShape& target) {
@@ -108,35 +96,36 @@ std::uint32_t resolution_between(const ImageShape& source, const ImageShape& tar
 /// Averages from one shape to another and back.
 class Path {
 public:
-    Path(const ImageShape& source, const ImageShape& target, const Reorientation& reorientation)
-        : source_(source), target_(target), reorientation_(reorientation) {}
+    Path(const ImageShape& source, const ImageShape& target, const glm::dmat3& target_from_source)
+        : source_(source), target_(target), target_from_source_(target_from_source) {}
     /// Each target pixel is the mean over its footprint.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
-        return averaged(image, source_, target_, reorientation_);
+        return averaged(image, source_, target_, target_from_source_);
     }
     [[nodiscard]] EnvironmentImage back(const EnvironmentImage& image) const {
-        return averaged(image, target_, source_, reorientation_.inverse());
+        return averaged(image, target_, source_, glm::transpose(target_from_source_));
     }
 
 private:
     [[nodiscard]] static EnvironmentImage averaged(const EnvironmentImage& image,
                                                    const ImageShape& from, const ImageShape& to,
-                                                   const Reorientation& reorientation) {
-        if (from.layout == Layout::LatLong && has_faces(to.layout) && is_quarter(reorientation))
-            return faces_from_lat_long(image, to, reorientation);
+                                                   const glm::dmat3& target_from_source) {
+        if (from.layout == Layout::LatLong && has_faces(to.layout) &&
+            carries_axes_to_axes(target_from_source))
+            return faces_from_lat_long(image, to, target_from_source);
         const CubeMap map =
-            reoriented(resample(image, resolution_between(from, to)), reorientation);
+            turned(resample(image, resolution_between(from, to)), target_from_source);
         return to_image(map, to.layout, to.width, to.height, to.sampling);
     }
 
     /// Averages directly into the cube's squares, for either sampling.
-    [[nodiscard]] static EnvironmentImage faces_from_lat_long(const EnvironmentImage& image,
-                                                              const ImageShape& target,
-                                                              const Reorientation& reorientation) {
+    [[nodiscard]] static EnvironmentImage
+    faces_from_lat_long(const EnvironmentImage& image, const ImageShape& target,
+                        const glm::dmat3& target_from_source) {
         const FaceSquares squares(target.layout, target.width, target.height);
         const CubeMap map =
             turned(detail::cube_from_lat_long(image, squares.resolution(), target.sampling),
-                   reorientation.target_from_source());
+                   target_from_source);
         EnvironmentImage result = empty_image(target);
         for (const Face face : AllFaces) {
             for (std::uint32_t y = 0; y < map.resolution; ++y) {
@@ -148,19 +137,19 @@ private:
     }
 
     ImageShape source_, target_;
-    Reorientation reorientation_;
+    glm::dmat3 target_from_source_;
 };
 
 /// Interpolates bilinearly over the sphere at four points of each pixel. The result is a smooth
 /// start that keeps energy only roughly.
 EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& target,
-                              const Reorientation& reorientation) {
+                              const glm::dmat3& target_from_source) {
     // In the middle of a face, a lat-long's pixels are narrower than the texels of its natural
     // resolution.
     const std::uint32_t natural = natural_resolution(shape_of(image));
     const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
     const CubeMap source = resample(image, coarse);
-    const glm::dmat3 source_from_target = glm::transpose(reorientation.target_from_source());
+    const glm::dmat3 source_from_target = glm::transpose(target_from_source);
     EnvironmentImage result = empty_image(target);
     for_each_pixel_points(target, [&](std::size_t pixel, std::span<const glm::dvec3> directions) {
         glm::vec3 sum(0.0f);
@@ -172,6 +161,16 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
 }
 
 using Pixels = std::vector<glm::vec3>;
+
+constexpr std::size_t ChunkSize = 1 << 14;
+
+/// Calls `work(chunk, begin, end)` for chunks of pixels, in parallel.
+template<typename Work>
+void for_each_chunk(std::size_t size, const Work& work) {
+    tbb::parallel_for(std::size_t{0}, (size + ChunkSize - 1) / ChunkSize, [&](std::size_t chunk) {
+        work(chunk, chunk * ChunkSize, std::min((chunk + 1) * ChunkSize, size));
+    });
+}
 
 /// Multiplies `grown` by the ratio of the image to `back(grown)`, spread over the footprints by
 /// `forth` (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, makes
@@ -185,11 +184,16 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
              Pixels& grown) {
     // A product never leaves zero, and the interpolation may have missed a part of a wide pixel. So
     // pixels of zero start from the mean.
-    const Pixels means = forth(image);
-    for (std::size_t i = 0; i < grown.size(); ++i) {
-        for (int channel = 0; channel < 3; ++channel) {
-            if (grown[i][channel] <= 0.0f)
-                grown[i][channel] = means[i][channel];
+    const auto has_zero = [](const glm::vec3& pixel) {
+        return pixel.x <= 0.0f || pixel.y <= 0.0f || pixel.z <= 0.0f;
+    };
+    if (std::any_of(grown.begin(), grown.end(), has_zero)) {
+        const Pixels means = forth(image);
+        for (std::size_t i = 0; i < grown.size(); ++i) {
+            for (int channel = 0; channel < 3; ++channel) {
+                if (grown[i][channel] <= 0.0f)
+                    grown[i][channel] = means[i][channel];
+            }
         }
     }
     Pixels start = grown;
@@ -199,14 +203,26 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
     int run = 0;
     for (int round = 0; round < num_rounds; ++round) {
         Pixels ratio = back(start);
-        double difference = 0.0, sum = 0.0;
-        for (std::size_t i = 0; i < ratio.size(); ++i) {
-            for (int channel = 0; channel < 3; ++channel) {
-                const float have = ratio[i][channel], want = image[i][channel];
-                difference += std::abs(static_cast<double>(have) - want);
-                sum += want;
-                ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
+        // Chunks are summed in parallel, and their sums in order.
+        struct Sums {
+            double difference = 0.0, all = 0.0;
+        };
+        std::vector<Sums> chunks((ratio.size() + ChunkSize - 1) / ChunkSize);
+        for_each_chunk(ratio.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+            Sums& sums = chunks[chunk];
+            for (std::size_t i = begin; i < end; ++i) {
+                for (int channel = 0; channel < 3; ++channel) {
+                    const float have = ratio[i][channel], want = image[i][channel];
+                    sums.difference += std::abs(static_cast<double>(have) - want);
+                    sums.all += want;
+                    ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
+                }
             }
+        });
+        double difference = 0.0, sum = 0.0;
+        for (const Sums& sums : chunks) {
+            difference += sums.difference;
+            sum += sums.all;
         }
         const Pixels factor = forth(ratio);
         // The difference rose, so the step was too long: restart.
@@ -229,25 +245,27 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
         // Least value relative to the pixel. The next round multiplies, so a value must not come
         // near zero.
         constexpr float Least = 0.25f;
-        for (std::size_t i = 0; i < grown.size(); ++i) {
-            const glm::vec3 end = start[i] * factor[i];
-            start[i] = glm::max(end + further * (end - grown[i]), Least * end);
-            grown[i] = end;
-        }
+        for_each_chunk(grown.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                const glm::vec3 after = start[i] * factor[i];
+                start[i] = glm::max(after + further * (after - grown[i]), Least * after);
+                grown[i] = after;
+            }
+        });
         if (is_last)
             return;
     }
 }
 
 EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
-                       const Reorientation& reorientation) {
+                       const glm::dmat3& target_from_source) {
     const ImageShape source = shape_of(image);
-    EnvironmentImage result = interpolated(image, target, reorientation);
+    EnvironmentImage result = interpolated(image, target, target_from_source);
     // In pictures this large a sun is never smaller than a pixel, and the links would take
     // gigabytes.
     constexpr std::size_t Large = std::size_t{1} << 22;
     if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
-        const Path path(source, target, reorientation);
+        const Path path(source, target, target_from_source);
         const auto over = [](const ImageShape& shape, const Pixels& pixels) {
             EnvironmentImage picture = empty_image(shape);
             picture.pixels = pixels;
@@ -260,9 +278,9 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
             result.pixels);
         return result;
     }
-    const PixelLinks links(
-        source, target, reorientation.target_from_source(), resolution_between(source, target),
-        has_faces(source.layout) ? PixelLinks::Axes::Source : PixelLinks::Axes::Target);
+    const PixelLinks links(source, target, target_from_source, resolution_between(source, target),
+                           has_faces(source.layout) ? PixelLinks::Axes::Source
+                                                    : PixelLinks::Axes::Target);
     constexpr int MostRounds = 200; // a sun in a disc's rim needs most of them
     correct(
         image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
@@ -272,25 +290,18 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
 
 } // namespace
 
-glm::dmat3 Reorientation::target_from_source() const {
-    return glm::transpose(world_from_target) * turn_about_y(degrees_about_y) * world_from_source;
-}
-
-Reorientation Reorientation::inverse() const {
-    return {world_from_target, -degrees_about_y, world_from_source};
-}
-
 EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
-                         const Reorientation& reorientation) {
+                         const glm::dmat3& target_from_source) {
     if (!fits(target.layout, target.width, target.height))
         throw std::invalid_argument(fmt::format("convert: a {} cannot be {}x{}",
                                                 name(target.layout), target.width, target.height));
-    if (auto copy = copied(image, target, reorientation))
+    if (auto copy = copied(image, target, target_from_source))
         return std::move(*copy);
     // At about the same size there is nothing to smooth and hardly any room for corrections.
     const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(shape_of(image));
-    EnvironmentImage result = grows ? grown(image, target, reorientation)
-                                    : Path(shape_of(image), target, reorientation).forth(image);
+    EnvironmentImage result = grows
+                                  ? grown(image, target, target_from_source)
+                                  : Path(shape_of(image), target, target_from_source).forth(image);
     result.assumptions = "converted";
     return result;
 }

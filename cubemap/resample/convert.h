@@ -8,23 +8,8 @@
 
 namespace relumine::cubemap {
 
-/// The turn from the directions of one image to the directions of another. Both images have their
-/// own axes in the world.
-struct Reorientation {
-    /// Carries axes to axes. Applied first.
-    glm::dmat3 world_from_source = glm::dmat3(1.0);
-    /// Turn about the world's +Y, as in rotated(). Applied second.
-    double degrees_about_y = 0.0;
-    /// Carries axes to axes. Its inverse is applied last.
-    glm::dmat3 world_from_target = glm::dmat3(1.0);
-
-    /// Returns the matrix of the whole turn.
-    [[nodiscard]] glm::dmat3 target_from_source() const;
-    /// Returns the turn back.
-    [[nodiscard]] Reorientation inverse() const;
-};
-
-/// Returns the image in another layout, size and sampling.
+/// Returns the image in another layout, size and sampling, turned by an orthogonal matrix (mirror
+/// images are allowed).
 ///
 /// - Pixels are copied bit by bit where each target pixel shows one source pixel: the faces of a
 ///   cube in another arrangement, a lat-long turned by whole pixels.
@@ -38,7 +23,7 @@ struct Reorientation {
 /// Throws:  std::invalid_argument for sizes that do not fit the layout.
 /// Threads: parallel (TBB); the result is bitwise independent of the number of threads.
 [[nodiscard]] EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target,
-                                       const Reorientation& reorientation = {});
+                                       const glm::dmat3& target_from_source = glm::dmat3(1.0));
 
 /// Returns the size of a converted image for which the user gave no size. The result is as fine as
 /// the image, and at least as fine as 6 x 256 x 256. Images of a disc get at least 6 x 512 x 512

@@ -103,6 +103,20 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
         }
         starts_.push_back(sources_.size());
     }
+
+    // The same links in the order of their source pixels.
+    source_starts_.assign(num_source_pixels_ + 1, 0);
+    for (const std::uint32_t source_pixel : sources_)
+        ++source_starts_[source_pixel + 1];
+    for (std::size_t i = 1; i < source_starts_.size(); ++i)
+        source_starts_[i] += source_starts_[i - 1];
+    back_.resize(sources_.size());
+    std::vector<std::size_t> next(source_starts_.begin(), source_starts_.end() - 1);
+    for (std::size_t i = 0; i < num_pixels; ++i) {
+        for (std::size_t link = starts_[i]; link < starts_[i + 1]; ++link)
+            back_[next[sources_[link]]++] = {static_cast<std::uint32_t>(i),
+                                             static_cast<std::uint32_t>(link)};
+    }
 }
 
 std::vector<glm::vec3> PixelLinks::to_target(const std::vector<glm::vec3>& pixels) const {
@@ -122,16 +136,16 @@ std::vector<glm::vec3> PixelLinks::to_target(const std::vector<glm::vec3>& pixel
 }
 
 std::vector<glm::vec3> PixelLinks::to_source(const std::vector<glm::vec3>& pixels) const {
-    std::vector<glm::dvec3> sums(num_source_pixels_, glm::dvec3(0.0));
-    for (std::size_t i = 0; i < pixels.size(); ++i) {
-        for (std::size_t link = starts_[i]; link < starts_[i + 1]; ++link)
-            sums[sources_[link]] += glm::dvec3(pixels[i]) * solid_angles_[link];
-    }
     std::vector<glm::vec3> result(num_source_pixels_, glm::vec3(0.0f));
-    for (std::size_t i = 0; i < result.size(); ++i) {
-        if (source_angles_[i] > 0.0)
-            result[i] = glm::vec3(sums[i] / source_angles_[i]);
-    }
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i != range.end(); ++i) {
+            glm::dvec3 sum(0.0);
+            for (std::size_t k = source_starts_[i]; k < source_starts_[i + 1]; ++k)
+                sum += glm::dvec3(pixels[back_[k].target]) * solid_angles_[back_[k].link];
+            if (source_angles_[i] > 0.0)
+                result[i] = glm::vec3(sum / source_angles_[i]);
+        }
+    });
     return result;
 }
 

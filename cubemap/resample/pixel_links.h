@@ -16,7 +16,7 @@ namespace relumine::cubemap {
 /// resolution and lies along the axes of the source or of the target. Pixels that meet in one texel
 /// are taken as mixed all over the texel.
 ///
-/// Memory:  about 12 bytes per pair of pixels, and more during construction.
+/// Memory:  about 20 bytes per pair of pixels, and more during construction.
 class PixelLinks {
 public:
     enum class Axes { Source, Target };
@@ -37,6 +37,15 @@ private:
     std::vector<double> solid_angles_;
     /// Sum of the links' solid angles, per source pixel.
     std::vector<double> source_angles_;
+    /// A link seen from its source pixel. There are below 2^32 links: pictures with links are
+    /// small.
+    struct Back {
+        std::uint32_t target, link;
+    };
+    // The links of source pixel i are [source_starts_[i], source_starts_[i + 1]), targets
+    // ascending.
+    std::vector<std::size_t> source_starts_;
+    std::vector<Back> back_;
 };
 
 } // namespace relumine::cubemap

@@ -17,6 +17,7 @@
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/footprint.h"
 #include "cubemap/resample/lat_long_footprint.h"
+#include "cubemap/resample/pixel_symmetry.h"
 #include "cubemap/resample/projection.h"
 #include "cubemap/spherical_overlap.h"
 
@@ -51,10 +52,10 @@ public:
     /// face; a row then runs over all six faces.
     [[nodiscard]] std::uint32_t num_rows() const { return num_rows_; }
 
-    /// Calls `visit(pixel_index, std::span<const glm::dvec3>)` with the corners of each piece,
-    /// clockwise seen from the middle of the sphere.
-    template<typename Visit>
-    void visit_row(std::uint32_t y, const Visit& visit) {
+    /// Calls `visit(pixel_index, x, std::span<const glm::dvec3>)` with the corners of each piece of
+    /// the pixels that `wants(x, pixel_index)`, clockwise seen from the middle of the sphere.
+    template<typename Wants, typename Visit>
+    void visit_row(std::uint32_t y, const Wants& wants, const Visit& visit) {
         if (squares_) {
             for (const Face face : AllFaces) {
                 for (std::uint32_t x = 0; x < num_rows_; ++x) {
@@ -63,14 +64,17 @@ public:
                         cube_point(face, borders_[x + 1], borders_[y]),
                         cube_point(face, borders_[x + 1], borders_[y + 1]),
                         cube_point(face, borders_[x], borders_[y + 1])};
-                    visit(squares_->pixel(face, x, y), std::span<const glm::dvec3>(corners));
+                    visit(squares_->pixel(face, x, y), x, std::span<const glm::dvec3>(corners));
                 }
             }
             return;
         }
         for (std::uint32_t x = 0; x < width_; ++x) {
+            const std::size_t pixel = static_cast<std::size_t>(y) * width_ + x;
+            if (!wants(x, pixel))
+                continue;
             const auto take = [&](std::span<const glm::dvec3> corners) {
-                visit(static_cast<std::size_t>(y) * width_ + x, corners);
+                visit(pixel, x, corners);
             };
             if (lat_long_)
                 lat_long_->visit(x, y, take);
@@ -87,49 +91,138 @@ private:
     std::vector<double> borders_;
 };
 
-/// Calls `take(std::span<const PixelShare>)` for each row of pixels, in order. Rows are computed in
-/// parallel, one band at a time. All shares of a pixel follow each other; a texel may come more
-/// than once. `turn` carries directions of the image to directions of the cube map.
+/// Finds the shares of an image's pixels row by row. The shares of a pixel that is not the first of
+/// its images under the symmetries come with the row of the first one.
+///
+/// Threads: use one object per thread; it keeps its buffers.
+class RowsOfShares {
+public:
+    /// `turn` carries directions of the image to directions of the cube map. `symmetries` are those
+    /// of pixel_symmetries() and must outlive this object.
+    RowsOfShares(const ImageShape& shape, const glm::dmat3& turn, std::uint32_t resolution,
+                 std::span<const PixelSymmetry> symmetries)
+        : footprints_(shape), overlaps_(resolution), symmetries_(symmetries), turn_(turn),
+          is_turned_(turn != glm::dmat3(1.0)), is_mirrored_(glm::determinant(turn) < 0.0) {}
+
+    /// Puts the shares of a row into `shares`. All shares of a pixel follow each other; a texel may
+    /// come more than once.
+    void find(std::uint32_t y, std::vector<PixelShare>& shares) {
+        shares.clear();
+        found_.clear();
+        const auto is_first = [&](std::uint32_t x, std::size_t pixel) {
+            return std::all_of(symmetries_.begin() + 1, symmetries_.end(),
+                               [&](const auto& each) { return each.pixel(x, y) >= pixel; });
+        };
+        // A pixel has several pieces; its shares are complete when the next pixel begins.
+        std::size_t current = 0;
+        std::uint32_t column = 0;
+        footprints_.visit_row(
+            y, is_first,
+            [&](std::size_t pixel, std::uint32_t x, std::span<const glm::dvec3> corners) {
+                if (pixel != current)
+                    flush(current, column, y, shares);
+                current = pixel;
+                column = x;
+                if (is_turned_) {
+                    turned_.clear();
+                    for (const glm::dvec3& corner : corners)
+                        turned_.push_back(turn_ * corner);
+                    if (is_mirrored_)
+                        std::reverse(turned_.begin(), turned_.end());
+                    corners = turned_;
+                }
+                overlaps_.find(corners, [&](Face face, std::uint32_t texel_x, std::uint32_t texel_y,
+                                            double solid_angle) {
+                    found_.push_back({face, texel_x, texel_y, solid_angle});
+                });
+            });
+        flush(current, column, y, shares);
+    }
+
+private:
+    struct Found {
+        Face face;
+        std::uint32_t x, y;
+        double solid_angle;
+    };
+
+    /// Writes the shares of a pixel and of its images.
+    void flush(std::size_t pixel, std::uint32_t x, std::uint32_t y,
+               std::vector<PixelShare>& shares) {
+        if (found_.empty())
+            return;
+        images_.clear();
+        for (const PixelSymmetry& symmetry : symmetries_) {
+            const std::size_t image = images_.empty() ? pixel : symmetry.pixel(x, y);
+            if (std::find(images_.begin(), images_.end(), image) != images_.end())
+                continue; // the pixel lies on a mirror
+            images_.push_back(image);
+            for (const Found& each : found_)
+                shares.push_back(
+                    {static_cast<std::uint32_t>(image), // MaxPixels is below 2^32
+                     static_cast<std::uint32_t>(symmetry.texel(each.face, each.x, each.y)),
+                     each.solid_angle});
+        }
+        found_.clear();
+    }
+
+    PixelFootprints footprints_;
+    TexelOverlaps overlaps_;
+    std::span<const PixelSymmetry> symmetries_;
+    glm::dmat3 turn_;
+    bool is_turned_, is_mirrored_;
+    std::vector<glm::dvec3> turned_;
+    std::vector<Found> found_;
+    std::vector<std::size_t> images_;
+};
+
+/// Calls `take(std::span<const PixelShare>)` for rows of shares, in order. Rows are computed in
+/// parallel, one band at a time.
 template<typename Take>
 void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn,
                             std::uint32_t resolution, const Take& take) {
     constexpr std::uint32_t BandHeight = 32;
-    const bool is_turned = turn != glm::dmat3(1.0), is_mirrored = glm::determinant(turn) < 0.0;
-    const CubeMap map(resolution);
+    const std::vector<PixelSymmetry> symmetries = pixel_symmetries(shape, turn, resolution);
     const std::uint32_t num_rows = PixelFootprints(shape).num_rows();
     std::vector<std::vector<PixelShare>> shares(BandHeight);
     for (std::uint32_t band = 0; band < num_rows; band += BandHeight) {
         const std::uint32_t end = std::min(band + BandHeight, num_rows);
         tbb::parallel_for(tbb::blocked_range<std::uint32_t>(band, end), [&](const auto& rows) {
-            PixelFootprints footprints(shape);
-            TexelOverlaps overlaps(resolution);
-            std::vector<glm::dvec3> turned;
-            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-                std::vector<PixelShare>& found = shares[y - band];
-                found.clear();
-                footprints.visit_row(
-                    y, [&](std::size_t pixel, std::span<const glm::dvec3> corners) {
-                        if (is_turned) {
-                            turned.clear();
-                            for (const glm::dvec3& corner : corners)
-                                turned.push_back(turn * corner);
-                            if (is_mirrored)
-                                std::reverse(turned.begin(), turned.end());
-                            corners = turned;
-                        }
-                        overlaps.find(corners, [&](Face face, std::uint32_t column,
-                                                   std::uint32_t row, double solid_angle) {
-                            found.push_back(
-                                {static_cast<std::uint32_t>(pixel), // MaxPixels is below 2^32
-                                 static_cast<std::uint32_t>(map.index(face, column, row)),
-                                 solid_angle});
-                        });
-                    });
-            }
+            RowsOfShares finder(shape, turn, resolution, symmetries);
+            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y)
+                finder.find(y, shares[y - band]);
         });
         for (std::uint32_t y = band; y < end; ++y)
             take(std::span<const PixelShare>(shares[y - band]));
     }
+}
+
+/// Fills an image whose shape is set: every pixel is the mean of the texels under its footprint.
+/// Pixels that show nothing are black.
+inline void fill_from_shares(const CubeMap& map, EnvironmentImage& image) {
+    const ImageShape shape{image.layout, image.sampling, image.width, image.height};
+    const std::vector<PixelSymmetry> symmetries =
+        pixel_symmetries(shape, glm::dmat3(1.0), map.resolution);
+    std::fill(image.pixels.begin(), image.pixels.end(), glm::vec3(0.0f));
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, PixelFootprints(shape).num_rows()),
+                      [&](const auto& rows) {
+                          RowsOfShares finder(shape, glm::dmat3(1.0), map.resolution, symmetries);
+                          std::vector<PixelShare> shares;
+                          for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+                              finder.find(y, shares);
+                              for (std::size_t i = 0; i < shares.size();) {
+                                  const std::uint32_t pixel = shares[i].pixel;
+                                  glm::dvec3 sum(0.0);
+                                  double weights = 0.0;
+                                  for (; i < shares.size() && shares[i].pixel == pixel; ++i) {
+                                      sum += glm::dvec3(map.texels[shares[i].texel]) *
+                                             shares[i].solid_angle;
+                                      weights += shares[i].solid_angle;
+                                  }
+                                  image.pixels[pixel] = sum / weights;
+                              }
+                          }
+                      });
 }
 
 } // namespace relumine::cubemap::detail

@@ -9,10 +9,9 @@
 #include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
-#include "cubemap/resample/lat_long_footprint.h"
+#include "cubemap/resample/pixel_shares.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resample_projection.h"
-#include "cubemap/spherical_overlap.h"
 
 namespace relumine::cubemap {
 
@@ -95,29 +94,6 @@ void check(const EnvironmentImage& image) {
                         image.width, image.height, image.pixels.size()));
 }
 
-/// Fills a lat-long picture. Every pixel is the mean of the texels under its footprint.
-void fill_lat_long(const CubeMap& map, EnvironmentImage& image) {
-    const ImageShape shape{image.layout, image.sampling, image.width, image.height};
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& range) {
-        LatLongFootprints footprints(shape);
-        TexelOverlaps overlaps(map.resolution);
-        for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
-            for (std::uint32_t x = 0; x < image.width; ++x) {
-                glm::dvec3 sum(0.0);
-                double weights = 0.0;
-                footprints.visit(x, y, [&](std::span<const glm::dvec3> corners) {
-                    overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
-                                               double weight) {
-                        sum += glm::dvec3(map.at(face, column, row)) * weight;
-                        weights += weight;
-                    });
-                });
-                image.pixels[static_cast<std::size_t>(y) * image.width + x] = sum / weights;
-            }
-        }
-    });
-}
-
 } // namespace
 
 CubeMap resample(const EnvironmentImage& image, std::uint32_t resolution) {
@@ -162,12 +138,8 @@ EnvironmentImage to_image(const CubeMap& map, Layout layout, std::uint32_t width
     image.assumptions = "made from a cube map";
     image.pixels.resize(static_cast<std::size_t>(width) * height);
     check(image);
-    if (layout == Layout::LatLong) {
-        fill_lat_long(map, image);
-        return image;
-    }
     if (!has_faces(layout)) {
-        detail::fill_projection(map, image);
+        detail::fill_from_shares(map, image);
         return image;
     }
     const FaceSquares squares(layout, width, height);

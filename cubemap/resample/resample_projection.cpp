@@ -51,27 +51,4 @@ CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolu
     return map;
 }
 
-void fill_projection(const CubeMap& map, EnvironmentImage& image) {
-    const Projection& picture = *projection(image.layout);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, image.height), [&](const auto& rows) {
-        ProjectionFootprints pieces(picture, image.width, image.height);
-        TexelOverlaps overlaps(map.resolution);
-        for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-            for (std::uint32_t x = 0; x < image.width; ++x) {
-                glm::dvec3 sum(0.0);
-                double weights = 0.0;
-                pieces.visit(x, y, [&](std::span<const glm::dvec3> corners) {
-                    overlaps.find(corners, [&](Face face, std::uint32_t column, std::uint32_t row,
-                                               double weight) {
-                        sum += glm::dvec3(map.at(face, column, row)) * weight;
-                        weights += weight;
-                    });
-                });
-                image.pixels[static_cast<std::size_t>(y) * image.width + x] =
-                    weights > 0.0 ? glm::vec3(sum / weights) : glm::vec3(0.0f);
-            }
-        }
-    });
-}
-
 } // namespace relumine::cubemap::detail

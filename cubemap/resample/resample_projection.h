@@ -1,5 +1,4 @@
-// Converts pictures of a Projection to cube maps and back from exact overlaps. Called by resample()
-// and to_image().
+// Converts pictures of a Projection to cube maps from exact overlaps. Called by resample().
 #pragma once
 
 #include <cstdint>
@@ -11,8 +10,5 @@ namespace relumine::cubemap::detail {
 
 /// Returns a picture of a Projection as a cube map.
 [[nodiscard]] CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution);
-
-/// Fills the pixels of an image whose layout and size are set. Pixels that show nothing are black.
-void fill_projection(const CubeMap& map, EnvironmentImage& image);
 
 } // namespace relumine::cubemap::detail

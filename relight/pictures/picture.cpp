@@ -10,18 +10,9 @@
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
-#define STB_IMAGE_WRITE_STATIC
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wall"
-#pragma GCC diagnostic ignored "-Wextra"
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#include <stb/stb_image_write.h>
-#pragma GCC diagnostic pop
-
 #include "cubemap/image/image_file.h"
 #include "files/output_file.h"
+#include "relight/pictures/png_file.h"
 
 namespace relumine::relight {
 
@@ -51,31 +42,24 @@ std::uint8_t srgb_byte(float linear) {
     return static_cast<std::uint8_t>(std::lround(encoded * 255.0f));
 }
 
-std::vector<std::byte> encode_png(const Picture& picture, float scale) {
-    const int num_channels = picture.alpha.empty() ? 3 : 4;
-    std::vector<std::uint8_t> bytes;
-    bytes.reserve(picture.pixels.size() * static_cast<std::size_t>(num_channels));
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
-        // The colours of PNG are not multiplied by alpha.
-        const float alpha = num_channels == 4 && picture.alpha[i] > 0.0f ? picture.alpha[i] : 1.0f;
-        for (int channel = 0; channel < 3; ++channel)
-            bytes.push_back(srgb_byte(picture.pixels[i][channel] / alpha * scale));
-        if (num_channels == 4) // linear
-            bytes.push_back(static_cast<std::uint8_t>(
-                std::lround(std::clamp(picture.alpha[i], 0.0f, 1.0f) * 255.0f)));
-    }
-    std::vector<std::byte> png;
-    const auto append = [](void* context, void* data, int size) {
-        const auto* begin = static_cast<const std::byte*>(data);
-        auto* target = static_cast<std::vector<std::byte>*>(context);
-        target->insert(target->end(), begin, begin + size);
-    };
-    const int width = static_cast<int>(picture.width);
-    const int height = static_cast<int>(picture.height);
-    if (stbi_write_png_to_func(append, &png, width, height, num_channels, bytes.data(),
-                               num_channels * width) == 0)
-        throw std::runtime_error("could not encode the picture as PNG");
-    return png;
+std::vector<std::byte> png_of(const Picture& picture, float scale) {
+    const std::size_t num_channels = picture.alpha.empty() ? 3 : 4;
+    std::vector<std::uint8_t> bytes(picture.pixels.size() * num_channels);
+    tbb::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {
+        for (std::size_t i = std::size_t{y} * picture.width;
+             i < (std::size_t{y} + 1) * picture.width; ++i) {
+            // The colours of PNG are not multiplied by alpha.
+            const float alpha =
+                num_channels == 4 && picture.alpha[i] > 0.0f ? picture.alpha[i] : 1.0f;
+            std::uint8_t* out = &bytes[i * num_channels];
+            for (int channel = 0; channel < 3; ++channel)
+                out[channel] = srgb_byte(picture.pixels[i][channel] / alpha * scale);
+            if (num_channels == 4) // linear
+                out[3] = static_cast<std::uint8_t>(
+                    std::lround(std::clamp(picture.alpha[i], 0.0f, 1.0f) * 255.0f));
+        }
+    });
+    return encode_png(picture.width, picture.height, num_channels, bytes);
 }
 
 } // namespace
@@ -200,7 +184,7 @@ void save_picture(const std::filesystem::path& path, const Picture& picture, dou
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     if (extension == ".png") {
-        bytes = encode_png(picture, scale);
+        bytes = png_of(picture, scale);
     } else if (extension == ".exr") {
         cubemap::EnvironmentImage image;
         static_cast<Picture&>(image) = picture;

@@ -113,6 +113,20 @@ TEST_F(Edit, LayersAreAppliedOneByOneAndEachTellsItsCost) {
     EXPECT_NEAR(values[1][0], 0.5, 0.01);
 }
 
+TEST_F(Edit, TheRotationOfTheFileTurnsEnvironmentAndLayers) {
+    std::string still = Lamp;
+    still = still.substr(0, still.find("],\n  \"frames\"")) + "]}";
+    write("layers.json", still);
+    succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "still.npy"});
+    write("turned.json", "{\"rotate_degrees\": 90, " + still.substr(1));
+    succeed({"edit", "scene.prt", "white.hdr", "turned.json", "-o", "turned.npy"});
+    const auto before = npy_values(read("still.npy")), after = npy_values(read("turned.npy"));
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+        EXPECT_NEAR(after[5][channel], before[0][channel], 1e-3); // +X to -Z
+        EXPECT_NEAR(after[4][channel], before[1][channel], 1e-3); // -X to +Z
+    }
+}
+
 TEST_F(Edit, FramesBecomeNumberedFiles) {
     write("layers.json", Lamp);
     succeed({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "frame.%03d.npy"});

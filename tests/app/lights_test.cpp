@@ -201,5 +201,26 @@ TEST_F(Lights, RelightingWithThemSaysWhatIsWrong) {
     fail({"relight", "mesh.obj", "--lights", "bad.json", "-o", "a.npy"}, {"bad.json:1"});
 }
 
+TEST_F(Lights, AListIsWrittenInEveryFormat) {
+    succeed({"lights", "lamp.hdr", "-n", "4", "-o", "list.json"});
+    for (const std::string file :
+         {"a.json", "a.csv", "a.pbrt", "a.xml", "a.usda", "a.py", "a.gltf"}) {
+        succeed({"lights", "lamp.hdr", "-n", "4", "-o", "direct_" + file});
+        EXPECT_EQ(succeed({"lights", "list.json", "-o", file, "--json"}).json()["lights"], 4);
+        EXPECT_EQ(read(file), read("direct_" + file)) << file;
+    }
+    misuse({"lights", "list.json", "--picture", "a.png"});
+    misuse({"lights", "list.json", "-o", "b.csv", "--compare", "scene.prt"});
+}
+
+TEST_F(Lights, FormatsWithoutASizeSayThatSoftLightsAreLost) {
+    for (const auto& [file, holds] :
+         {std::pair{"a.usda", true}, std::pair{"a.py", true}, std::pair{"a.json", true},
+          std::pair{"a.pbrt", false}, std::pair{"a.xml", false}, std::pair{"a.gltf", false}}) {
+        const auto result = succeed({"lights", "white.hdr", "-n", "2", "--soft", "-o", file});
+        EXPECT_EQ(result.err.find("--soft has no effect") == std::string::npos, holds) << file;
+    }
+}
+
 } // namespace
 } // namespace relumine::app

@@ -296,5 +296,55 @@ TEST_F(Relight, DamagedScenesAreRefused) {
     fail({"relight", "flipped.prt", "white.hdr", "-o", "new.npy"}, {"flipped.prt"});
 }
 
+TEST_F(Relight, AnEnvironmentAndALightListAreAdded) {
+    write("lamp.hdr", lamp_hdr(32));
+    succeed({"lights", "lamp.hdr", "-n", "1", "-o", "lamp.json"});
+    const auto read_lit = [&](const std::vector<std::string>& light) {
+        std::vector<std::string> arguments = {"relight", "scene.prt", "-o", "lit.npy"};
+        arguments.insert(arguments.end(), light.begin(), light.end());
+        succeed(arguments);
+        return npy_values(read("lit.npy"));
+    };
+    const Values sky = read_lit({"white.hdr"}), lamp = read_lit({"--lights", "lamp.json"}),
+                 both = read_lit({"white.hdr", "--lights", "lamp.json"});
+    EXPECT_GT(lamp[PlusX][0], 0.0f);
+    for (std::size_t i = 0; i < both.size(); ++i)
+        for (std::size_t channel = 0; channel < 3; ++channel)
+            EXPECT_FLOAT_EQ(both[i][channel], sky[i][channel] + lamp[i][channel]);
+    misuse({"relight", "scene.prt", "-o", "lit.npy"});
+}
+
+TEST_F(Relight, FlipAndTiltTurnTheEnvironment) {
+    write("lamp.hdr", lamp_hdr(64)); // +Z
+    EXPECT_EQ(brightest(lit("lamp.hdr")), PlusZ);
+    EXPECT_EQ(brightest(lit("lamp.hdr", {"--flip", "z"})), MinusZ);
+    EXPECT_EQ(brightest(lit("lamp.hdr", {"--flip", "y"})), PlusZ);
+    EXPECT_EQ(brightest(lit("lamp.hdr", {"--tilt", "-90"})), PlusY);
+    EXPECT_EQ(brightest(lit("lamp.hdr", {"--tilt", "-90", "--rotate", "90"})), PlusY);
+    EXPECT_EQ(brightest(lit("lamp.hdr", {"--tilt", "180", "--rotate", "90"})), MinusX);
+    // The middle of pbrt-v2's lat-long is -X.
+    EXPECT_EQ(brightest(lit("lamp.hdr", {"--from", "pbrt-v2"})), MinusX);
+    refuse({"--flip", "up"}, 2);
+    refuse({"--from", "pbrt-v2", "--layout", "cube"}, 2);
+}
+
+TEST_F(Relight, AGroundBrighterThanTheSkyIsDoubted) {
+    write("lamp.hdr", lamp_hdr(64)); // +Z
+    const auto warnings = [&](const std::string& environment, const std::string& option,
+                              const std::string& value) {
+        return succeed({"relight", "scene.prt", environment, option, value, "-o", "lit.npy"}).err;
+    };
+    EXPECT_EQ(warnings("lamp.hdr", "--tilt", "-90"), "");
+    const std::string below = warnings("lamp.hdr", "--tilt", "90");
+    EXPECT_NE(below.find("lamp.hdr: brighter below than above"), std::string::npos) << below;
+    EXPECT_NE(below.find("--flip y"), std::string::npos);
+    EXPECT_NE(succeed({"env", "convert", "lamp.hdr", "-o", "down.exr", "--tilt", "90"})
+                  .err.find("--flip y"),
+              std::string::npos);
+    EXPECT_NE(succeed({"info", "down.exr"}).out.find("--flip y"), std::string::npos);
+    EXPECT_EQ(succeed({"info", "down.exr", "--json"}).json()["upside_down"], true);
+    EXPECT_EQ(warnings("down.exr", "--flip", "y"), "");
+}
+
 } // namespace
 } // namespace relumine::app

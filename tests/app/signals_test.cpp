@@ -69,6 +69,18 @@ TEST_F(Signals, AClosedTerminalIsNothingToNohup) {
     EXPECT_EQ(process.wait().err, "relumine: cancelled; nothing was written\n");
 }
 
+TEST_F(Signals, WorkOfLibrariesThatDoNotPollStopsAtOnce) {
+    write("white.hdr", white_hdr());
+    interrupt({"env", "convert", "white.hdr", "--rotate", "33", "--size", "16384x8192", "-o",
+               "large.exr", "-q"},
+              {SIGINT}, std::chrono::milliseconds(1000));
+    succeed({"generate", "blob", "-o", ".", "--vertices", "2000", "-q"});
+    succeed({"precompute", "blob.ply", "-o", "scene.prt", "--tolerance", "0.1", "-q"});
+    interrupt(
+        {"relight", "scene.prt", "white.hdr", "--size", "12000x12000", "-o", "large.png", "-q"},
+        {SIGTERM}, std::chrono::milliseconds(1000));
+}
+
 TEST_F(Signals, VerifyStopsAtOnce) {
     succeed({"generate", "blob", "-o", ".", "--vertices", "20000", "-q"});
     write("white.hdr", white_hdr());

@@ -101,5 +101,23 @@ TEST(Rotation, IrradianceTurnsWithTheLight) {
         EXPECT_NEAR(irradiance(turned, turn(normal)).x / irradiance(map, normal).x, 1.0, 1e-3);
 }
 
+TEST(Turned, TiltsAboutXAndMirrors) {
+    EXPECT_EQ(turn_about_x(90.0) * glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1));
+    EXPECT_EQ(turn_about_x(-90.0) * glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0));
+    CubeMap map(24);
+    for (std::size_t i = 0; i < map.texels.size(); ++i)
+        map.texels[i] = glm::vec3(static_cast<float>(i % 97), static_cast<float>(i % 31), 1.0f);
+    // A turn by parts comes near the turn at once, also in a mirror.
+    const glm::dmat3 mirror = {{1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+    for (const glm::dmat3& turn :
+         {turn_about_x(35.0), turn_about_y(20.0) * turn_about_x(-50.0) * mirror}) {
+        const CubeMap there = turned(map, turn);
+        EXPECT_NEAR(total_power(there).x / total_power(map).x, 1.0, 1e-6);
+        for (const glm::dvec3& normal : {glm::dvec3(0, 1, 0), glm::dvec3(0.6, 0, 0.8)})
+            EXPECT_NEAR(irradiance(there, turn * normal).x / irradiance(map, normal).x, 1.0, 1e-2);
+    }
+    EXPECT_EQ(turned(turned(map, mirror), mirror).texels, map.texels);
+}
+
 } // namespace
 } // namespace relumine::cubemap

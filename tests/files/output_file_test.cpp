@@ -291,5 +291,23 @@ TEST_F(OutputFileTest, ReadRefusesFoldersPipesAndMissingFiles) {
     EXPECT_THROW(static_cast<void>(size(folder_)), std::runtime_error);
 }
 
+TEST_F(OutputFileTest, AProcessThatEndsAtOnceLeavesNothing) {
+    const fs::path target = folder_ / "a.txt";
+    const pid_t child = ::fork();
+    if (child == 0) {
+        OutputFile done(folder_ / "done.txt");
+        done.write(bytes_of("whole"));
+        done.commit();
+        OutputFile file(target);
+        file.write(bytes_of("half"));
+        abandon_outputs();
+        ::_exit(0);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(fs::exists(folder_ / "done.txt"));
+    EXPECT_EQ(num_files(), 1u);
+}
+
 } // namespace
 } // namespace relumine::files

@@ -84,7 +84,9 @@ TEST(LightExport, PbrtShinesFromFromToTo) {
         // a number, too
         ASSERT_EQ(n.size(), 11u);
         const glm::dvec3 from(n[1], n[2], n[3]), to(n[5], n[6], n[7]);
-        got.push_back({glm::normalize(from - to), {n[8], n[9], n[10]}});
+        // +Z is up, as in the pictures for pbrt: its (x, y, z) is our (x, z, -y).
+        const glm::dvec3 w = glm::normalize(from - to);
+        got.push_back({{w.x, w.z, -w.y}, {n[8], n[9], n[10]}});
     }
     expect_lights(got, list.lights);
 }
@@ -129,8 +131,11 @@ TEST(LightExport, UsdShinesAlongMinusZ) {
                                         glm::dvec3(colours[i][0], colours[i][1], colours[i][2])});
         }
         expect_lights(got, list.lights);
-        EXPECT_EQ(angles[0][0] > 0.0, soft);
-        EXPECT_NEAR(angles[13][0], soft ? 180.0 : 0.0, 1e-9); // stands for half the sphere
+        // UsdLux's least angle; intensity is the irradiance at any angle up to 180.
+        EXPECT_EQ(angles[0][0] > 0.53, soft);
+        for (const auto& angle : angles)
+            EXPECT_TRUE(angle[0] >= 0.53 && angle[0] <= 180.0) << angle[0];
+        EXPECT_NEAR(angles[13][0], soft ? 180.0 : 0.53, 1e-9); // stands for half the sphere
     }
 }
 
@@ -183,7 +188,10 @@ TEST(LightExport, EveryFormatSaysUnitAndAxesInItsHead) {
         const std::string text = light_text(list, format);
         EXPECT_THAT(text.substr(0, 1000),
                     HasSubstr("16 distant lights of we-_ird???.hdr, median-cut"));
-        EXPECT_THAT(text.substr(0, 1000), HasSubstr("right-handed, +Y up"));
+        EXPECT_THAT(text.substr(0, 1000),
+                    HasSubstr(format == LightFormat::Pbrt
+                                  ? "+Z up, as `relumine env convert --to pbrt`"
+                                  : "right-handed, +Y up"));
         EXPECT_THAT(text.substr(0, 1000), HasSubstr("radiance times steradians"));
         EXPECT_THROW((void)light_text({.lights = {{.irradiance = {-1, 0, 0}}}}, format),
                      std::invalid_argument);

@@ -145,6 +145,11 @@ std::vector<Known> known() {
                                (v < 0.5 ? -1.0 : 1.0) * across * std::sin(phi),
                                d < 0.0 ? r * r - 1.0 : 1.0 - r * r});
          }},
+        // InfiniteAreaLight: s = phi / 2 pi, t = theta / pi.
+        {"pbrt-v2", Layout::LatLong,
+         [](double u, double v) {
+             return from_z_up(spherical(std::numbers::pi * v, 2.0 * std::numbers::pi * u, 2));
+         }},
     };
 }
 
@@ -184,7 +189,7 @@ TEST(Convention, LightsComeFromWhereTheProgramSeesThem) {
             swap_z_faces(image);
         const EnvironmentImage cube =
             convert(image, {Layout::Cube, Sampling::TexelCentres, 24, 144},
-                    {.world_from_source = convention.world_from(each.layout)});
+                    convention.world_from(each.layout));
         double largest = 0.0;
         for_each_pixel(shape_of(cube), [&](std::size_t i, const PixelPlace& place) {
             // The last ring of the ball is 16 degrees wide.
@@ -203,8 +208,8 @@ TEST(Convention, WrittenPicturesAreThoseTheProgramsWouldSee) {
     for (const Known& each : known()) {
         const Convention& convention = *find_convention(each.name);
         const EnvironmentImage expected = painted(each, 32);
-        EnvironmentImage written = convert(
-            cube, shape_of(expected), {.world_from_target = convention.world_from(each.layout)});
+        EnvironmentImage written =
+            convert(cube, shape_of(expected), glm::transpose(convention.world_from(each.layout)));
         if (convention.swaps_z_faces)
             swap_z_faces(written);
         double sum = 0.0, weight = 0.0;
@@ -238,12 +243,10 @@ TEST(Convention, CubesAndLatLongsChangeHandsWithoutLosingABit) {
         for (const EnvironmentImage* image : {&cube, &lat_long}) {
             if (!convention.reads(image->layout))
                 continue;
-            EnvironmentImage there =
-                convert(*image, shape_of(*image),
-                        {.world_from_target = convention.world_from(image->layout)});
+            EnvironmentImage there = convert(*image, shape_of(*image),
+                                             glm::transpose(convention.world_from(image->layout)));
             const EnvironmentImage back =
-                convert(there, shape_of(*image),
-                        {.world_from_source = convention.world_from(image->layout)});
+                convert(there, shape_of(*image), convention.world_from(image->layout));
             EXPECT_EQ(back.pixels, image->pixels) << convention.name;
         }
     }

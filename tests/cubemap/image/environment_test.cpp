@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "cubemap/image/image_file.h"
+#include "cubemap/image/image_layout.h"
 #include "cubemap/resample/resample.h"
 #include "files/output_file.h"
 #include "tests/cubemap/test_images.h"
@@ -90,8 +91,7 @@ protected:
 TEST_F(BadPixelsTest, AreRefusedWithCountAndPosition) {
     EXPECT_EQ(message_of([&] { (void)load_environment(path_); }),
               path_.string() + ": expected finite radiance >= 0, got 3 NaN/Inf and 1 negative "
-                               "pixels, first at (3, 1); use "
-                               "--fix-env");
+                               "pixels (0.62 % of the light), first at (3, 1); use --fix-env");
 }
 
 TEST_F(BadPixelsTest, AreFixedWhenAskedFor) {
@@ -228,15 +228,58 @@ TEST(EnvironmentData, DamagedFilesAreRefusedAtOnceInOneLine) {
     EXPECT_EQ(bad.num_negative, 31743u) << "all negative halfs but -0, NaN and infinity";
 }
 
-TEST(EnvironmentData, NegativePixelsOfRealFilesAreCounted) {
-    const auto path = data_file("latlong/blender_studio_1k.exr");
-    if (path.empty())
-        GTEST_SKIP() << absent_data("envs");
+TEST(Environment, NegativePixelsWithHardlyAnyLightBecomeZero) {
+    const TemporaryFolder folder;
+    // 128 pixels of 0.5 and 0.25: 96 in all. The rows beside the equator have 2 % of the sphere per
+    // pixel.
+    EnvironmentImage image = grey(Layout::LatLong, Sampling::TexelCentres, 16, 8);
+    const auto share = [&](float value) {
+        image.pixels[16 * 3 + 5] = {value, 0.5f, 0.5f};
+        write(folder / "a.exr", encode_exr(image));
+        return load_environment(folder / "a.exr", {.refuse_bad_pixels = false})
+            .bad_pixels.negative_share;
+    };
+    double all = 0.0, pixel = 0.0;
+    for_each_pixel({image.layout, image.sampling, 16, 8},
+                   [&](std::size_t index, const PixelPlace& place) {
+                       all += place.solid_angle;
+                       if (index == 16 * 3 + 5)
+                           pixel = place.solid_angle;
+                   });
+    EXPECT_NEAR(share(-0.25f), 0.25 * pixel / (1.5 * all - 0.5 * pixel), 1e-9);
+    const EnvironmentImage clamped = load_environment(folder / "a.exr");
+    EXPECT_TRUE(clamped.fixed);
+    EXPECT_EQ(clamped.bad_pixels.num_negative, 1u);
+    EXPECT_EQ(clamped.pixels[16 * 3 + 5], glm::vec3(0.0f, 0.5f, 0.5f));
+    // More than 1 % is no filter's rest.
+    EXPECT_GT(share(-2.0f), 0.01);
     EXPECT_NE(message_of([&] {
-                  (void)load_environment(path);
-              }).find("got 0 NaN/Inf and 3 negative pixels"),
+                  (void)load_environment(folder / "a.exr");
+              }).find("got 0 NaN/Inf and 1 negative pixels (1."),
               std::string::npos);
-    EXPECT_EQ(load_environment(path, {.fix_bad_pixels = true}).bad_pixels.num_negative, 3u);
+    EXPECT_EQ(load_environment(folder / "a.exr", {.fix_bad_pixels = true}).pixels[16 * 3 + 5].x,
+              0.0f);
+    // One NaN among them is enough to refuse the file.
+    image.pixels[3].y = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_LT(share(-0.01f), 0.01);
+    EXPECT_NE(message_of([&] {
+                  (void)load_environment(folder / "a.exr");
+              }).find("got 1 NaN/Inf and 1 negative pixels"),
+              std::string::npos);
+}
+
+TEST(EnvironmentData, FilesOfBlenderLoadWithTheirNegativePixels) {
+    for (const auto& [file, num_negative] :
+         {std::pair{"blender_studio_1k.exr", 3u}, std::pair{"blender_interior_1k.exr", 5053u},
+          std::pair{"blender_sunset_1k.exr", 5u}}) {
+        const auto path = data_file(std::string("latlong/") + file);
+        if (path.empty())
+            GTEST_SKIP() << absent_data("envs");
+        const EnvironmentImage image = load_environment(path);
+        EXPECT_TRUE(image.fixed);
+        EXPECT_EQ(image.bad_pixels.num_negative, num_negative);
+        EXPECT_LT(image.bad_pixels.negative_share, 1e-3);
+    }
 }
 
 } // namespace

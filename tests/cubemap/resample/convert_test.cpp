@@ -223,7 +223,7 @@ TEST(Convert, TurnsOfWholePixelsAreCopies) {
     EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 36, 18);
     fill_randomly(image.pixels, 8);
     const EnvironmentImage turned =
-        convert(image, shape_of(image), {.degrees_about_y = 30.0}); // 3 columns
+        convert(image, shape_of(image), turn_about_y(30.0)); // 3 columns
     for (std::uint32_t y = 0; y < 18; ++y)
         for (std::uint32_t x = 0; x < 36; ++x)
             EXPECT_EQ(turned.pixels[y * 36 + x], image.pixels[y * 36 + (x + 3) % 36]);
@@ -231,8 +231,8 @@ TEST(Convert, TurnsOfWholePixelsAreCopies) {
         EnvironmentImage square = black_image(layout, Sampling::TexelCentres, 12);
         paint(square, [](const glm::dvec3& w) { return glm::vec3(w) + 1.0f; });
         const EnvironmentImage back =
-            convert(convert(square, shape_of(square), {.degrees_about_y = 180.0}), shape_of(square),
-                    {.degrees_about_y = 180.0});
+            convert(convert(square, shape_of(square), turn_about_y(180.0)), shape_of(square),
+                    turn_about_y(180.0));
         if (layout == Layout::Octahedral) {
             EXPECT_EQ(back.pixels, square.pixels);
         }

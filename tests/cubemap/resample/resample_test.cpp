@@ -1,5 +1,6 @@
 #include "cubemap/resample/resample.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -8,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "cubemap/image/image_layout.h"
+#include "cubemap/resample/pixel_shares.h"
 #include "tests/cubemap/test_images.h"
 
 namespace relumine::cubemap {
@@ -317,6 +319,62 @@ TEST(Resample, OneThreadAndTwoGiveTheSameBits) {
     const auto many = all();
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_TRUE(all() == many);
+}
+
+/// The plain way: the footprint of every pixel, a polygon of the sphere, cut at the texels of each
+/// face.
+CubeMap from_polygons(const EnvironmentImage& image, std::uint32_t resolution) {
+    CubeMap map(resolution);
+    std::vector<glm::dvec3> sums(map.texels.size(), glm::dvec3(0.0));
+    std::vector<double> weights(sums.size(), 0.0);
+    detail::for_each_row_of_shares(
+        {image.layout, image.sampling, image.width, image.height}, glm::dmat3(1.0), resolution,
+        [&](std::span<const detail::PixelShare> row) {
+            for (const detail::PixelShare& share : row) {
+                sums[share.texel] += glm::dvec3(image.pixels[share.pixel]) * share.solid_angle;
+                weights[share.texel] += share.solid_angle;
+            }
+        });
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        map.texels[i] = sums[i] / weights[i];
+    return map;
+}
+
+TEST(Resample, LatLongsAgreeWithPolygonsOfTheSphere) {
+    // Widths with and without quarter turns, odd and even faces, fine and coarse against both.
+    const std::array<std::array<std::uint32_t, 3>, 9> cases = {{{64, 32, 16},
+                                                                {64, 32, 33},
+                                                                {64, 32, 64},
+                                                                {50, 31, 20},
+                                                                {51, 20, 21},
+                                                                {8, 3, 40},
+                                                                {400, 200, 7},
+                                                                {256, 128, 2},
+                                                                {33, 1, 5}}};
+    for (const Sampling sampling : AllSamplings) {
+        for (const auto& [width, height, resolution] : cases) {
+            if (sampling == Sampling::Borders && height == 1)
+                continue;
+            EnvironmentImage image = black_image(Layout::LatLong, sampling, width, height);
+            fill_randomly(image.pixels, width + resolution);
+            const CubeMap plain = from_polygons(image, resolution),
+                          fast = resample(image, resolution);
+            EXPECT_LT(largest_difference(fast.texels, plain.texels), 2e-5)
+                << label(image, resolution);
+            EXPECT_NEAR(total_power(fast).y / total_power(plain).y, 1.0, 1e-6);
+        }
+    }
+}
+
+TEST(Resample, TexelsWithinOnePixelAreItsCopies) {
+    EnvironmentImage image = black_image(Layout::LatLong, Sampling::TexelCentres, 16, 8);
+    fill_randomly(image.pixels, 1);
+    const CubeMap map = resample(image, 256);
+    std::size_t num_copies = 0;
+    for (const glm::vec3& texel : map.texels)
+        num_copies += static_cast<std::size_t>(
+            std::find(image.pixels.begin(), image.pixels.end(), texel) != image.pixels.end());
+    EXPECT_GT(num_copies, map.texels.size() * 9 / 10);
 }
 
 TEST(Resample, RefusesImagesThatAreNone) {
