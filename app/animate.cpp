@@ -327,10 +327,18 @@ private:
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
 };
 
+cubemap::FrameRange frame_range(const std::string& text) {
+    try {
+        return cubemap::FrameRange::parse(text);
+    } catch (const std::runtime_error& error) {
+        throw UsageError("--frames", error.what());
+    }
+}
+
 void run(const AnimateOptions& options, Session& session) {
     std::optional<cubemap::FrameRange> range;
     if (!options.range.empty())
-        range = cubemap::FrameRange::parse(options.range);
+        range = frame_range(options.range);
     const cubemap::FrameSequence sequence(cubemap::find_frames(options.frames, range),
                                           [&](const std::filesystem::path& path) {
                                               EnvironmentOptions environment = options.environment;

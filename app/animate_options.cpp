@@ -10,6 +10,7 @@
 
 #include "app/frame_record.h"
 #include "app/movie.h"
+#include "files/output_file.h"
 
 namespace relumine::app {
 
@@ -82,15 +83,16 @@ std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
         return std::nullopt;
     const auto pattern = cubemap::FramePattern::parse(output.path);
     if (!pattern)
-        throw std::runtime_error(
-            fmt::format("{}: expected a place for the frame's number as in lit.%04d.png, got none",
-                        output.path));
+        throw UsageError("--output",
+                         fmt::format("expected a place for the frame's number as in lit.%04d.png, "
+                                     "got '{}'",
+                                     output.path));
     return pattern;
 }
 
 void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     if (output.path.empty() && vertices.empty())
-        throw UsageError("-o", "expected -o or --vertices, got neither");
+        throw UsageError("--output", "expected it or --vertices, got neither");
     const auto pattern = output_pattern();
     if (pattern) {
         output.check({scene.path});
@@ -105,32 +107,29 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
                     fmt::format("{}: expected an output other than the input frames", path));
     }
     if (!vertices.empty()) {
-        if (fs::path(vertices).extension() != ".npy")
-            throw std::runtime_error(
-                fmt::format("{}: expected a name that ends in .npy", vertices));
+        require_extension("--vertices", vertices, {".npy"});
         check_output(vertices, {scene.path});
     }
     if (!reference.empty()) {
         if (vertices.empty())
             throw UsageError("--measure", "expected --vertices with it");
-        if (fs::path(reference).extension() != ".npy" || !fs::exists(reference))
-            throw std::runtime_error(
-                fmt::format("{}: expected a .npy file that is there", reference));
+        static_cast<void>(files::size(reference));
+        require_extension("--measure", reference, {".npy"});
         check_output(vertices, {reference});
     }
     if (!plot.empty()) {
         if (reference.empty())
             throw UsageError("--plot", "expected --measure with it");
-        if (fs::path(plot).extension() != ".svg")
-            throw std::runtime_error(fmt::format("{}: expected a name that ends in .svg", plot));
+        require_extension("--plot", plot, {".svg"});
         check_output(plot, {scene.path, reference});
     }
     if (!movie.empty()) {
-        if (fs::path(movie).extension() != ".mp4")
-            throw std::runtime_error(fmt::format("{}: expected a name that ends in .mp4", movie));
+        require_extension("--mp4", movie, {".mp4"});
         if (fs::path(output.path).extension() != ".png")
-            throw std::runtime_error(fmt::format(
-                "{}: expected -o with .png frames to make it of, got '{}'", movie, output.path));
+            throw UsageError("--mp4",
+                             fmt::format("expected --output with .png frames to make it of, got "
+                                         "'{}'",
+                                         output.path));
         static_cast<void>(find_ffmpeg(movie));
         check_output(movie, {scene.path});
     }

@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <limits>
 #include <type_traits>
 #include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/command_table.h"
+#include "files/nearest_name.h"
 
 namespace relumine::app {
 
@@ -83,7 +87,13 @@ requires std::is_floating_point_v<T>
 struct Value<T> {
     static constexpr const char* TypeName = "FLOAT";
     static std::string check(const std::string& text) {
-        return long_number(text) ? std::string() : fmt::format("expected a number, got '{}'", text);
+        const std::optional<long double> number = long_number(text);
+        if (!number)
+            return fmt::format("expected a number, got '{}'", text);
+        if (!std::isfinite(static_cast<T>(*number)))
+            return fmt::format("expected a number within {}, got '{}'",
+                               std::numeric_limits<T>::max(), text);
+        return {};
     }
     static T read(const std::string& text) { return static_cast<T>(long_number(text).value()); }
     static std::string show(T value) { return fmt::format("{}", value); }
@@ -126,6 +136,100 @@ std::string not_empty(const std::string& text) {
 CLI::Option& add(CLI::App& app, const std::string& name, const std::string& description,
                  CLI::callback_t read, std::function<std::string()> show = {}) {
     return *app.add_option(name, std::move(read), description, false, std::move(show));
+}
+
+/// The command that the line named last: `convert` in `relumine env convert`.
+const CLI::App& last_command(const CLI::App& app) {
+    const std::vector<CLI::App*> below = app.get_subcommands();
+    return below.empty() ? app : last_command(*below.back());
+}
+
+/// "relumine env convert"
+std::string full_name(const CLI::App& app) {
+    return app.get_parent() == nullptr
+               ? app.get_name()
+               : fmt::format("{} {}", full_name(*app.get_parent()), app.get_name());
+}
+
+std::vector<std::string> names_of_commands(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    return names;
+}
+
+std::vector<std::string> names_of_options(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames())
+            names.push_back("--" + name);
+    return names;
+}
+
+/// A pattern that these names fit: 'frames/*.exr'. Empty where they are no files of one kind, which
+/// a shell would have put in a pattern's place.
+std::string pattern_of(const std::vector<std::string>& names) {
+    namespace fs = std::filesystem;
+    const fs::path first = names.front();
+    if (names.size() < 2 || !first.has_extension())
+        return {};
+    std::string stem = first.stem().string();
+    for (const std::string& name : names) {
+        std::error_code error;
+        const fs::path path = name;
+        if (path.parent_path() != first.parent_path() || path.extension() != first.extension() ||
+            !fs::is_regular_file(path, error))
+            return {};
+        const std::string other = path.stem().string();
+        const auto end = std::mismatch(stem.begin(), stem.end(), other.begin(), other.end()).first;
+        stem.erase(end, stem.end());
+    }
+    return (first.parent_path() / fmt::format("{}*{}", stem, first.extension().string())).string();
+}
+
+/// What is wrong with arguments that are more than the command takes. A pattern without quotes is
+/// the usual reason: the shell replaces it by the names of the files.
+std::string surplus(const CLI::App& command, const std::vector<std::string>& rest) {
+    const CLI::Option* last = nullptr;
+    std::vector<std::string> given;
+    for (const CLI::Option* option : command.get_options())
+        if (option->get_positional() && option->count() > 0) {
+            last = option;
+            given.insert(given.end(), option->results().begin(), option->results().end());
+        }
+    given.insert(given.end(), rest.begin(), rest.end());
+    const std::string name = last == nullptr ? full_name(command) : last->get_name(true);
+    // The first arguments may be others: SCENE.prt before the frames.
+    for (auto start = given.begin(); given.end() - start > static_cast<std::ptrdiff_t>(rest.size());
+         ++start) {
+        const std::string pattern = pattern_of({start, given.end()});
+        if (!pattern.empty())
+            return fmt::format("{}: expected one name, got {} files; put a pattern in quotes: "
+                               "'{}'",
+                               name, given.end() - start, pattern);
+    }
+    return fmt::format("{}: expected no argument more, got '{}'", name, rest.front());
+}
+
+/// What to tell of a line that CLI11 refuses: the first thing that is wrong, which need not be what
+/// CLI11 looks at first.
+std::string complaint(const CLI::App& command, const CLI::ParseError& error) {
+    const std::vector<std::string> rest = command.remaining();
+    for (const std::string& word : rest)
+        if (word.size() > 1 && word.front() == '-') {
+            const std::string name = word.substr(0, word.find('='));
+            return fmt::format("{}: no option of `{}`{}", name, full_name(command),
+                               files::did_you_mean(name, names_of_options(command)));
+        }
+    const std::vector<std::string> commands = names_of_commands(command);
+    if (!commands.empty() && !rest.empty())
+        return fmt::format("expected a command, got '{}'{}", rest.front(),
+                           files::did_you_mean(rest.front(), commands));
+    if (!commands.empty())
+        return fmt::format("a command is required: {}", one_of_text(commands));
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr && !rest.empty())
+        return surplus(command, rest);
+    return error.what();
 }
 
 } // namespace
@@ -177,7 +281,14 @@ Option Option::show_default() {
 }
 
 Option Option::one_of(const std::vector<std::string>& choices) {
-    data_->option->check(CLI::IsMember(choices));
+    data_->option->check(CLI::Validator(
+        [choices](const std::string& text) {
+            return std::find(choices.begin(), choices.end(), text) != choices.end()
+                       ? std::string()
+                       : fmt::format("expected {}, got '{}'{}", one_of_text(choices), text,
+                                     files::did_you_mean(text, choices));
+        },
+        fmt::format("{{{}}}", fmt::join(choices, ","))));
     data_->value = OptionTable::Value::Choice;
     data_->choices = choices;
     return *this;
@@ -378,15 +489,38 @@ std::string CommandLine::run(std::vector<std::string> arguments) {
     } catch (const CLI::CallForVersion& version) {
         return fmt::format("{}\n", version.what());
     } catch (const CLI::ParseError& error) {
-        const std::vector<std::string> rest = app.remaining();
-        if (app.get_subcommands().empty() && !rest.empty())
-            throw UsageError(fmt::format("expected a subcommand, got '{}'", rest.front()));
-        throw UsageError(error.what());
+        throw UsageError(complaint(last_command(app), error));
     }
+}
+
+std::string CommandLine::command_name() const {
+    return full_name(last_command(*data_->app));
+}
+
+std::string CommandLine::help(const std::vector<std::string>& words) const {
+    const CLI::App* command = data_->app;
+    for (const std::string& word : words) {
+        const auto below = command->get_subcommands(
+            [&word](const CLI::App* each) { return each->get_name() == word; });
+        if (below.empty())
+            throw UsageError(fmt::format("expected a command, got '{}'{}", word,
+                                         files::did_you_mean(word, names_of_commands(*command))));
+        command = below.front();
+    }
+    // Not App::help(), which looks at the line that was read.
+    return command->get_formatter()->make_help(command, full_name(*command),
+                                               CLI::AppFormatMode::Normal);
 }
 
 CommandTable CommandLine::table() const {
     return data_->table();
+}
+
+std::string one_of_text(const std::vector<std::string>& choices) {
+    if (choices.size() < 2)
+        return choices.empty() ? std::string() : choices.front();
+    return fmt::format("{} or {}", fmt::join(choices.begin(), choices.end() - 1, ", "),
+                       choices.back());
 }
 
 std::optional<double> parse_number(const std::string& text) {

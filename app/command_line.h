@@ -131,12 +131,21 @@ public:
     /// usage, and whatever the work throws.
     [[nodiscard]] std::string run(std::vector<std::string> arguments);
 
+    /// The command of the line that was read last, as it is typed: "relumine env convert".
+    [[nodiscard]] std::string command_name() const;
+
+    /// The help of a command, of the program for no words. Throws UsageError for an unknown one.
+    [[nodiscard]] std::string help(const std::vector<std::string>& words) const;
+
     /// All commands and options, for documentation and completion.
     [[nodiscard]] CommandTable table() const;
 
 private:
     std::unique_ptr<Command::Data> data_;
 };
+
+/// "fast, exact or slow"
+[[nodiscard]] std::string one_of_text(const std::vector<std::string>& choices);
 
 /// A number and nothing else, as options read it: "1.5", "-2e3". None for other text.
 [[nodiscard]] std::optional<double> parse_number(const std::string& text);

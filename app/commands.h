@@ -17,5 +17,6 @@ void add_info(Command& program, Session& session);
 void add_generate(Command& program, Session& session);
 void add_env(Command& program, Session& session);
 void add_view(Command& program, Session& session);
+void add_serve(Command& program, Session& session);
 
 } // namespace relumine::app

@@ -96,4 +96,11 @@ void add_man(CommandLine& program) {
     });
 }
 
+void add_help(CommandLine& program) {
+    Command command = program.root().add_command("help", "print the options of a command");
+    auto words = std::make_shared<std::vector<std::string>>();
+    command.add_option("COMMAND", *words, "a command; none: the program's own help");
+    command.on_run([words, &program] { std::fputs(program.help(*words).c_str(), stdout); });
+}
+
 } // namespace relumine::app

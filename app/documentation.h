@@ -9,5 +9,7 @@ namespace relumine::app {
 void add_completion(CommandLine& program);
 /// `relumine man PAGE`, likewise. To be called last: it knows the commands that are there.
 void add_man(CommandLine& program);
+/// `relumine help [COMMAND]`, likewise.
+void add_help(CommandLine& program);
 
 } // namespace relumine::app

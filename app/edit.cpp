@@ -32,21 +32,21 @@ struct Options {
     EnvironmentOptions environment;
     std::string layers;
     OutputOptions output;
-    /// Direction of the quick edit
+    /// Direction of the quick edit, X,Y,Z. Empty: LAYERS are given.
     std::string disc;
     double radius_degrees = 10.0;
     std::string gain = "2";
     std::string saved_environment;
-    /// position
+    /// --who: a position X,Y,Z. Empty: not asked for.
     std::string who;
-    /// A layer or a disc
+    /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
     std::string lit_by;
     bool watch = false;
 };
 
 void check_saved_environment(const Options& options) {
     const std::string& path = options.saved_environment;
-    cubemap::check_environment_name(path);
+    require_environment_name("--save-env", path);
     if (std::filesystem::path(path).lexically_normal() ==
         std::filesystem::path(options.output.path).lexically_normal())
         throw std::runtime_error(fmt::format("{}: expected another name than the output's", path));
@@ -57,16 +57,11 @@ void check_saved_environment(const Options& options) {
 cubemap::LightLayer disc_layer(const Options& options) {
     const glm::vec3 direction = parse_vec3("--disc", options.disc);
     if (!(glm::length(direction) > 0.0f))
-        throw UsageError("--disc", "expected a direction, got 0,0,0");
-    const bool is_grey = options.gain.find(',') == std::string::npos;
-    const glm::vec3 gain =
-        parse_vec3("--gain", is_grey ? fmt::format("{0},{0},{0}", options.gain) : options.gain);
-    if (!(gain.r >= 0.0f && gain.g >= 0.0f && gain.b >= 0.0f))
-        throw UsageError("--gain", fmt::format("expected numbers >= 0, got '{}'", options.gain));
+        throw UsageError("--disc", fmt::format("expected a direction, got '{}'", options.disc));
     cubemap::LightLayer layer;
     layer.name = "disc";
     layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
-    layer.effect = cubemap::Gain{.tint = gain};
+    layer.effect = cubemap::Gain{.tint = parse_color("--gain", options.gain)};
     return layer;
 }
 
@@ -89,9 +84,10 @@ std::string numbered(const std::string& pattern, int frame) {
         name = pattern;
     }
     if (name == pattern)
-        throw std::runtime_error(fmt::format(
-            "{}: expected a number like %04d in the name, as the layers have frames, got none",
-            pattern));
+        throw UsageError("--output",
+                         fmt::format("expected a number like %04d in the name, as the layers have "
+                                     "frames, got '{}'",
+                                     pattern));
     return name;
 }
 
@@ -100,12 +96,10 @@ void check_outputs(const Options& options, const cubemap::LightLayers& layers) {
     OutputOptions output = options.output;
     if (options.who.empty() && options.lit_by.empty() && !layers.frames.empty())
         output.path = numbered(output.path, 0);
-    const std::string extension = std::filesystem::path(output.path).extension().string();
-    if (!options.who.empty() && extension != ".exr" && extension != ".png")
-        throw std::runtime_error(
-            fmt::format("{}: expected .exr or .png for --who, got '{}'", output.path, extension));
-    if (!options.who.empty())
+    if (!options.who.empty()) {
+        require_extension("--output", output.path, {".exr", ".png"});
         static_cast<void>(parse_vec3("--who", options.who));
+    }
     if (!options.lit_by.empty())
         static_cast<void>(lit_by_region(options.lit_by, layers.layers));
     output.check({options.scene.path, options.environment.path, options.layers});
@@ -255,7 +249,7 @@ private:
                                 1e3 * seconds_reaction, 1e3 * seconds_load, 1e3 * seconds_output,
                                 options_.output.path));
             } catch (const std::runtime_error& error) {
-                session_.say(error.what());
+                session_.complain(error.what());
             }
         }
     }

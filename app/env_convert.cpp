@@ -81,10 +81,6 @@ cubemap::ImageSize target_size(const Options& options, const cubemap::Environmen
                        layout);
     }
     if (options.face_resolution != 0) {
-        constexpr std::uint32_t Largest = 16384;
-        if (options.face_resolution > Largest)
-            throw UsageError("--face-resolution", fmt::format("expected 1 to {}, got {}", Largest,
-                                                              options.face_resolution));
         return checked(cubemap::natural_size(layout, options.face_resolution), layout);
     }
     return cubemap::conversion_size(image, layout);
@@ -120,7 +116,7 @@ Report described(const cubemap::Convention& convention, const cubemap::Environme
 void run(const Options& options, Session& session) {
     const cubemap::Convention& from = *cubemap::find_convention(options.input.from);
     const cubemap::Convention& to = *cubemap::find_convention(options.to);
-    cubemap::check_environment_name(options.output);
+    require_environment_name("--output", options.output);
     static_cast<void>(parse_size(options.size));
     std::vector<std::string> inputs;
     for (const auto& path : cubemap::environment_files(options.input.path))
@@ -212,8 +208,10 @@ void add_convert(Command& group, Session& session) {
         "--size", options->size,
         "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
         "octahedral 640; cube to cube as it is)");
-    command.add_option("--face-resolution", options->face_resolution,
-                       "the same as a cube face: a lat-long gets 4R x 2R pixels");
+    command
+        .add_option("--face-resolution", options->face_resolution,
+                    "the same as a cube face: a lat-long gets 4R x 2R pixels")
+        .between(0, 16384);
     command
         .add_option("--samples", options->samples,
                     "centres: at texel centres and without the envmap attribute, even in OpenEXR's "

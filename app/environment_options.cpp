@@ -28,6 +28,8 @@ constexpr std::array<NamedLayout, cubemap::AllLayouts.size()> Layouts = {{
 void tell(const EnvironmentOptions& options, const std::string& assumptions,
           std::size_t num_fixed_pixels, const Session& session) {
     session.detail(fmt::format("{}: {}", options.path, assumptions));
+    if (num_fixed_pixels != 0)
+        session.add_to_report("replaced_pixels", num_fixed_pixels);
     if (options.fix && num_fixed_pixels != 0)
         session.say(fmt::format("{}: replaced {} bad pixels", options.path, num_fixed_pixels));
     session.poll();
@@ -59,6 +61,7 @@ void EnvironmentOptions::add_conversion_to(Command& command) {
     command
         .add_option("--face-resolution", face_resolution,
                     "texels along a cube face's edge, 0 for the environment's own")
+        .between(0, 16384)
         .show_default();
 }
 

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <poll.h>
@@ -43,31 +44,58 @@ FileWatch::FileWatch(const std::filesystem::path& path)
     }
 }
 
+std::string FileWatch::state() const {
+    struct stat status {};
+    if (::stat(path_.c_str(), &status) != 0)
+        return {};
+    return fmt::format("{} {} {} {}.{}", status.st_dev, status.st_ino, status.st_size,
+                       status.st_mtim.tv_sec, status.st_mtim.tv_nsec);
+}
+
 FileWatch::~FileWatch() {
     ::close(descriptor_);
 }
 
 std::optional<std::chrono::system_clock::time_point> FileWatch::wait(const std::stop_token& stop) {
-    constexpr int PollMilliseconds = 50;
+    using Clock = std::chrono::steady_clock;
+    using std::chrono::milliseconds;
+    constexpr milliseconds Poll(50);
+    // Programs that write a file in two steps close it twice. Longer than a tick of the file
+    // system's clock, so that the next save has another time.
+    constexpr milliseconds Settle(12);
+    bool is_pending = false;
+    Clock::time_point last_event;
     while (!stop.stop_requested()) {
         pollfd entry{.fd = descriptor_, .events = POLLIN, .revents = 0};
-        if (::poll(&entry, 1, PollMilliseconds) <= 0)
+        const milliseconds patience = is_pending ? Settle : Poll;
+        if (::poll(&entry, 1, static_cast<int>(patience.count())) > 0 && read_events()) {
+            is_pending = true;
+            last_event = Clock::now();
+        }
+        if (!is_pending || Clock::now() - last_event < Settle)
             continue;
-        alignas(inotify_event) std::array<char, 4096> buffer;
-        bool saved = false;
-        // Everything that has come in so far is one save.
-        for (ssize_t size = 0; (size = ::read(descriptor_, buffer.data(), buffer.size())) > 0;)
-            for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
-                inotify_event event{};
-                std::memcpy(&event, buffer.data() + at, sizeof event);
-                const char* name = buffer.data() + at + sizeof event;
-                saved = saved || (event.len > 0 && file_name_ == name);
-                at += sizeof event + event.len;
-            }
-        if (saved)
+        is_pending = false;
+        // A file that is as it was at the last save, or gone again, has not been saved.
+        const std::string before = std::exchange(seen_, state());
+        if (!seen_.empty() && seen_ != before)
             return change_time(path_);
     }
     return std::nullopt;
+}
+
+/// Returns true if any of the events that have come in is about the file.
+bool FileWatch::read_events() const {
+    alignas(inotify_event) std::array<char, 4096> buffer;
+    bool is_about_file = false;
+    for (ssize_t size = 0; (size = ::read(descriptor_, buffer.data(), buffer.size())) > 0;)
+        for (std::size_t at = 0; at < static_cast<std::size_t>(size);) {
+            inotify_event event{};
+            std::memcpy(&event, buffer.data() + at, sizeof event);
+            const char* name = buffer.data() + at + sizeof event;
+            is_about_file = is_about_file || (event.len > 0 && file_name_ == name);
+            at += sizeof event + event.len;
+        }
+    return is_about_file;
 }
 
 } // namespace relumine::app

@@ -19,14 +19,20 @@ public:
     FileWatch(const FileWatch&) = delete;
     FileWatch& operator=(const FileWatch&) = delete;
 
-    /// Blocks until the file has been saved since the last call, and tells when: the file system's
-    /// time of its last write or renaming (in steps of a few milliseconds). Nothing when asked to
-    /// stop (noticed within 50 ms).
+    /// Blocks until the file has been saved since the last call. Several writes within a few
+    /// milliseconds are one save. Returns the file system's time of the last write or renaming, in
+    /// steps of a few milliseconds; nothing when asked to stop (noticed within 50 ms).
     [[nodiscard]] std::optional<std::chrono::system_clock::time_point>
     wait(const std::stop_token& stop);
 
 private:
+    /// What tells two versions of the file apart; empty for no file.
+    [[nodiscard]] std::string state() const;
+    bool read_events() const;
+
     std::filesystem::path path_;
+    /// At the last save
+    std::string seen_;
     std::string file_name_;
     int descriptor_ = -1;
 };

@@ -111,12 +111,14 @@ void add_generate(Command& program, Session& session) {
     command
         .add_option("--vertices", options->num_vertices,
                     "vertices of a scene, met within a few per cent")
+        .between(data_gen::MinSceneVertices, data_gen::MaxSceneVertices)
         .show_default();
     const Option resolution = command
                                   .add_option("--face-resolution", options->face_resolution,
                                               "R of an environment: cube 6 x R x R, lat-long "
                                               "4R x 2R; of a sequence 128 when it is not "
                                               "given, of `turn` that of its --env")
+                                  .between(1, 16384)
                                   .show_default();
     session.add_common_options(command);
     command.on_run(

@@ -13,8 +13,8 @@
 #include "app/info_environment.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
+#include "files/output_file.h"
 #include "mesh/load.h"
-#include "prt/scene/scene_check.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::app {
@@ -48,9 +48,7 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
 }
 
 void describe_scene(const Options& options, const Session& session) {
-    const prt::Scene scene = prt::load_scene(options.path); // which checks all that it needs
-    if (options.check)
-        prt::check_scene(scene, options.path);
+    const prt::Scene scene = prt::load_scene(options.path); // which checks all of it
     const prt::SceneSettings& settings = scene.settings;
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const auto file_bytes = std::filesystem::file_size(options.path);
@@ -190,15 +188,16 @@ void describe_mesh(const Options& options, const Session& session) {
 }
 
 void run(const Options& options, const Session& session) {
+    for (const std::filesystem::path& file : cubemap::environment_files(options.path))
+        static_cast<void>(files::size(file)); // a name that is not there says so first
     const std::string extension = extension_of(options.path);
     const bool is_environment = extension == ".exr" || extension == ".hdr";
     if (!options.picture.empty() && !is_environment)
-        throw std::runtime_error(fmt::format(
-            "{}: expected an environment (.exr or .hdr) to draw with --picture, got something else",
-            options.path));
+        throw UsageError(
+            "--picture",
+            fmt::format("expected an environment (.exr or .hdr) to draw, got '{}'", options.path));
     if (options.check && extension != ".prt")
-        throw std::runtime_error(fmt::format(
-            "{}: expected a scene (.prt) to --check, got something else", options.path));
+        throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
     if (extension == ".prt")
         describe_scene(options, session);
     else if (is_environment)

@@ -170,7 +170,7 @@ Report report(const cubemap::EnvironmentImage& image, const Findings& found) {
 
 void describe_environment(const EnvironmentInfoOptions& options, const Session& session) {
     if (!options.picture.empty()) {
-        relight::check_environment_picture(options.picture);
+        require_extension("--picture", options.picture, {".png"});
         check_output(options.picture, {options.path});
     }
     cubemap::LoadOptions load_options{.fix_bad_pixels = true};

@@ -35,13 +35,14 @@ struct Options {
     EnvironmentOptions environment;
     std::string path;
     std::string picture;
-    /// Empty: by the output's extension
+    /// Empty: the output's extension decides.
     std::string format;
     std::string method = std::string(lights::name(lights::Method::VarianceCut));
     std::vector<std::size_t> numbers = {64};
-    /// .prt: the lights' error on it is said; the transfer method chooses for it
+    /// A .prt file. The error of the lights on it is printed, and the transfer method chooses for
+    /// it. Empty: none.
     std::string scene;
-    /// .prt: all methods are compared on it
+    /// A .prt file on which all methods are compared. Empty: none.
     std::string compare;
     std::string plot;
     std::size_t num_samples = 2000;
@@ -54,12 +55,12 @@ lights::LightFormat format_of(const Options& options) {
         return *lights::light_format_named(options.format);
     if (const auto format = lights::light_format_of(options.path))
         return *format;
-    std::string known;
+    std::vector<std::string> known;
     for (const lights::LightFormat format : lights::AllLightFormats)
-        known += fmt::format("{}, ", lights::extension(format));
-    throw std::runtime_error(fmt::format("{}: expected {}or --format, got '{}'", options.path,
-                                         known,
-                                         std::filesystem::path(options.path).extension().string()));
+        known.emplace_back(lights::extension(format));
+    throw UsageError("--output", fmt::format("expected a name that ends in {}, or --format with "
+                                             "it, got '{}'",
+                                             one_of_text(known), options.path));
 }
 
 /// Refuses what cannot be written before any work is done.
@@ -76,10 +77,7 @@ void check_outputs(const Options& options) {
     }
     if (options.picture.empty())
         return;
-    const std::string extension = std::filesystem::path(options.picture).extension().string();
-    if (extension != ".png" && extension != ".exr")
-        throw std::runtime_error(
-            fmt::format("{}: expected .png or .exr, got '{}'", options.picture, extension));
+    require_extension("--picture", options.picture, {".png", ".exr"});
     const auto place_of = [](const std::string& path) {
         return std::filesystem::weakly_canonical(std::filesystem::absolute(path));
     };
@@ -146,8 +144,7 @@ void compare(const Options& options, Session& session) {
     if (!options.path.empty() || !options.picture.empty() || !options.scene.empty())
         throw UsageError("--compare", "expected neither -o nor --picture nor --scene with it");
     if (!options.plot.empty()) {
-        if (std::filesystem::path(options.plot).extension() != ".svg")
-            throw std::runtime_error(fmt::format("{}: expected .svg", options.plot));
+        require_extension("--plot", options.plot, {".svg"});
         check_output(options.plot, {options.environment.path, options.compare});
     }
     compare_methods({.scene = options.compare,

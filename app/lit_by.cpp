@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/session.h"
+#include "files/nearest_name.h"
 
 namespace relumine::app {
 
@@ -16,9 +20,15 @@ cubemap::Region lit_by_region(const std::string& text,
     if (layer != layers.end())
         return layer->region;
     const auto refuse = [&](const std::string& why) {
-        throw UsageError("--lit-by", fmt::format("expected the name of a layer or X,Y,Z,RADIUS "
-                                                 "with a RADIUS in degrees, got '{}'{}",
-                                                 text, why));
+        std::vector<std::string> names;
+        for (const cubemap::LightLayer& each : layers)
+            names.push_back(each.name);
+        throw UsageError(
+            "--lit-by",
+            fmt::format("expected a layer ({}) or X,Y,Z,RADIUS with a RADIUS in degrees, got "
+                        "'{}'{}{}",
+                        names.empty() ? "there is none" : fmt::format("{}", fmt::join(names, ", ")),
+                        text, why, files::did_you_mean(text, names)));
     };
     const std::size_t last_comma = text.rfind(',');
     if (last_comma == std::string::npos)

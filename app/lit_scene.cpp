@@ -47,10 +47,9 @@ void recolour(Scene& scene, const SceneOptions& options) {
     if (!colors.albedo && !colors.specular)
         return;
     if (scene.receivers.surfaces.empty())
-        throw std::runtime_error(
-            fmt::format("{}: expected a scene with materials for --surface-albedo and "
-                        "--surface-specular, got one without",
-                        options.path));
+        throw UsageError(
+            colors.albedo ? "--surface-albedo" : "--surface-specular",
+            fmt::format("expected a scene with materials, got {} without", options.path));
     set_colors(scene, colors);
 }
 
@@ -59,7 +58,13 @@ void recolour(Scene& scene, const SceneOptions& options) {
 LitScene lit_scene(const SceneOptions& options) {
     Scene scene = load(options);
     recolour(scene, options);
-    return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
+    try {
+        return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
+    } catch (const std::runtime_error& error) { // about the mesh, whose name it does not know
+        throw std::runtime_error(fmt::format("{}: {}", options.path, error.what()));
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", options.path, error.what()));
+    }
 }
 
 } // namespace relumine::app

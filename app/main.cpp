@@ -10,21 +10,6 @@
 #include "app/program.h"
 #include "prt/precompute.h"
 
-namespace {
-
-/// One line of plain text, whatever the library's message looked like: what a file holds may be
-/// quoted in it.
-std::string one_line(std::string message) {
-    while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
-        message.pop_back();
-    for (char& c : message)
-        if ((c >= 0 && c < ' ') || c == '\x7f')
-            c = ' ';
-    return message;
-}
-
-} // namespace
-
 int main(int argc, char** argv) {
     using namespace relumine;
     app::Session session;
@@ -41,9 +26,7 @@ int main(int argc, char** argv) {
                 tbb::global_control::max_allowed_parallelism, session.num_threads);
     });
     const auto fail = [&](const std::string& message) {
-        session.end_progress();
-        // Not fmt::print, which throws where stderr cannot be written.
-        std::fputs(fmt::format("relumine: {}\n", one_line(message)).c_str(), stderr);
+        session.complain(message);
         return 1;
     };
     // What was printed may still be in the buffer: a full disk behind `> file` shows only here.
@@ -56,9 +39,10 @@ int main(int argc, char** argv) {
         std::fputs(program.run({argv + 1, argv + argc}).c_str(), stdout);
         return done();
     } catch (const app::UsageError& error) {
-        std::fputs(
-            fmt::format("relumine: {} (see relumine --help)\n", one_line(error.what())).c_str(),
-            stderr);
+        std::fputs(fmt::format("relumine: {} (see {} --help)\n", app::one_line(error.what()),
+                               program.command_name())
+                       .c_str(),
+                   stderr);
         return 2;
     } catch (const prt::Cancelled&) {
         return fail("cancelled; nothing was written");

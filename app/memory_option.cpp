@@ -14,8 +14,10 @@ std::optional<std::uint64_t> parse_size(const std::string& text) {
     const double number = std::strtod(text.c_str(), &end);
     const std::string unit = end;
     double factor = 1.0;
-    if (!unit.empty()) {
+    if (unit != "B") {
         const std::string units = "KMGT";
+        if (unit.empty())
+            return {};
         const auto at =
             units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit.front()))));
         const bool is_known = at != std::string::npos &&
@@ -39,7 +41,11 @@ void MemoryOption::add_to(Command& command) {
                 if (!max_bytes_)
                     throw UsageError(
                         "--max-memory",
-                        fmt::format("expected a size like 500M or 4G, got '{}'", text));
+                        parse_count(text)
+                            ? fmt::format("expected a unit after the number, as in {0}M or "
+                                          "{0}G, got '{0}'",
+                                          text)
+                            : fmt::format("expected a size like 500M or 4G, got '{}'", text));
             },
             "refuse the work when it would take more memory, stop when it does: 500M, 4G")
         .type_name("SIZE");

@@ -1,7 +1,6 @@
 #include "app/output_options.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <filesystem>
 #include <stdexcept>
@@ -23,6 +22,12 @@ relight::PictureOptions parse_size(const std::string& text) {
     const std::optional<SizeText> size = parse_size_text(text);
     if (!size)
         throw UsageError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
+    const auto is_side = [](std::uint32_t side) {
+        return side >= 1 && side <= prt::MaxPictureSize;
+    };
+    if (!is_side(size->width) || !is_side(size->height))
+        throw UsageError("--size", fmt::format("expected 1 to {} pixels a side, got '{}'",
+                                               prt::MaxPictureSize, text));
     relight::PictureOptions options;
     options.width = size->width;
     options.height = size->height;
@@ -72,6 +77,7 @@ Option OutputOptions::add_to(Command& command) {
         command.add_option("--eye", eye, "camera position X,Y,Z (automatic)"),
         command.add_option("--target", target, "point that the camera looks at, X,Y,Z (automatic)"),
         command.add_option("--fov", fov_degrees, "vertical field of view in degrees")
+            .between(0.01, 179.0)
             .show_default(),
         command.add_option("--size", size, "picture size WIDTHxHEIGHT").show_default()};
     command.add_flag("--transparent", transparent,
@@ -83,11 +89,7 @@ Option OutputOptions::add_to(Command& command) {
 }
 
 void OutputOptions::check(const std::vector<std::string>& inputs) const {
-    constexpr std::array<const char*, 5> Known = {".png", ".exr", ".ply", ".glb", ".npy"};
-    const std::string extension = extension_of(path);
-    if (std::find(Known.begin(), Known.end(), extension) == Known.end())
-        throw std::runtime_error(
-            fmt::format("{}: expected .png, .exr, .ply, .glb or .npy, got '{}'", path, extension));
+    require_extension("--output", path, {".png", ".exr", ".ply", ".glb", ".npy"});
     check_output(path, inputs);
     static_cast<void>(parse_size(size));
     static_cast<void>(parse_albedo(albedo));
@@ -98,21 +100,23 @@ void OutputOptions::check(const std::vector<std::string>& inputs) const {
 
 void OutputOptions::check_fits(const Scene& scene) const {
     if (transparent && !std::holds_alternative<prt::PixelLayout>(scene.layout))
-        throw std::runtime_error(
-            fmt::format("--transparent: expected a scene whose receivers are pixels, got {}",
-                        prt::description(scene.layout)));
+        throw UsageError("--transparent",
+                         fmt::format("expected a scene whose receivers are pixels, got {}",
+                                     prt::description(scene.layout)));
     if (std::holds_alternative<prt::VertexLayout>(scene.layout))
         return;
     const std::string extension = extension_of(path);
     if (extension == ".ply" || extension == ".glb")
-        throw std::runtime_error(fmt::format(
-            "{}: expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'", path,
-            prt::description(scene.layout), extension));
+        throw UsageError(
+            "--output",
+            fmt::format("expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'",
+                        prt::description(scene.layout), path));
     for (const Option& option : camera_options_)
         if (option.is_given())
-            throw std::runtime_error(
-                fmt::format("{}: expected no camera for a scene whose receivers are {}, got one",
-                            option.name(), prt::description(scene.layout)));
+            throw UsageError(
+                option.name(),
+                fmt::format("expected no camera for a scene whose receivers are {}, got one",
+                            prt::description(scene.layout)));
 }
 
 relumine::OutputOptions OutputOptions::for_scene(const Scene& scene) const {
@@ -121,8 +125,8 @@ relumine::OutputOptions OutputOptions::for_scene(const Scene& scene) const {
                                    .transparent = transparent,
                                    .gutter = gutter};
     if (std::holds_alternative<MeshColors>(result.albedo) && scene.mesh.colors.empty())
-        throw std::runtime_error(
-            "--albedo mesh: expected a mesh with vertex colours, got one without");
+        throw UsageError("--albedo",
+                         "expected a mesh with vertex colours for `mesh`, got one without");
     if (std::holds_alternative<prt::VertexLayout>(scene.layout)) {
         const relight::PictureOptions picture = parse_size(size);
         result.width = picture.width;
@@ -152,6 +156,18 @@ std::string extension_of(const std::string& path) {
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return extension;
+}
+
+void require_extension(const std::string& option, const std::string& path,
+                       const std::vector<std::string>& extensions) {
+    const std::string extension = extension_of(path);
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+        throw UsageError(option, fmt::format("expected a name that ends in {}, got '{}'",
+                                             one_of_text(extensions), path));
+}
+
+void require_environment_name(const std::string& option, const std::string& path) {
+    require_extension(option, path, {".exr", ".hdr"});
 }
 
 void check_output(const std::string& path, const std::vector<std::string>& inputs) {

@@ -65,6 +65,14 @@ private:
 /// A path's extension in small letters, with the dot.
 [[nodiscard]] std::string extension_of(const std::string& path);
 
+/// Throws UsageError unless an option's path has one of these extensions (capital letters are
+/// allowed).
+void require_extension(const std::string& option, const std::string& path,
+                       const std::vector<std::string>& extensions);
+
+/// The same for environments: .exr or .hdr.
+void require_environment_name(const std::string& option, const std::string& path);
+
 /// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever
 /// name.
 void check_output(const std::string& path, const std::vector<std::string>& inputs);

@@ -83,6 +83,11 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport&
     };
     try {
         return precompute(std::move(mesh), options, &report);
+    } catch (const TooMuchWork& error) {
+        throw UsageError(error.cause == TooMuchWork::Cause::MinLevel ? "--min-depth"
+                         : options.epsilon                           ? "--epsilon"
+                                                                     : "--tolerance",
+                         error.what());
     } catch (const MemoryLimitExceeded& error) {
         throw std::runtime_error(with_checkpoint(error.what() + advice(error.part)));
     } catch (const std::exception& error) {
@@ -153,9 +158,7 @@ std::string where_time_went(const PrecomputeReport& facts, double seconds) {
 void run(const Options& options, Session& session) {
     Stopwatch watch;
     // Found out now, not after a minute of work.
-    if (std::filesystem::path(options.output).extension() != ".prt")
-        throw std::runtime_error(
-            fmt::format("{}: expected a name that ends in .prt", options.output));
+    require_extension("--output", options.output, {".prt"});
     check_output(options.output, {options.mesh});
     options.receivers.check();
     options.surfaces.check();
@@ -212,9 +215,18 @@ void add_precompute(Command& program, Session& session) {
         .add_option(
             "--floor",
             [options](const std::string& text) {
-                options->mesh_options.floor_vertices = text.empty() ? 193 : parse_count(text);
-                if (!options->mesh_options.floor_vertices)
-                    throw UsageError("--floor", fmt::format("expected a number, got '{}'", text));
+                const std::optional<std::uint32_t> side =
+                    text.empty() ? std::optional<std::uint32_t>(193) : parse_count(text);
+                if (!side)
+                    throw UsageError(
+                        "--floor",
+                        fmt::format("expected a number of vertices, got '{0}'; the mesh goes "
+                                    "first: relumine precompute {0} --floor",
+                                    text));
+                if (*side < 2 || *side > 65535)
+                    throw UsageError("--floor",
+                                     fmt::format("expected 2 to 65535 vertices, got '{}'", text));
+                options->mesh_options.floor_vertices = side;
             },
             "add a floor of N x N vertices under the mesh; 193 when no N is given")
         .value_is_optional()
@@ -223,6 +235,7 @@ void add_precompute(Command& program, Session& session) {
         .add_option("--floor-scale", options->mesh_options.floor_scale,
                     "side of the floor over the mesh's width")
         .needs("--floor")
+        .between(1e-6, 1e6)
         .show_default();
     command
         .add_option("--normals", options->normals,
@@ -232,19 +245,27 @@ void add_precompute(Command& program, Session& session) {
     command
         .add_option("--tolerance", options->precompute.tolerance,
                     "RMS error of the transfer allowed within a cluster, 1/sr")
+        .between(0.0, 1e6)
         .show_default();
-    command.add_option("--epsilon", options->precompute.epsilon,
-                       "the paper's form of the tolerance: grows lax with the mesh's size");
+    command
+        .add_option("--epsilon", options->precompute.epsilon,
+                    "the paper's form of the tolerance: grows lax with the mesh's size")
+        .between(0.0, 1e6)
+        .excludes("--tolerance");
     command
         .add_option("--min-depth", options->precompute.min_level,
                     "every cell is split at least this often")
+        .between(0, prt::MaxLevel)
         .show_default();
     command
         .add_option("--face-resolution", options->precompute.face_resolution,
                     "R: cells stop at single texels of a 6 x R x R environment")
+        .between(1, 1u << prt::MaxLevel)
         .show_default();
-    command.add_option("--bias", options->precompute.bias,
-                       "lift of the rays' origins off the surface, in the mesh's unit");
+    command
+        .add_option("--bias", options->precompute.bias,
+                    "lift of the rays' origins off the surface, in the mesh's unit")
+        .between(0.0, LargestPosition);
     command
         .add_option("--engine", options->engine,
                     "how visibility is traced: whole beams of rays, or each ray with Embree; the "

@@ -1,5 +1,6 @@
 #include "app/receiver_options.h"
 
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <stdexcept>
@@ -73,14 +74,16 @@ std::optional<View> ReceiverOptions::view() const {
     std::vector<float> numbers;
     std::istringstream text(view_);
     for (std::string word; std::getline(text, word, ',');) {
-        if (const std::optional<double> number = parse_number(word))
+        if (const std::optional<double> number = parse_number(word);
+            number && std::abs(*number) <= LargestPosition)
             numbers.push_back(static_cast<float>(*number));
         else
             numbers.clear();
     }
     if (numbers.size() != 6 && numbers.size() != 7)
         throw UsageError("--view",
-                         fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV], got '{}'", view_));
+                         fmt::format("expected auto or EX,EY,EZ,TX,TY,TZ[,FOV] within {}, got '{}'",
+                                     LargestPosition, view_));
     prt::Camera camera{.eye = {numbers[0], numbers[1], numbers[2]},
                        .target = {numbers[3], numbers[4], numbers[5]}};
     if (numbers.size() == 7)

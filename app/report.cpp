@@ -57,4 +57,8 @@ std::string Report::text() const {
     return json_->dump(2, ' ', false, json::error_handler_t::replace);
 }
 
+std::string Report::line() const {
+    return json_->dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
 } // namespace relumine::app

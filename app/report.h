@@ -54,6 +54,8 @@ public:
     [[nodiscard]] bool empty() const;
     /// Two columns more for each level, names sorted; bytes that are no UTF-8 are replaced.
     [[nodiscard]] std::string text() const;
+    /// The same on one line.
+    [[nodiscard]] std::string line() const;
 
 private:
     struct Signed {

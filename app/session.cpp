@@ -179,7 +179,7 @@ std::function<void(double)> Session::progress(const std::string& what) {
     };
 }
 
-void Session::end_progress() {
+void Session::end_progress() const {
     const std::scoped_lock lock(mutex_);
     if (bar_open_)
         fmt::print(stderr, "\r\033[K");
@@ -188,8 +188,10 @@ void Session::end_progress() {
 }
 
 void Session::say(const std::string& line) const {
-    if (!json && !quiet)
-        fmt::print("{}\n", line);
+    if (json || quiet)
+        return;
+    fmt::print("{}\n", line);
+    std::fflush(stdout); // whoever reads along, as with --watch, need not wait for more
 }
 
 void Session::detail(const std::string& line) const {
@@ -197,15 +199,47 @@ void Session::detail(const std::string& line) const {
         say(line);
 }
 
-void Session::warn(const std::string& message) {
+void Session::warn(const std::string& message) const {
     end_progress();
     if (!quiet)
-        std::fputs(fmt::format("warning: {}\n", message).c_str(), stderr);
+        std::fputs(fmt::format("warning: {}\n", one_line(message)).c_str(), stderr);
+    const std::scoped_lock lock(mutex_);
+    warnings_.push_back(message);
 }
 
-void Session::report(const Report& result) const {
-    if (json)
-        fmt::print("{}\n", result.text());
+void Session::complain(const std::string& message) const {
+    end_progress();
+    // Not fmt::print, which throws where stderr cannot be written.
+    std::fputs(fmt::format("relumine: {}\n", one_line(message)).c_str(), stderr);
+}
+
+void Session::add_to_report(const std::string& name, const Report& value) const {
+    const std::scoped_lock lock(mutex_);
+    more_fields_.set(name, value);
+}
+
+Report Session::take_notes() const {
+    const std::scoped_lock lock(mutex_);
+    Report notes = std::exchange(more_fields_, Report());
+    notes.set("warnings", std::exchange(warnings_, {}));
+    return notes;
+}
+
+void Session::report(Report result) const {
+    if (!json)
+        return;
+    result.update(take_notes());
+    fmt::print("{}\n", result.text());
+    std::fflush(stdout);
+}
+
+std::string one_line(std::string message) {
+    while (!message.empty() && (message.back() == '\n' || message.back() == ' '))
+        message.pop_back();
+    for (char& c : message)
+        if ((c >= 0 && c < ' ') || c == '\x7f')
+            c = ' ';
+    return message;
 }
 
 Stopwatch::Stopwatch() : start_(now()), last_(start_) {}
@@ -223,6 +257,10 @@ glm::vec3 parse_vec3(const std::string& option, const std::string& text) {
     const std::optional<glm::vec3> result = three_numbers(text);
     if (!result)
         throw UsageError(option, fmt::format("expected X,Y,Z, got '{}'", text));
+    for (int axis = 0; axis < 3; ++axis)
+        if (!(std::abs(double{(*result)[axis]}) <= LargestPosition))
+            throw UsageError(
+                option, fmt::format("expected numbers within {}, got '{}'", LargestPosition, text));
     return *result;
 }
 
@@ -232,8 +270,11 @@ glm::vec3 parse_color(const std::string& option, const std::string& text) {
         three_numbers(is_grey ? fmt::format("{0},{0},{0}", text) : text);
     if (!color)
         throw UsageError(option, fmt::format("expected R,G,B or one number, got '{}'", text));
-    if (color->r < 0.0f || color->g < 0.0f || color->b < 0.0f)
-        throw UsageError(option, fmt::format("expected numbers >= 0, got '{}'", text));
+    constexpr float Largest = 1e6f; // what it multiplies stays a float
+    for (int channel = 0; channel < 3; ++channel)
+        if (!((*color)[channel] >= 0.0f && (*color)[channel] <= Largest))
+            throw UsageError(option,
+                             fmt::format("expected numbers of 0 to {}, got '{}'", Largest, text));
     return *color;
 }
 

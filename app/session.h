@@ -42,22 +42,34 @@ public:
     /// first second or with -q. To be called with fractions in [0, 1].
     [[nodiscard]] std::function<void(double)> progress(const std::string& what);
     /// Ends the bar's line. Harmless when there is none.
-    void end_progress();
+    void end_progress() const;
 
-    /// One line of result for people; nothing with --json or -q.
+    /// One line of result for people, at once; nothing with --json or -q.
     void say(const std::string& line) const;
     /// One line only with -v.
     void detail(const std::string& line) const;
-    /// One line on stderr, "warning: ..."; nothing with -q.
-    void warn(const std::string& message);
-    /// The result: with --json the object on stdout.
-    void report(const Report& result) const;
+    /// One line on stderr, "warning: ..."; nothing with -q. The report has it, too.
+    void warn(const std::string& message) const;
+    /// One line on stderr, "relumine: ...", for a failure after which the command goes on.
+    void complain(const std::string& message) const;
+    /// Adds a field to the report of this run.
+    void add_to_report(const std::string& name, const Report& value) const;
+    /// What add_to_report() and warn() have gathered since the start or the last call.
+    [[nodiscard]] Report take_notes() const;
+    /// The result: with --json the object on stdout, with all warnings as the list "warnings".
+    void report(Report result) const;
 
 private:
     std::stop_source stop_source_;
-    std::mutex mutex_;
-    bool bar_open_ = false;
+    /// Guards the others, since progress and warnings come from other threads, too.
+    mutable std::mutex mutex_;
+    mutable bool bar_open_ = false;
+    mutable std::vector<std::string> warnings_;
+    mutable Report more_fields_;
 };
+
+/// One line of plain text, whatever the message looked like: what a file holds may be quoted in it.
+[[nodiscard]] std::string one_line(std::string message);
 
 /// While it exists, Ctrl-C waits for the work to end by itself, as where another program must be
 /// told. A second signal, at least a second later, ends the program nevertheless.
@@ -82,10 +94,15 @@ private:
     double last_;
 };
 
-/// Three numbers "X,Y,Z" of an option. Throws UsageError (wrong usage) for anything else.
+/// Options take no position farther from the origin on any axis: rays begin there, and they must
+/// stay within prt::LargestCoordinate.
+inline constexpr double LargestPosition = 1e18;
+
+/// Three numbers "X,Y,Z" of an option, each within LargestPosition. Throws UsageError (wrong usage)
+/// for anything else.
 [[nodiscard]] glm::vec3 parse_vec3(const std::string& option, const std::string& text);
 
-/// A colour "R,G,B" or one number for all three, >= 0. Throws UsageError for anything
+/// A colour "R,G,B" or one number for all three, each of 0 to 1e6. Throws UsageError for anything
 /// else.
 [[nodiscard]] glm::vec3 parse_color(const std::string& option, const std::string& text);
 

@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "files/nearest_name.h"
+
 namespace relumine::files {
 
 namespace {
@@ -206,9 +208,16 @@ const JsonValue* JsonReader::find(const JsonValue::Object& object, std::string_v
 const JsonValue& JsonReader::required(const JsonValue& owner, const JsonValue::Object& members,
                                       std::string_view field) const {
     const JsonValue* found = find(members, field);
-    if (found == nullptr)
+    if (found != nullptr)
+        return *found;
+    std::vector<std::string_view> names;
+    for (const auto& [name, value] : members)
+        names.push_back(name);
+    const std::string_view nearest = nearest_name(field, names);
+    if (nearest.empty())
         refuse(owner.line, fmt::format("\"{}\"", field), "none");
-    return *found;
+    refuse(find(members, nearest)->line, fmt::format("\"{}\"", field),
+           fmt::format("\"{}\"", nearest));
 }
 
 void JsonReader::known(const JsonValue::Object& members, std::span<const std::string_view> names,
@@ -216,7 +225,7 @@ void JsonReader::known(const JsonValue::Object& members, std::span<const std::st
     for (const auto& [name, value] : members) {
         if (std::find(names.begin(), names.end(), name) == names.end())
             refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
-                   fmt::format("\"{}\"", name));
+                   fmt::format("\"{}\"{}", name, did_you_mean(name, names)));
     }
 }
 

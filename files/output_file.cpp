@@ -80,6 +80,9 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
             fmt::format("{}: cannot write: not a regular file", target_.string()));
     }
     place_ = followed(target_);
+    // The temporary name may be shorter.
+    if (::stat(place_.c_str(), &status) != 0 && errno == ENAMETOOLONG)
+        fail(target_, "write", errno);
     const std::scoped_lock lock(temporaries().mutex);
     open_temporary();
     temporaries().names.insert(temporary_);
@@ -90,11 +93,16 @@ OutputFile::OutputFile(std::filesystem::path target) : target_(std::move(target)
 // kept for writers that look at it.
 void OutputFile::open_temporary() {
     constexpr int MaxWriters = 1000; // of one target at the same time
-    const std::string extension = place_.extension().string();
+    // The name of the target may be as long as names can be; the temporary name must not be longer.
+    constexpr std::size_t MaxExtension = 32, MaxStem = 255 - MaxExtension - 16;
+    std::string extension = place_.extension().string();
+    std::string stem = place_.stem().string();
+    if (extension.size() > MaxExtension)
+        extension.clear();
+    stem.resize(std::min(stem.size(), MaxStem));
     for (int i = 0; i < MaxWriters; ++i) {
         const std::filesystem::path name =
-            place_.parent_path() /
-            fmt::format(".{}.writing-{}{}", place_.stem().string(), i, extension);
+            place_.parent_path() / fmt::format(".{}.writing-{}{}", stem, i, extension);
         Descriptor file(
             ::open(name.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0666));
         if (!file.is_open()) {
@@ -119,12 +127,12 @@ void OutputFile::open_temporary() {
             fail(target_, "write", errno);
         temporary_ = name;
         file_ = std::move(file);
+        keep_permissions();
         return;
     }
     // mkstemps chooses a name that no other process has.
     std::string name =
-        (place_.parent_path() / fmt::format(".{}.XXXXXX{}", place_.stem().string(), extension))
-            .string();
+        (place_.parent_path() / fmt::format(".{}.XXXXXX{}", stem, extension)).string();
     file_ = Descriptor(::mkstemps(name.data(), static_cast<int>(extension.size())));
     if (!file_.is_open())
         fail(target_, "write", errno);
@@ -133,6 +141,17 @@ void OutputFile::open_temporary() {
     const mode_t mask = ::umask(0);
     ::umask(mask);
     ::fchmod(file_.get(), 0666 & ~mask);
+    keep_permissions();
+}
+
+/// A file that its owner made private stays private.
+void OutputFile::keep_permissions() {
+    struct stat status {};
+    if (::stat(place_.c_str(), &status) != 0)
+        return;
+    constexpr mode_t Permissions = 0777;
+    if (::fchmod(file_.get(), status.st_mode & Permissions) != 0)
+        fail(target_, "write", errno);
 }
 
 OutputFile::~OutputFile() {

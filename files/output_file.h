@@ -17,7 +17,8 @@ namespace relumine::files {
 /// and renames it over the target. Without commit() the destructor removes it, and the target stays
 /// as it was.
 ///
-/// A target that is a symbolic link stays a link: the file it points to is replaced. If several
+/// A target that is a symbolic link stays a link: the file it points to is replaced. A target that
+/// is there keeps its permissions. If several
 /// writers share a target, the last commit wins with a whole file. The temporary file of a killed
 /// process is taken over by the next writer of the target.
 class OutputFile {
@@ -50,6 +51,7 @@ public:
 
 private:
     void open_temporary();
+    void keep_permissions();
 
     std::filesystem::path target_;
     /// The target with symbolic links followed.

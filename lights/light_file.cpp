@@ -155,24 +155,20 @@ std::string json_text(const LightList& list) {
         head["method"] = list.method;
     if (list.seed)
         head["seed"] = *list.seed;
-    try {
-        // One light per line keeps a list of hundreds readable, and an error names the line of its
-        // light.
-        std::string result = head.dump(2);
-        result.resize(result.size() - 2); // "\n}"
-        result += ",\n  \"lights\": [";
-        const char* separator = "\n    ";
-        for (const DistantLight& light : list.lights) {
-            const Json value = {{"direction", array(light.direction)},
-                                {"irradiance", array(light.irradiance)},
-                                {"solid_angle", light.solid_angle}};
-            result += separator + value.dump();
-            separator = ",\n    ";
-        }
-        return result + "\n  ]\n}\n";
-    } catch (const Json::exception&) {
-        throw std::invalid_argument("light list: expected names in UTF-8, got other bytes");
+    // One light per line keeps a list of hundreds readable, and an error names the line of its
+    // light. A file's name may have bytes that JSON cannot hold.
+    std::string result = head.dump(2, ' ', false, Json::error_handler_t::replace);
+    result.resize(result.size() - 2); // "\n}"
+    result += ",\n  \"lights\": [";
+    const char* separator = "\n    ";
+    for (const DistantLight& light : list.lights) {
+        const Json value = {{"direction", array(light.direction)},
+                            {"irradiance", array(light.irradiance)},
+                            {"solid_angle", light.solid_angle}};
+        result += separator + value.dump();
+        separator = ",\n    ";
     }
+    return result + "\n  ]\n}\n";
 }
 
 void save_lights(const std::filesystem::path& path, const LightList& list) {

@@ -48,20 +48,12 @@ bool has_mesh_extension(const std::filesystem::path& path) {
 
 TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
     const std::string extension = extension_of(path);
-    std::error_code error;
-    const auto status = std::filesystem::status(path, error);
-    if (status.type() == std::filesystem::file_type::not_found)
-        throw std::runtime_error(
-            fmt::format("{}: cannot read: {}", path.string(),
-                        std::make_error_code(std::errc::no_such_file_or_directory).message()));
+    // A name that is not there says so first.
+    static_cast<void>(files::size(path));
     if (!has_mesh_extension(path))
         throw std::runtime_error(fmt::format(
             "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
             path.string(), extension));
-    // Opening a pipe would wait for a writer.
-    if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
-        throw std::runtime_error(
-            fmt::format("{}: expected a regular file, got another kind", path.string()));
     const std::vector<std::byte> bytes = files::read(path);
     try {
         return to_mesh(read_soup(path, extension, bytes), normals);

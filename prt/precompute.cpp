@@ -1,5 +1,6 @@
 #include "prt/precompute.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <string>
@@ -9,6 +10,7 @@
 #include "prt/clusters/clustering.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute_context.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
 
@@ -36,6 +38,13 @@ void check(const Receivers& receivers, const PrecomputeOptions& options) {
         fmt::format("expected a minimum depth from 0 to {}, got {}", MaxLevel, options.min_level));
     require(std::isfinite(options.bias) && options.bias >= 0.0f,
             fmt::format("expected a bias >= 0, got {}", options.bias));
+    float farthest = 0.0f;
+    for (const glm::vec3& position : receivers.positions)
+        for (int axis = 0; axis < 3; ++axis)
+            farthest = std::max(farthest, std::abs(position[axis]));
+    require(farthest + options.bias < LargestCoordinate,
+            fmt::format("expected receivers and bias within {} of the origin, got {} and {}",
+                        LargestCoordinate, farthest, options.bias));
 }
 
 } // namespace

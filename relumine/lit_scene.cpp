@@ -27,6 +27,11 @@ struct LitScene::Impl {
                 .tolerance = rms_tolerance(scene)};
     }
 
+    /// Of sharp lights; 0 where they are not traced.
+    [[nodiscard]] float sharp_tolerance() const {
+        return clusters_only ? 0.0f : rms_tolerance(scene);
+    }
+
     void require_clusters() const {
         if (!has_clusters())
             throw std::invalid_argument(
@@ -67,6 +72,7 @@ struct LitScene::Impl {
             made->set_base(relighter->environment());
         editor = std::move(made);
         relighter.reset();
+        file = {};
         is_lit_by_list = false;
         return *editor;
     }
@@ -77,6 +83,8 @@ struct LitScene::Impl {
     /// One of the two lights the scene; none before the first light()
     std::optional<relight::Relighter> relighter;
     std::unique_ptr<relight::LightEditor> editor;
+    /// What the environment was made from, while nothing has changed it
+    relight::EnvironmentFile file;
     /// Behind light lists
     cubemap::CubeMap black{1};
     cubemap::CubeMap nothing;
@@ -121,11 +129,29 @@ RelightTimes LitScene::light(cubemap::CubeMap environment) {
         impl_->editor ? impl_->editor->set_base(std::move(environment))
                       : impl_->plain_relighter().set_environment(std::move(environment));
     impl_->is_lit_by_list = false;
+    impl_->file = {};
     return times;
 }
 
 RelightTimes LitScene::light(Environment environment) {
-    return light(std::move(environment.map));
+    const RelightTimes times = light(std::move(environment.map));
+    if (!impl_->editor)
+        impl_->file = std::move(environment.file);
+    return times;
+}
+
+BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
+    impl_->require_clusters();
+    return relight::EnvironmentBinner(impl_->scene.transfer, impl_->sharp_tolerance())
+        .bin(std::move(environment));
+}
+
+void LitScene::light(BinnedEnvironment environment) {
+    if (impl_->editor)
+        impl_->editor->set_base(std::move(environment.map));
+    else
+        impl_->plain_relighter().set_frame(std::move(environment));
+    impl_->is_lit_by_list = false;
 }
 
 RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
@@ -138,13 +164,17 @@ RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
         impl_->editor.reset();
     }
     impl_->is_lit_by_list = true;
+    impl_->file = {};
     return times;
 }
 
 UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
                                      std::span<const glm::vec3> radiance) {
-    if (!impl_->editor)
-        return impl_->plain_relighter().update_region(rectangle, radiance);
+    if (!impl_->editor) {
+        const UpdateReport report = impl_->plain_relighter().update_region(rectangle, radiance);
+        impl_->file = {};
+        return report;
+    }
     if (!impl_->has_environment())
         throw std::invalid_argument("expected an environment before its first update");
     cubemap::CubeMap base = *impl_->editor->base();
@@ -204,11 +234,16 @@ Verification LitScene::verify(const VerifyOptions& options) const {
     Verification result;
     result.receivers =
         relight::random_receivers(impl_->scene.transfer, options.num_samples, options.seed);
-    const std::vector<glm::dvec3> exact = relight::exact_radiance(
-        impl_->scene.receivers, result.receivers, impl_->rays, relighter.environment(),
-        {.bias = impl_->scene.settings.bias,
-         .stop = options.stop,
-         .on_progress = options.on_progress});
+    const relight::ExactOptions exact_options{.bias = impl_->scene.settings.bias,
+                                              .stop = options.stop,
+                                              .on_progress = options.on_progress};
+    const auto exact_under = [&](const auto& light) {
+        return relight::exact_radiance(impl_->scene.receivers, result.receivers, impl_->rays, light,
+                                       exact_options);
+    };
+    result.of_file = impl_->file.image != nullptr;
+    const std::vector<glm::dvec3> exact =
+        result.of_file ? exact_under(impl_->file) : exact_under(relighter.environment());
     result.error = relight::compare(result.receivers, exact, relighter.radiance());
     return result;
 }

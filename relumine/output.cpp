@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -53,6 +54,21 @@ std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> 
     return result;
 }
 
+namespace {
+
+/// Radiance is finite, but its product with albedo and exposure need not be.
+void require_finite(const std::filesystem::path& path, std::span<const glm::vec3> values,
+                    double exposure_ev = 0.0) {
+    const double scale = std::exp2(exposure_ev);
+    for (const glm::vec3& value : values)
+        if (!(scale * std::max({value.r, value.g, value.b}) <= std::numeric_limits<float>::max()))
+            throw std::runtime_error(
+                fmt::format("{}: expected radiance times albedo and exposure within {}, got more",
+                            path.string(), std::numeric_limits<float>::max()));
+}
+
+} // namespace
+
 Painter::Painter(const LitScene& lit, const OutputOptions& options)
     : scene_(lit.scene()), rays_(lit.rays()), options_(options) {
     if (std::holds_alternative<prt::VertexLayout>(scene_.layout) && !scene_.transfer.glossy)
@@ -98,12 +114,19 @@ void Painter::save(const std::filesystem::path& path, std::span<const glm::vec3>
             path.string(),
             std::holds_alternative<prt::VertexLayout>(scene_.layout) ? ", .ply, .glb" : "",
             prt::description(scene_.layout), extension));
-    if (is_picture(extension))
-        relight::save_picture(path, draw(radiance, environment), options_.exposure_ev);
-    else if (extension == ".npy")
-        relight::save_npy(path, values(radiance));
+    if (is_picture(extension)) {
+        const Picture picture = draw(radiance, environment);
+        if (extension == ".exr")
+            require_finite(path, picture.pixels, options_.exposure_ev);
+        relight::save_picture(path, picture, options_.exposure_ev);
+        return;
+    }
+    const std::vector<glm::vec3> numbers = values(radiance);
+    require_finite(path, numbers);
+    if (extension == ".npy")
+        relight::save_npy(path, numbers);
     else
-        mesh::save(path, scene_.mesh, values(radiance));
+        mesh::save(path, scene_.mesh, numbers);
 }
 
 bool is_output_of(const std::filesystem::path& path, const Scene& scene) {

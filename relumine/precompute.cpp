@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -78,18 +79,64 @@ private:
                               .num_triangles = report_.num_triangles,
                               .has_beams = options_.engine == Engine::Beams};
         limit_.check_scene(sizes);
-        const prt::RayScene rays(scene_.mesh);
+        const prt::RayScene rays = ray_scene();
         place_receivers(rays);
+        require_few_clusters();
         sizes.num_receivers = report_.num_receivers = scene_.receivers.size();
         set_surfaces();
         poll();
         const bool has_highlights = prt::has_highlights(scene_.receivers);
         open_checkpoint(has_highlights);
         keep_settings();
-        cluster(rays, sizes);
+        try {
+            cluster(rays, sizes);
+        } catch (const std::invalid_argument& error) {
+            throw std::invalid_argument(prefix_ + error.what());
+        }
         if (has_highlights)
             add_highlights(rays, sizes);
         prt::set_surfaces(scene_.transfer, scene_.receivers);
+    }
+
+    [[nodiscard]] prt::RayScene ray_scene() const {
+        try {
+            return prt::RayScene(scene_.mesh);
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(prefix_ + error.what());
+        }
+    }
+
+    /// Refuses what would take hours. A limit of memory has an estimate of its own.
+    void require_few_clusters() const {
+        // An RMS below this allows no cluster that a few receivers see differently: cells stop at
+        // single texels. The work that is let through takes minutes.
+        constexpr double FinestTolerance = 1e-4; // 1/sr
+        constexpr double MostPairs = 0x1p32;
+        if (options_.max_memory)
+            return;
+        const auto num_receivers = static_cast<double>(scene_.receivers.size());
+        const double tolerance = clustering_.epsilon
+                                     ? double{*clustering_.epsilon} * std::sqrt(num_receivers)
+                                     : double{clustering_.tolerance};
+        const double all = 6.0 * clustering_.face_resolution * clustering_.face_resolution;
+        const double least = std::min(all, 6.0 * std::exp2(2.0 * clustering_.min_level));
+        const bool is_fine = tolerance < FinestTolerance;
+        const double clusters = is_fine ? all : least;
+        const double pairs = clusters * num_receivers;
+        if (pairs <= MostPairs)
+            return;
+        // A block of 16 receivers that see a cluster differently takes ten bytes.
+        throw TooMuchWork(
+            is_fine && least * num_receivers <= MostPairs ? TooMuchWork::Cause::Tolerance
+                                                          : TooMuchWork::Cause::MinLevel,
+            fmt::format("expected {} for {} receivers and a face resolution of {}: up to {:.3g} "
+                        "clusters, {:.2g} rays and {:.2g} GB; fewer receivers, a lower face "
+                        "resolution or a limit of memory let it through",
+                        is_fine && least * num_receivers <= MostPairs
+                            ? fmt::format("{} or more", FinestTolerance)
+                            : "a smaller depth",
+                        scene_.receivers.size(), clustering_.face_resolution, clusters, 4.0 * pairs,
+                        pairs * 10.0 / prt::BlockSize * 1e-9));
     }
 
     void place_receivers(const prt::RayScene& rays) {

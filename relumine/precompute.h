@@ -152,6 +152,16 @@ struct PrecomputeReport {
     std::filesystem::path checkpoint = {};
 };
 
+/// Thrown when a tolerance or a depth asks for so many clusters that the work would take hours. The
+/// message says what it would take.
+struct TooMuchWork : std::invalid_argument {
+    /// What asks for them.
+    enum class Cause { Tolerance, MinLevel };
+    TooMuchWork(Cause why, const std::string& message)
+        : std::invalid_argument(message), cause(why) {}
+    Cause cause;
+};
+
 /// Thrown when the work would take more memory than max_memory, or takes more. The message is
 /// "SOURCE: expected X, got Y".
 struct MemoryLimitExceeded : std::runtime_error {
@@ -175,7 +185,8 @@ struct MemoryLimitExceeded : std::runtime_error {
 /// scene where an output is given.
 ///
 /// Report:  where given, filled as far as the work got, also when an exception ends it.
-/// Throws:  std::invalid_argument for options out of range; std::runtime_error "SOURCE: ..." for a
+/// Throws:  std::invalid_argument for options out of range;
+///          TooMuchWork unless max_memory is given; std::runtime_error "SOURCE: ..." for a
 ///          view that sees nothing, a mesh without uvs for texels, a checkpoint of other work, a
 ///          file that cannot be written; MemoryLimitExceeded; Cancelled.
 /// Cost:    O(receivers times directions) rays: docs/measurements.md has examples.

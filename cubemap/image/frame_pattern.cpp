@@ -95,7 +95,7 @@ std::optional<std::int64_t> FramePattern::number(std::string_view path) const {
 FrameRange FrameRange::parse(const std::string& text) {
     const auto fail = [&] {
         throw std::runtime_error(
-            fmt::format("--frames: expected FIRST-LAST or FIRST-LASTxSTEP, got '{}'", text));
+            fmt::format("expected FIRST-LAST or FIRST-LASTxSTEP, got '{}'", text));
     };
     const std::size_t dash = text.find('-');
     const std::size_t cross = text.find('x');

@@ -5,12 +5,15 @@
 #include <span>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "cubemap/layers/layer_fields.h"
+#include "cubemap/layers/layer_list.h"
 #include "files/json_value.h"
+#include "files/nearest_name.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -21,11 +24,12 @@ constexpr double Version = 1.0;
 
 class LayerFileReader {
 public:
-    explicit LayerFileReader(const std::filesystem::path& path)
-        : path_(path), json_(path.string()) {}
+    /// Pictures are looked for in the folder.
+    LayerFileReader(const files::JsonReader& json, std::filesystem::path folder)
+        : folder_(std::move(folder)), json_(json) {}
 
-    LightLayers read() const {
-        const files::JsonValue root = json_.parse(files::read(path_));
+    LightLayers read(const std::filesystem::path& path) const {
+        const files::JsonValue root = json_.parse(files::read(path));
         const auto& members = json_.object(root, "a layer file");
         json_.known(members,
                     std::array<std::string_view, 5>{"version", "base", "rotate_degrees", "layers",
@@ -39,13 +43,18 @@ public:
             result.base = json_.string(*base, "\"base\"");
         if (const files::JsonValue* turn = files::JsonReader::find(members, "rotate_degrees"))
             result.rotate_degrees = json_.number(*turn, "\"rotate_degrees\"");
-        for (const files::JsonValue& value :
-             json_.array(json_.required(root, members, "layers"), "\"layers\""))
-            result.layers.push_back(layer(value, result.layers));
+        result.layers = layers(json_.required(root, members, "layers"));
         if (const files::JsonValue* frames = files::JsonReader::find(members, "frames")) {
             for (const files::JsonValue& value : json_.array(*frames, "\"frames\""))
                 result.frames.push_back(frame(value, result));
         }
+        return result;
+    }
+
+    std::vector<LightLayer> layers(const files::JsonValue& list) const {
+        std::vector<LightLayer> result;
+        for (const files::JsonValue& value : json_.array(list, "\"layers\""))
+            result.push_back(layer(value, result));
         return result;
     }
 
@@ -88,7 +97,7 @@ private:
             names.push_back(name(candidate));
         }
         json_.refuse(value.line, fmt::format("{} to be one of {}", what, fmt::join(names, ", ")),
-                     fmt::format("\"{}\"", text));
+                     fmt::format("\"{}\"{}", text, files::did_you_mean(text, names)));
     }
 
     ImagePatch image_patch(const files::JsonValue& owner,
@@ -104,7 +113,7 @@ private:
             patch.blend = text == "add" ? ImagePatch::Blend::Add : ImagePatch::Blend::Replace;
         }
         try {
-            patch.picture = load_image_pyramid(path_.parent_path() / patch.path);
+            patch.picture = load_image_pyramid(folder_ / patch.path);
         } catch (const std::runtime_error& error) {
             json_.refuse(path.line, "a picture", error.what());
         }
@@ -165,8 +174,13 @@ private:
             const auto found = std::find_if(
                 before.layers.begin(), before.layers.end(),
                 [&, &layer_name = name](const LightLayer& l) { return l.name == layer_name; });
-            if (found == before.layers.end())
-                json_.refuse(changes.line, "the name of a layer", fmt::format("\"{}\"", name));
+            if (found == before.layers.end()) {
+                std::vector<std::string> names;
+                for (const LightLayer& each : before.layers)
+                    names.push_back(each.name);
+                json_.refuse(changes.line, "the name of a layer",
+                             fmt::format("\"{}\"{}", name, files::did_you_mean(name, names)));
+            }
             keyed_layer(*found, changes, before, result);
         }
         return result;
@@ -211,14 +225,20 @@ private:
         }
     }
 
-    std::filesystem::path path_;
-    files::JsonReader json_;
+    std::filesystem::path folder_;
+    const files::JsonReader& json_;
 };
 
 } // namespace
 
 LightLayers load_layers(const std::filesystem::path& path) {
-    return LayerFileReader(path).read();
+    const files::JsonReader json(path.string());
+    return LayerFileReader(json, path.parent_path()).read(path);
+}
+
+std::vector<LightLayer> read_layers(const files::JsonReader& json, const files::JsonValue& list,
+                                    const std::filesystem::path& folder) {
+    return LayerFileReader(json, folder).layers(list);
 }
 
 } // namespace relumine::cubemap

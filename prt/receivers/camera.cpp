@@ -7,10 +7,18 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "prt/visibility/ray_scene.h"
+
 namespace relumine::prt {
 
 CameraAxes axes_of(const Camera& camera, float aspect) {
     constexpr float RadiansPerDegree = std::numbers::pi_v<float> / 180.0f;
+    for (const glm::vec3& point : {camera.eye, camera.target})
+        for (int axis = 0; axis < 3; ++axis)
+            if (!(std::abs(point[axis]) < LargestCoordinate))
+                throw std::invalid_argument(
+                    fmt::format("expected a camera within {} of the origin, got {}",
+                                LargestCoordinate, point[axis]));
     const glm::vec3 to_target = camera.target - camera.eye;
     if (!(glm::length(to_target) > 0.0f) || !std::isfinite(glm::length(to_target)))
         throw std::invalid_argument("expected a camera target apart from its eye");

@@ -22,9 +22,6 @@ namespace {
 
 constexpr float Infinity = std::numeric_limits<float>::infinity();
 
-/// Embree silently drops triangles with coordinates beyond this limit (its FLT_LARGE).
-constexpr float LargestCoordinate = 1.844e18f;
-
 struct DeviceDeleter {
     void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };

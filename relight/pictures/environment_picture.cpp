@@ -137,13 +137,6 @@ void tone_map(std::vector<glm::vec3>& pixels) {
 
 } // namespace
 
-void check_environment_picture(const std::string& path) {
-    const std::string extension = std::filesystem::path(path).extension().string();
-    if (extension != ".png")
-        throw std::runtime_error(fmt::format(
-            "{}: expected a picture's name that ends in .png, got '{}'", path, extension));
-}
-
 void save_environment_picture(const std::string& path, const cubemap::EnvironmentImage& image,
                               const SunMark& sun) {
     const cubemap::CubeMap map = cubemap::resample(

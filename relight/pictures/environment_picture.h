@@ -16,9 +16,6 @@ struct SunMark {
     std::string label = {};
 };
 
-/// Throws:  std::runtime_error unless the name ends in .png.
-void check_environment_picture(const std::string& path);
-
 /// Writes a lat-long PNG of 1024 x 512 along the world axes: +Z in the middle, +X to its left, +Y
 /// at the top. A cross marks each axis (-Z at both ends), a dotted line the horizon. Writes the
 /// file whole or not at all. Radiance must be finite and not negative.

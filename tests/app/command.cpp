@@ -50,7 +50,7 @@ void become_program(const char* folder, const char* out, const char* err, const 
                     char* const* arguments) {
     const int out_fd = ::open(out, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
     const int err_fd = ::open(err, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
-    const int in_fd = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+    const int in_fd = ::open(options.stdin_path.c_str(), O_RDONLY | O_CLOEXEC);
     ::dup2(in_fd, STDIN_FILENO);
     ::dup2(out_fd, STDOUT_FILENO);
     ::dup2(err_fd, STDERR_FILENO);

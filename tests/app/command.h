@@ -44,6 +44,8 @@ struct RunOptions {
     std::optional<std::uint64_t> max_file_bytes = {};
     /// Where stdout goes instead of Result::out
     std::string stdout_path = {};
+    /// Where stdin comes from
+    std::string stdin_path = "/dev/null";
     /// From the start, as `nohup` does it
     int ignored_signal = 0;
 };

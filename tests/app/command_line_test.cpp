@@ -1,4 +1,6 @@
 // What all subcommands have in common: help, exit codes, --json, -q.
+#include <cmath>
+
 #include "tests/app/command.h"
 #include "tests/app/small_files.h"
 
@@ -150,6 +152,150 @@ TEST_F(CommandLineTest, OddFileNamesWork) {
             << name;
         fail({"info", name + " missing.prt"}, {name + " missing.prt"});
     }
+}
+
+TEST_F(CommandLineTest, ABadNameIsKeptByEveryCommand) {
+    // Bytes that are no UTF-8. In JSON they are replaced, since JSON cannot hold them.
+    precompute();
+    const std::string name = "bad\xff\xfe";
+    fs::copy_file(folder() / "scene.prt", folder() / (name + ".prt"));
+    write(name + ".hdr", lamp_hdr(64));
+    write(name + ".obj", "o " + name + "\n" + octahedron_obj());
+    write(name + ".json", R"({"version": 1, "layers": []})");
+    const std::string scene = name + ".prt", environment = name + ".hdr";
+    const std::vector<std::vector<std::string>> all = {
+        {"relight", scene, environment, "-o", name + ".png", "--size", "8x8"},
+        {"relight", scene, environment, "-o", name + ".glb"},
+        {"edit", scene, environment, name + ".json", "-o", name + ".exr", "--size", "8x8"},
+        {"animate", scene, name + ".h*", "-o", name + ".%d.npy"},
+        {"verify", scene, environment},
+        {"lights", environment, "-n", "4", "-o", name + ".l.json"},
+        {"lights", environment, "-n", "4", "-o", name + ".gltf"},
+        {"lights", environment, "-n", "4", "-o", name + ".usda"},
+        {"lights", environment, "-n", "4", "-o", name + ".py"},
+        {"relight", scene, "--lights", name + ".l.json", "-o", name + ".npy"},
+        {"env", "convert", environment, "-o", name + ".c.exr"},
+        {"env", "convert", environment, "-o", name + ".s.exr", "--split-sun"},
+        {"info", scene},
+        {"info", environment},
+        {"info", name + ".obj"},
+        {"generate", "constant", "-o", name + ".dir", "--face-resolution", "8"},
+        {"precompute", name + ".obj", "-o", name + ".2.prt", "--face-resolution", "16"}};
+    for (const std::vector<std::string>& arguments : all)
+        EXPECT_FALSE(succeed(with(arguments, {"--json"})).json().empty()) << arguments[0];
+    for (const char* extension : {".png", ".glb", ".exr", ".npy", ".l.json", ".s.sun.json"})
+        EXPECT_TRUE(fs::exists(folder() / (name + extension))) << extension;
+}
+
+TEST_F(CommandLineTest, NamesMayBeAsLongAsTheSystemAllows) {
+    precompute();
+    const std::string name(245, 'n');
+    for (const char* extension : {".npy", ".exr", ".png", ".ply"})
+        succeed({"relight", "scene.prt", "env.hdr", "-o", name + extension, "--size", "8x8"});
+    succeed({"precompute", "mesh.obj", "-o", name + ".prt", "--face-resolution", "16"});
+    succeed({"info", name + ".prt", "--check"});
+    fail({"relight", "scene.prt", "env.hdr", "-o", std::string(252, 'n') + ".npy"},
+         {"cannot write"});
+}
+
+TEST_F(CommandLineTest, AMisspeltNameIsToldTheNearest) {
+    misuse({"relihgt", "a", "b"}, "expected a command, got 'relihgt'; did you mean relight? (see "
+                                  "relumine --help)");
+    misuse({"env", "conver"}, "did you mean convert? (see relumine env --help)");
+    // Before what else may be wrong: -o is missing, too.
+    misuse({"relight", "a.prt", "b.exr", "--exposrue", "1"},
+           "--exposrue: no option of `relumine relight`; did you mean --exposure? (see relumine "
+           "relight --help)");
+    misuse({"relight", "a.prt", "b.exr", "--exposrue=1", "-o", "x.png"}, "relumine: --exposrue: ");
+    misuse({"precompute", "a.obj", "-o", "b.prt", "--engine", "embre"},
+           "--engine: expected beam or embree, got 'embre'; did you mean embree?");
+    misuse({"lights", "env.hdr", "--zzz"}, "--zzz: no option of `relumine lights` (see");
+    misuse({"man", "edti"}, "did you mean edit?");
+    misuse({"generate", "knto", "-o", "x"}, "did you mean knot?");
+    precompute();
+    write("layers.json", R"({"version": 1, "layers": [{"name": "key light", "type": "disc",
+        "effect": "gain", "direction": [0, 1, 0], "radius_degrees": 30},
+        {"name": "fill", "type": "disc", "effect": "gain", "direction": [0, 1, 0],
+        "radius_degrees": 30}]})");
+    misuse({"edit", "scene.prt", "env.hdr", "layers.json", "-o", "x.npy", "--lit-by", "key ligt"},
+           "--lit-by: expected a layer (key light, fill) or X,Y,Z,RADIUS with a RADIUS in degrees, "
+           "got 'key ligt'; did you mean key light?");
+    write("wrong.json", R"({"version": 1, "layers": [{"name": "key", "type": "disc",
+        "effect": "gain", "direction": [0, 1, 0], "radius_degree": 30}]})");
+    fail({"edit", "scene.prt", "env.hdr", "wrong.json", "-o", "x.npy"},
+         {"wrong.json:2: expected \"radius_degrees\", got \"radius_degree\""});
+    write("wrong.json", R"({"version": 1, "layers": [{"name": "key", "type": "disc",
+        "effect": "gain", "direction": [0, 1, 0], "radius_degrees": 30, "fctor": 2}]})");
+    fail({"edit", "scene.prt", "env.hdr", "wrong.json", "-o", "x.npy"},
+         {"got \"fctor\"; did you mean factor?"});
+}
+
+TEST_F(CommandLineTest, APatternWithoutQuotesIsToldSo) {
+    precompute();
+    for (const char* name : {"f.1.hdr", "f.2.hdr", "f.3.hdr"})
+        write(name, white_hdr());
+    misuse({"animate", "scene.prt", "f.1.hdr", "f.2.hdr", "f.3.hdr", "-o", "x.%d.npy"},
+           "FRAMES: expected one name, got 3 files; put a pattern in quotes: 'f.*.hdr' (see "
+           "relumine animate --help)");
+    misuse({"relight", "scene.prt", "f.1.hdr", "f.2.hdr", "-o", "x.npy"},
+           "ENV: expected one name, got 2 files; put a pattern in quotes: 'f.*.hdr'");
+    misuse({"relight", "scene.prt", "f.1.hdr", "stray", "-o", "x.npy"},
+           "ENV: expected no argument more, got 'stray'");
+}
+
+TEST_F(CommandLineTest, HelpIsACommandToo) {
+    EXPECT_EQ(succeed({"help"}).out, succeed({"--help"}).out);
+    EXPECT_EQ(succeed({"help", "relight"}).out, succeed({"relight", "--help"}).out);
+    EXPECT_EQ(succeed({"help", "env", "convert"}).out, succeed({"env", "convert", "--help"}).out);
+    misuse({"help", "relihgt"}, "did you mean relight?");
+}
+
+TEST_F(CommandLineTest, ANameThatIsNotThereSaysSoFirst) {
+    for (const std::vector<std::string>& arguments :
+         {std::vector<std::string>{"info", "none.xyz"},
+          {"info", "none"},
+          {"info", "none", "--check"},
+          {"info", "none", "--picture", "a.png"},
+          {"precompute", "none", "-o", "a.prt"},
+          {"relight", "none", "env.hdr", "-o", "a.png"},
+          {"lights", "none", "-o", "a.json"},
+          {"env", "convert", "none", "-o", "a.exr"},
+          {"animate", "none", "env.hdr", "-o", "a%d.png"}})
+        fail(arguments, {"relumine: none", ": cannot read: No such file or directory"});
+}
+
+TEST_F(CommandLineTest, NumbersThatOverflowAreRefused) {
+    precompute();
+    for (const char* output : {"new.npy", "new.exr"})
+        misuse(
+            {"relight", "scene.prt", "env.hdr", "-o", output, "--size", "8x8", "--albedo", "3e38"},
+            "--albedo: expected numbers of 0 to 1000000, got '3e38'");
+    write("bright.hdr", hdr_file(64, 32, [](auto, auto) {
+              return Rgb{0x1p90f, 0x1p90f, 0x1p90f};
+          }));
+    for (const char* output : {"new.npy", "new.exr", "new.ply"})
+        fail({"relight", "scene.prt", "bright.hdr", "-o", output, "--size", "8x8", "--exposure",
+              "100"},
+             {output, ": expected radiance times albedo and exposure within"});
+    for (const char* option : {"--eye", "--target"})
+        misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", option, "1e19,0,0"}, option);
+    misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--size", "4294967297x1"},
+           "--size: expected WIDTHxHEIGHT, got '4294967297x1'");
+    misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--size", "0x1"}, "--size");
+    misuse({"relight", "scene.prt", "env.hdr", "-o", "new.png", "--fov", "1e30"}, "--fov");
+}
+
+TEST_F(CommandLineTest, JsonCarriesWarningsAndReplacedPixels) {
+    precompute();
+    write("nan.exr", exr_file(64, 32, [](std::uint32_t x, std::uint32_t y) {
+              return Rgb{x + y == 0 ? std::nanf("") : 1.0f, 1.0f, 1.0f};
+          }));
+    const Result result =
+        succeed({"relight", "scene.prt", "nan.exr", "--fix-env", "-o", "new.npy", "--json"});
+    EXPECT_EQ(result.json()["replaced_pixels"], 1);
+    for (const std::vector<std::string>& arguments : all_)
+        EXPECT_TRUE(succeed(with(arguments, {"--json"})).json()["warnings"].is_array())
+            << arguments[0];
 }
 
 TEST_F(CommandLineTest, NamesThatLookLikeOptionsWorkAfterTwoDashes) {

@@ -118,7 +118,7 @@ TEST_F(CommandParser, RefusesEmptyValues) {
 
 TEST_F(CommandParser, RefusesWrongLines) {
     EXPECT_THAT(refused({}), HasSubstr("required"));
-    EXPECT_THAT(refused({"walk"}), HasSubstr("expected a subcommand, got 'walk'"));
+    EXPECT_THAT(refused({"walk"}), HasSubstr("expected a command, got 'walk'"));
     EXPECT_THAT(refused({"run"}), HasSubstr("IN"));
     EXPECT_THAT(refused({"run", "a", "b"}), HasSubstr("b"));
     EXPECT_THAT(refused({"run", "a", "--nonsense"}), HasSubstr("--nonsense"));

@@ -131,7 +131,9 @@ TEST_F(EnvConvert, SaysWhatIsWrong) {
          {"square.hdr", "3:4"});
     fail({"env", "convert", "env.hdr", "-o", "out.exr", "--from", "opengl"},
          {"env.hdr", "cube", "opengl"});
-    fail({"env", "convert", "env.hdr", "-o", "out.png"}, {"out.png", ".exr"});
+    misuse({"env", "convert", "env.hdr", "-o", "out.png"},
+           "--output: expected a name that ends in .exr or .hdr, got 'out.png'");
+    misuse({"env", "convert", "env.hdr", "-o", "out.exr", "--size", "4294967297x1"}, "--size");
     fail({"env", "convert", "env.hdr", "-o", "no/out.exr"}, {"no/out.exr"});
     fail({"env", "convert", "missing.hdr", "-o", "out.exr"}, {"missing.hdr"});
     fail({"env", "convert", "env.hdr", "-o", "env.hdr"}, {"env.hdr", "input"});

@@ -56,11 +56,12 @@ TEST_F(Generate, SizesOfTheEnvironmentFiles) {
 
 TEST_F(Generate, BadSizesAreRefusedAndMakeNoFolder) {
     for (const char* vertices : {"0", "999", "5000001", "18446744073709551615"})
-        fail({"generate", "blob", "-o", "new", "--vertices", vertices}, {"vertices"});
+        misuse({"generate", "blob", "-o", "new", "--vertices", vertices}, "--vertices");
     misuse({"generate", "blob", "-o", "new", "--vertices", "-5"}, "--vertices");
     misuse({"generate", "blob", "-o", "new", "--vertices", "many"}, "--vertices");
     for (const char* resolution : {"0", "16385"})
-        fail({"generate", "sun_sky", "-o", "new", "--face-resolution", resolution}, {"resolution"});
+        misuse({"generate", "sun_sky", "-o", "new", "--face-resolution", resolution},
+               "--face-resolution");
     misuse({"generate", "sun_sky", "-o", "new", "--face-resolution", "-1"}, "--face-resolution");
 }
 

@@ -82,8 +82,8 @@ TEST_F(Glossy, ColoursMayChangeAfterwards) {
     succeed({"relight", "two.prt", "white.hdr", "-o", "two.npy"});
     EXPECT_EQ(npy_values(read("one.npy")), npy_values(read("two.npy")));
     make("plain.prt", {});
-    fail({"relight", "plain.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "0.5"},
-         {"plain.prt", "materials"});
+    misuse({"relight", "plain.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "0.5"},
+           "--surface-albedo: expected a scene with materials");
     misuse({"relight", "one.prt", "white.hdr", "-o", "n.npy", "--surface-albedo", "-1"},
            "--surface-albedo");
 }

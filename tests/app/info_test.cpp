@@ -60,7 +60,7 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
     EXPECT_NE(succeed({"info", "scene.prt", "--check"}).out.find("checked: whole and sound"),
               std::string::npos);
     EXPECT_EQ(succeed({"info", "scene.prt", "--check", "--json"}).json()["checked"], true);
-    fail({"info", "mesh.obj", "--check"}, {"mesh.obj: expected a scene (.prt) to --check"});
+    misuse({"info", "mesh.obj", "--check"}, "--check: expected a scene (.prt), got 'mesh.obj'");
     const std::string whole = read("scene.prt");
     // All over the file; tests of prt flip every bit.
     for (std::size_t i = 0; i < 60; ++i) {
@@ -72,10 +72,10 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
     }
     // The next version, by its number.
     std::string newer = whole;
-    newer[12] = 3;
+    newer[12] = 4;
     write("scene.prt", newer);
     fail({"info", "scene.prt", "--check"},
-         {"scene.prt: expected .prt version 2, got version 3, made by a newer relumine"});
+         {"scene.prt: expected .prt version 3, got version 4, made by a newer relumine"});
 }
 
 TEST_F(Info, Scene) {

@@ -95,11 +95,12 @@ TEST_F(Lights, RepeatsItself) {
 TEST_F(Lights, RefusesWhatItCannotDo) {
     fail({"lights", "white.hdr", "-n", "2049", "-o", "l.json"},
          {"white.hdr: expected 1 to 2048 lights for 64 x 32 pixels, got 2049"});
-    fail({"lights", "white.hdr", "-o", "l.txt"}, {"l.txt: expected .json, .csv", "got '.txt'"});
+    misuse({"lights", "white.hdr", "-o", "l.txt"},
+           "--output: expected a name that ends in .json, .csv");
     fail({"lights", "white.hdr", "-o", "white.hdr", "--format", "csv"},
          {"expected an output other than the input"});
-    fail({"lights", "white.hdr", "--picture", "l.jpg"},
-         {"l.jpg: expected .png or .exr, got '.jpg'"});
+    misuse({"lights", "white.hdr", "--picture", "l.jpg"},
+           "--picture: expected a name that ends in .png or .exr, got 'l.jpg'");
     fail({"lights", "white.hdr", "-o", "l.png", "--format", "csv", "--picture", "./l.png"},
          {"expected a picture other than the light list"});
     fail({"lights", "white.hdr", "-o", "missing/l.json"}, {"missing/l.json"});
@@ -161,8 +162,8 @@ TEST_F(Lights, ComparesAllMethodsOnAScene) {
                 HasSubstr("| transfer | 2 |"));
     misuse({"lights", "lamp.hdr", "-n", "1,2", "-o", "a.json"}, "expected one number of lights");
     misuse({"lights", "lamp.hdr", "--compare", "scene.prt", "-o", "a.json"}, "expected neither -o");
-    fail({"lights", "lamp.hdr", "--compare", "scene.prt", "--plot", "a.png"},
-         {"a.png: expected .svg"});
+    misuse({"lights", "lamp.hdr", "--compare", "scene.prt", "--plot", "a.png"},
+           "--plot: expected a name that ends in .svg, got 'a.png'");
 }
 
 // The lamp's one light gives what the lamp gives, traced, through the clusters, and on the mesh

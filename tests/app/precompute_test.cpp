@@ -81,16 +81,15 @@ TEST_F(Precompute, SmoothNormalsReplaceTheFiles) {
 TEST_F(Precompute, BadOptionsAreRefused) {
     for (const char* option : {"--tolerance", "--epsilon", "--bias"}) {
         for (const char* value : {"nan", "-1", "inf", "-inf"})
-            fail(command({option, value}), {"expected", std::string(option).substr(2)});
+            misuse(command({option, value}), std::string(option) + ": expected ");
         for (const char* value : {"much", "1x", "", "1,2"})
             misuse(command({option, value}), option);
     }
-    fail(command({"--min-depth", "15"}), {"minimum depth", "15"});
+    misuse(command({"--min-depth", "15"}), "--min-depth: expected 0 to 14, got '15'");
     misuse(command({"--min-depth", "-1"}), "--min-depth");
     misuse(command({"--min-depth", "1.5"}), "--min-depth");
-    fail(command({"--face-resolution", "0"}), {"resolution"});
-    fail(command({"--face-resolution", "16385"}), {"resolution"});
-    fail(command({"--face-resolution", "4294967295"}), {"resolution"});
+    for (const char* resolution : {"0", "16385", "4294967295"})
+        misuse(command({"--face-resolution", resolution}), "--face-resolution: expected 1 to");
     misuse(command({"--face-resolution", "4294967296"}));
     misuse(command({"--face-resolution", "-16"}));
     misuse(command({"--face-resolution", "sixteen"}));
@@ -98,20 +97,54 @@ TEST_F(Precompute, BadOptionsAreRefused) {
     misuse(command({"--tolerance", "1", "--tolerance", "2"}), "--tolerance");
 }
 
+TEST_F(Precompute, NumbersBeyondTheRaysRangeAreRefused) {
+    misuse(command({"--bias", "1e19"}), "--bias: expected 0 to 1e+18, got '1e19'");
+    misuse(command({"--view", "1e19,0,0,0,0,0"}), "--view: expected");
+    misuse(command({"--view", "0,0,3,0,1e19,0"}), "--view: expected");
+    // A mesh so large that the lift leads out of the range.
+    write("mesh.obj", "v 1.8e18 0 0\nv 1.8e18 1e17 0\nv 1.8e18 0 1e17\nf 1 2 3\n");
+    fail(command({"--bias", "1e17"}), {"expected receivers and bias within 1.844e+18"});
+    write("mesh.obj", "v 1e19 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\n");
+    fail(command({}), {"mesh.obj: expected coordinates within 1.844e+18"});
+}
+
+TEST_F(Precompute, WorkThatWouldTakeHoursIsRefused) {
+    succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
+    const std::vector<std::string> knot = {"precompute", "knot.ply", "-o", "new.prt"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), knot.begin(), knot.end());
+        return more;
+    };
+    const std::string error = misuse(with({"--tolerance", "0"}), "--tolerance: expected ").err;
+    EXPECT_NE(error.find("6.29e+06 clusters"), std::string::npos) << error;
+    EXPECT_NE(error.find(" rays and "), std::string::npos) << error;
+    misuse(with({"--epsilon", "0"}), "--epsilon: expected ");
+    misuse(with({"--min-depth", "10"}), "--min-depth: expected ");
+    misuse(with({"--tolerance", "0.1", "--epsilon", "0.1"}), "--tolerance excludes --epsilon");
+}
+
+TEST_F(Precompute, OptionsThatAreOftenMistaken) {
+    misuse({"precompute", "--floor", "mesh.obj", "-o", "new.prt"},
+           "--floor: expected a number of vertices, got 'mesh.obj'; the mesh goes first: relumine "
+           "precompute mesh.obj --floor");
+    misuse(command({"--max-memory", "50"}),
+           "--max-memory: expected a unit after the number, as in 50M or 50G, got '50'");
+}
+
 TEST_F(Precompute, BadFloorsAreRefused) {
     for (const char* n : {"0", "1", "100000", "4294967295"})
-        fail(command({"--floor", n}), {"floor: expected"});
+        misuse(command({"--floor", n}), "--floor: expected 2 to 65535 vertices");
     misuse(command({"--floor", "-3"}), "--floor");
     misuse(command({"--floor", "tiles"}), "--floor");
     for (const char* scale : {"0", "-1", "nan", "inf", "1e38"})
-        fail(command({"--floor", "3", "--floor-scale", scale}), {"expected"});
+        misuse(command({"--floor", "3", "--floor-scale", scale}), "--floor-scale: expected");
     misuse(command({"--floor-scale", "2"}), "--floor");
 }
 
 TEST_F(Precompute, TheOutputIsNeverTheInputNorAnythingButAScene) {
-    fail({"precompute", "mesh.obj", "-o", "mesh.obj"}, {"mesh.obj", ".prt"});
-    fail({"precompute", "mesh.obj", "-o", "new.ply"}, {"new.ply", ".prt"});
-    fail({"precompute", "mesh.obj", "-o", "new"}, {".prt"});
+    for (const char* name : {"mesh.obj", "new.ply", "new"})
+        misuse({"precompute", "mesh.obj", "-o", name},
+               "--output: expected a name that ends in .prt, got");
     fs::create_symlink("mesh.obj", folder() / "link.prt");
     fail({"precompute", "mesh.obj", "-o", "link.prt"}, {"link.prt"});
     fs::create_hard_link(folder() / "mesh.obj", folder() / "hard.prt");

@@ -131,6 +131,9 @@ TEST_F(Receivers, OverlappingChartsAreAWarning) {
     const Result as_json = succeed(with("--json"));
     EXPECT_NE(as_json.err.find(warning), std::string::npos) << as_json.described();
     EXPECT_EQ(as_json.json()["texels_overlapping"], 12);
+    ASSERT_EQ(as_json.json()["warnings"].size(), 1u);
+    EXPECT_EQ("warning: " + as_json.json()["warnings"][0].get<std::string>() + "\n", as_json.err);
+    EXPECT_EQ(succeed(with("--json")).json()["warnings"].size(), 1u) << "also with -q";
     EXPECT_EQ(succeed(with("-q")).err, "");
 }
 
@@ -139,19 +142,19 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
     make_texels();
     for (const char* scene : {"px.prt", "tx.prt"}) {
         for (const char* output : {"new.ply", "new.glb"}) {
-            fail({"relight", scene, "white.hdr", "-o", output},
-                 {output, "expected .png, .exr or .npy"});
-            fail({"edit", scene, "white.hdr", "-o", output, "--disc", "0,1,0"}, {output});
+            misuse({"relight", scene, "white.hdr", "-o", output},
+                   "--output: expected .png, .exr or .npy");
+            misuse({"edit", scene, "white.hdr", "-o", output, "--disc", "0,1,0"}, output);
         }
-        fail({"relight", scene, "white.hdr", "-o", "new.png", "--eye", "1,2,3"},
-             {"--eye", "no camera"});
-        fail({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"},
-             {"--size", "no camera"});
+        misuse({"relight", scene, "white.hdr", "-o", "new.png", "--eye", "1,2,3"},
+               "--eye: expected no camera");
+        misuse({"relight", scene, "white.hdr", "-o", "new.png", "--size", "8x8"},
+               "--size: expected no camera");
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
     }
-    fail({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"},
-         {"--transparent", "pixels"});
-    fail({"relight", "px.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, {"colours"});
+    misuse({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"},
+           "--transparent: expected a scene whose receivers are pixels");
+    misuse({"relight", "px.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, "--albedo");
 }
 
 TEST_F(Receivers, ReceiversThatCannotBe) {

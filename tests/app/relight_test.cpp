@@ -151,7 +151,8 @@ TEST_F(Relight, AlbedoOfTheMeshIsItsVertexColours) {
     EXPECT_EQ(values[0][1], 0.0f);
     EXPECT_NEAR(values[1][1], 0.5f, 2e-3f);
     EXPECT_EQ(values[2][0], 0.0f);
-    fail({"relight", "scene.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, {"colours"});
+    misuse({"relight", "scene.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"},
+           "--albedo: expected a mesh with vertex colours");
 }
 
 TEST_F(Relight, PictureHasTheSizeAskedFor) {
@@ -171,7 +172,7 @@ TEST_F(Relight, BadOptionsAreRefused) {
     for (const char* size : {"abc", "10", "10x", "x10", "10x10x10", "10X10", "1e2x5", "10x10 ", ""})
         refuse({"--size", size}, 2);
     for (const char* size : {"0x0", "0x5", "16385x1", "99999x99999"})
-        refuse({"--size", size}, 1);
+        refuse({"--size", size}, 2);
     for (const char* vector :
          {"1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "1,2,", ","}) {
         refuse({"--eye", vector}, 2);
@@ -179,14 +180,14 @@ TEST_F(Relight, BadOptionsAreRefused) {
     }
     refuse({"--eye", "1,1,1", "--target", "1,1,1"}, 1);
     for (const char* fov : {"0", "180", "-10", "nan", "inf"})
-        refuse({"--fov", fov}, 1);
+        refuse({"--fov", fov}, 2);
     for (const char* albedo : {"red", "1,2", "nan", "inf", "1,2,3,4", "Mesh"})
         refuse({"--albedo", albedo}, 2);
     refuse({"--layout", "fisheye"}, 2);
     refuse({"--face-resolution", "-1"}, 2);
     refuse({"--face-resolution", "3.5"}, 2);
     for (const char* resolution : {"16385", "4000000000"})
-        refuse({"--face-resolution", resolution}, 1);
+        refuse({"--face-resolution", resolution}, 2);
     refuse({"--rotate", "north"}, 2);
     refuse({"--exposure", "bright"}, 2);
 }
@@ -213,7 +214,8 @@ TEST_F(Relight, NumbersThatCannotBeMeantAreRefused) {
 TEST_F(Relight, UnknownKindsOfOutputAreRefused) {
     for (const char* name :
          {"new.bmp", "new", "new.prt", "new.npy.bak", ".", "..", ".npy", "sub/new.npy/"})
-        fail({"relight", "scene.prt", "white.hdr", "-o", name}, {"expected"});
+        misuse({"relight", "scene.prt", "white.hdr", "-o", name},
+               "--output: expected a name that ends in .png, .exr, .ply, .glb or .npy, got");
 }
 
 TEST_F(Relight, OutputsThatCannotBeWrittenAreFoundOutAndNothingIsLost) {

@@ -113,7 +113,7 @@ TEST_F(Resume, HighlightsAreTakenUpToo) {
 
 TEST_F(Resume, StoppedByASignalItSaysHowToGoOn) {
     succeed({"generate", "knot", "-o", ".", "--vertices", "20000", "-q"});
-    const std::vector<std::string> endless = run({"--tolerance", "0"});
+    const std::vector<std::string> endless = run({"--tolerance", "0.0005"});
     Process process(folder(), endless);
     const fs::path state = folder() / "scene.prt.checkpoint" / "clusters.state";
     while (!fs::exists(state) && process.is_running())
@@ -128,11 +128,11 @@ TEST_F(Resume, StoppedByASignalItSaysHowToGoOn) {
     // Other work than that is refused, and says why.
     fail(run({"--tolerance", "0.1", "--resume"}),
          {"scene.prt.checkpoint: expected a checkpoint of this run "
-          "(tolerance 0.1), got another's (tolerance 0)"});
-    fail(run({"--tolerance", "0", "--floor", "--resume"}),
+          "(tolerance 0.1), got another's (tolerance 0.0005)"});
+    fail(run({"--tolerance", "0.0005", "--floor", "--resume"}),
          {"scene.prt.checkpoint: expected a checkpoint of this run"});
     fs::resize_file(state, 100);
-    EXPECT_EQ(relumine(run({"--tolerance", "0", "--resume"})).err,
+    EXPECT_EQ(relumine(run({"--tolerance", "0.0005", "--resume"})).err,
               "relumine: scene.prt.checkpoint/clusters.state: expected a checkpoint, got damaged "
               "data; without "
               "--resume the work begins anew\n");

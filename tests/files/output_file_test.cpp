@@ -53,6 +53,45 @@ TEST_F(OutputFileTest, AppearsOnlyWithCommit) {
     EXPECT_EQ(num_files(), 1u);
 }
 
+TEST_F(OutputFileTest, ATargetKeepsItsPermissions) {
+    const fs::path target = folder_ / "out.txt";
+    const auto mode = [&] {
+        struct stat status {};
+        EXPECT_EQ(::stat(target.c_str(), &status), 0);
+        return status.st_mode & 07777;
+    };
+    const mode_t mask = ::umask(022);
+    save_text(target, "new");
+    EXPECT_EQ(mode(), 0644u);
+    for (const mode_t own : {0600u, 0640u, 0755u}) {
+        ::chmod(target.c_str(), own);
+        save_text(target, "newer");
+        EXPECT_EQ(mode(), own);
+    }
+    ::umask(mask);
+}
+
+TEST_F(OutputFileTest, NamesMayBeAsLongAsTheSystemAllows) {
+    for (const fs::path& target :
+         {folder_ / std::string(255, 'a'), folder_ / (std::string(251, 'b') + ".exr"),
+          folder_ / ("c." + std::string(253, 'c'))}) {
+        save_text(target, "new");
+        EXPECT_EQ(read(target), bytes_of("new"));
+    }
+    // Two names that differ only at their ends, at the same time.
+    const fs::path one = folder_ / (std::string(254, 'd') + "1");
+    const fs::path two = folder_ / (std::string(254, 'd') + "2");
+    OutputFile first(one);
+    OutputFile second(two);
+    first.write(bytes_of("1"));
+    second.write(bytes_of("2"));
+    first.commit();
+    second.commit();
+    EXPECT_EQ(read(one), bytes_of("1"));
+    EXPECT_EQ(read(two), bytes_of("2"));
+    EXPECT_THROW(OutputFile(folder_ / std::string(256, 'e')), std::runtime_error);
+}
+
 TEST_F(OutputFileTest, WithoutCommitTheOldFileStaysAndNothingElse) {
     const fs::path target = folder_ / "out.txt";
     std::ofstream(target) << "old";

@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/fuzz/command_edges.h"
 #include "tests/fuzz/fuzz.h"
 
 // As CMakeLists.txt lists them; each is compiled with an entry point of its own name.
@@ -17,7 +18,7 @@
     X(command_line)                                                                                \
     X(exr)                                                                                         \
     X(gltf)                                                                                        \
-    X(hdr) X(layers) X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(sections) X(stl) X(texture)
+    X(hdr) X(layers) X(lights) X(mtl) X(obj) X(off) X(ply) X(prt) X(requests) X(sections) X(stl) X(texture)
 
 #define RELUMINE_DECLARE(name)                                                                     \
     extern "C" int relumine_fuzz_##name(const std::uint8_t* data, std::size_t size);
@@ -70,6 +71,10 @@ TEST_P(Corpus, IsReadOrRefused) {
 
 INSTANTIATE_TEST_SUITE_P(Fuzz, Corpus, testing::ValuesIn(targets()),
                          [](const auto& each) { return each.param.name; });
+
+TEST(CommandLine, TakesOrRefusesNumbersAtTheEdges) {
+    EXPECT_GT(run_all_edges(), 1000u);
+}
 
 } // namespace
 } // namespace relumine::fuzz
