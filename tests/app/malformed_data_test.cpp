@@ -22,6 +22,13 @@ protected:
         std::sort(result.begin(), result.end());
         return result;
     }
+    static std::ptrdiff_t occurrences(const std::string& text, const std::string& part) {
+        std::ptrdiff_t count = 0;
+        for (std::size_t at = text.find(part); at != std::string::npos;
+             at = text.find(part, at + part.size()))
+            ++count;
+        return count;
+    }
     /// Done, or refused in one line that names the file; quickly and in little memory either way.
     bool is_read_or_refused(const std::vector<std::string>& arguments, const fs::path& file) const {
         const std::vector<std::string> before = files();
@@ -30,7 +37,10 @@ protected:
         EXPECT_LT(result.peak_bytes, 200'000'000u * SanitizerFactor) << file;
         EXPECT_EQ(result.signal, 0) << file;
         if (result.exit_code == 0) {
-            EXPECT_EQ(result.err, "") << file;
+            // What is left out is said, with the file's name.
+            EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'),
+                      occurrences(result.err, "warning: " + file.string() + ": "))
+                << result.described();
             return true;
         }
         EXPECT_EQ(result.exit_code, 1) << file << result.described();

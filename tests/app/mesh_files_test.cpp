@@ -105,6 +105,7 @@ TEST_F(MeshFiles, UnknownKindsAndPaths) {
     refused("mesh.prt.txt", octahedron_obj(), "expected a mesh file");
     fail({"info", "missing.obj"}, {"missing.obj", "cannot read"});
     fail({"precompute", "missing.obj", "-o", "new.prt"}, {"missing.obj", "cannot read"});
+    fail({"precompute", "missing", "-o", "new.prt"}, {"missing", "cannot read"});
     fs::create_directory(folder() / "folder.ply");
     fail({"info", "folder.ply"}, {"folder.ply", "regular file"});
     fail({"precompute", "folder.ply", "-o", "new.prt"}, {"folder.ply", "regular file"});
