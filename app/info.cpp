@@ -15,7 +15,6 @@
 #include "app/receiver_options.h"
 #include "files/output_file.h"
 #include "mesh/load.h"
-#include "prt/scene/scene_check.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::app {
@@ -49,9 +48,7 @@ void say_receivers(const prt::Scene& scene, const Session& session) {
 }
 
 void describe_scene(const Options& options, const Session& session) {
-    const prt::Scene scene = prt::load_scene(options.path); // which checks all that it needs
-    if (options.check)
-        prt::check_scene(scene, options.path);
+    const prt::Scene scene = prt::load_scene(options.path); // which checks all of it
     const prt::SceneSettings& settings = scene.settings;
     const prt::VisibleCounts& counts = scene.transfer.counts;
     const auto file_bytes = std::filesystem::file_size(options.path);
@@ -110,6 +107,12 @@ std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& ma
                            base.r, base.g, base.b, texture(material.base_color_texture),
                            material.metallic, material.roughness,
                            texture(material.metallic_roughness_texture));
+    if (material.model == mesh::MaterialModel::SpecularGlossiness)
+        return fmt::format("specular-glossiness, diffuse {} {} {}{}, F0 {} {} {}{}, roughness {}{}",
+                           base.r, base.g, base.b, texture(material.base_color_texture),
+                           material.specular.r, material.specular.g, material.specular.b,
+                           texture(material.specular_texture), material.roughness,
+                           texture(material.metallic_roughness_texture));
     const std::string diffuse =
         fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
     if (material.specular == glm::vec3(0.0f))
@@ -122,19 +125,26 @@ Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
     const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
         return slot ? Report(mesh.textures[slot->texture].name) : Report(nullptr);
     };
-    const bool is_phong = material.model == mesh::MaterialModel::Phong;
+    using Model = mesh::MaterialModel;
+    const Model model = material.model;
     Report result = {{"name", material.name},
-                     {"model", is_phong ? "phong" : "metallic-roughness"},
+                     {"model", model == Model::Phong               ? "phong"
+                               : model == Model::MetallicRoughness ? "metallic-roughness"
+                                                                   : "specular-glossiness"},
                      {"base_color", material.base_color},
                      {"base_color_texture", texture(material.base_color_texture)}};
-    if (is_phong) {
+    if (model != Model::MetallicRoughness)
         result.set("specular", material.specular);
+    if (model == Model::Phong) {
         result.set("exponent", material.exponent);
     } else {
-        result.set("metallic", material.metallic);
         result.set("roughness", material.roughness);
         result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
     }
+    if (model == Model::MetallicRoughness)
+        result.set("metallic", material.metallic);
+    else if (model == Model::SpecularGlossiness)
+        result.set("specular_texture", texture(material.specular_texture));
     return result;
 }
 
@@ -161,6 +171,8 @@ void describe_mesh(const Options& options, const Session& session) {
         session.say(fmt::format("group               {}", group));
     for (const std::string& name : mesh.missing)
         session.say(fmt::format("not found           {}", name));
+    for (const std::string& warning : mesh.warnings)
+        session.say(fmt::format("left out            {}", warning));
     session.report({{"kind", "mesh"},
                     {"vertices", mesh.num_vertices()},
                     {"triangles", mesh.num_triangles()},
@@ -171,7 +183,8 @@ void describe_mesh(const Options& options, const Session& session) {
                     {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
                     {"materials", materials},
                     {"groups", mesh.groups},
-                    {"missing", mesh.missing}});
+                    {"missing", mesh.missing},
+                    {"left_out", mesh.warnings}});
 }
 
 void run(const Options& options, const Session& session) {

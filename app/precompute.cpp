@@ -167,6 +167,10 @@ void run(const Options& options, Session& session) {
     mesh_options.normals =
         options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
     Mesh mesh = load_mesh(options.mesh, mesh_options);
+    for (const std::string& warning : mesh.geometry.warnings)
+        session.warn(fmt::format("{}: {}", options.mesh, warning));
+    for (const std::string& name : mesh.geometry.missing)
+        session.warn(fmt::format("{}: no {} is found", options.mesh, name));
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
 

@@ -33,16 +33,19 @@ void run(const Options& options, Session& session) {
 
     const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
     const std::string name = prt::receiver_name(lit.scene().layout);
-    session.say(fmt::format("{} receivers, R = {}, exact integration in {:.1f} s",
-                            check.receivers.size(), lit.environment().resolution, seconds));
-    session.say(fmt::format(
-        "relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} % of the mean radiance {:.4g}",
-        error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs, error.mean_radiance));
+    session.say(
+        fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
+                    check.receivers.size(), lit.environment().resolution, seconds));
+    session.say(fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} %, bias "
+                            "{:+.3f} % of the mean radiance {:.4g}",
+                            error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs,
+                            100.0 * error.bias, error.mean_radiance));
     session.say(fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x,
                             worst.y, worst.z));
     session.report({{"relative_l2", error.relative_l2},
                     {"mean_abs", error.mean_abs},
                     {"max_abs", error.max_abs},
+                    {"bias", error.bias},
                     {"samples", check.receivers.size()},
                     {"mean_radiance", error.mean_radiance},
                     {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
@@ -55,7 +58,8 @@ void run(const Options& options, Session& session) {
 
 void add_verify(Command& program, Session& session) {
     Command command = program.add_command(
-        "verify", "compare relighting with exact integration: every texel, every shadow ray");
+        "verify",
+        "compare relighting with exact integration: every pixel of the file, every shadow ray");
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command);

@@ -57,8 +57,7 @@ Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_
                         accessor.contains("sparse") ? "sparse" : "zero"));
     Elements elements;
     elements.component_type = whole(accessor, "componentType");
-    if (const auto normalized = accessor.find("normalized"); normalized != accessor.end())
-        elements.normalized = normalized->is_boolean() && normalized->get<bool>();
+    elements.normalized = flag(accessor, "normalized");
     const std::uint32_t has = num_components_of(text(accessor, "type"));
     if (has < num_components || (num_components == 1 && has != 1))
         throw std::runtime_error(fmt::format("expected {} components of accessor {}, got {}",

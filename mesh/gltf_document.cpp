@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "files/output_file.h"
+#include "mesh/meshopt_decoder.h"
 #include "mesh/mtl_reader.h"
 #include "mesh/text_reader.h"
 
@@ -82,6 +84,55 @@ std::vector<std::byte> base64(std::string_view text) {
     return bytes;
 }
 
+/// Returns the length of the UTF-8 character at the front, 0 if there is none. Continuation bytes
+/// alone are checked; the JSON parser checks the rest.
+std::size_t utf8_length(std::string_view text) {
+    const auto first = static_cast<unsigned char>(text[0]);
+    const std::size_t length = first < 0x80                    ? 1
+                               : first >= 0xc2 && first < 0xe0 ? 2
+                               : first >= 0xe0 && first < 0xf0 ? 3
+                               : first >= 0xf0 && first < 0xf5 ? 4
+                                                               : 0;
+    if (length == 0 || length > text.size())
+        return 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((static_cast<unsigned char>(text[i]) & 0xc0u) != 0x80u)
+            return 0;
+    return length;
+}
+
+/// Turns bytes that are no UTF-8 into the characters of Latin-1.
+std::string with_latin1(std::string_view text) {
+    std::string result;
+    result.reserve(text.size());
+    while (!text.empty()) {
+        const std::size_t length = utf8_length(text);
+        if (length == 0) {
+            const auto byte = static_cast<unsigned char>(text[0]);
+            result += static_cast<char>(0xc0u | byte >> 6u);
+            result += static_cast<char>(0x80u | (byte & 0x3fu));
+        } else {
+            result += text.substr(0, length);
+        }
+        text.remove_prefix(std::max<std::size_t>(length, 1));
+    }
+    return result;
+}
+
+/// Turns the characters of Latin-1 back into bytes.
+std::string latin1_bytes(std::string_view text) {
+    std::string result;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        if ((byte == 0xc2 || byte == 0xc3) && i + 1 < text.size())
+            result += static_cast<char>((byte & 3u) << 6u |
+                                        (static_cast<unsigned char>(text[++i]) & 0x3fu));
+        else
+            result += text[i];
+    }
+    return result;
+}
+
 /// Decodes %20 and the like.
 std::string percent_decoded(std::string_view uri) {
     const auto digit = [](char c) {
@@ -103,6 +154,41 @@ std::string percent_decoded(std::string_view uri) {
     if (result.find('\0') != std::string::npos)
         fail("a file name in a URI", excerpt(result));
     return result;
+}
+
+/// Says what is lost without an extension. Empty for others: their loss is unknown, and a file that
+/// requires one of them is refused.
+std::string_view lost_without(std::string_view extension) {
+    struct Loss {
+        std::string_view extension, loss;
+    };
+    constexpr std::string_view Images = "its images are left out; without another image, a surface "
+                                        "has its factors alone";
+    constexpr std::array<Loss, 20> Losses = {{
+        {"EXT_texture_avif", Images},
+        {"KHR_lights_punctual", "its lamps give no light"},
+        {"KHR_materials_anisotropy", "highlights are round"},
+        {"KHR_materials_clearcoat", "clear coats are left out"},
+        {"KHR_materials_diffuse_transmission", "no light shines through surfaces"},
+        {"KHR_materials_dispersion", "surfaces are opaque"},
+        {"KHR_materials_emissive_strength", "surfaces give no light of their own"},
+        {"KHR_materials_ior", "the index of refraction is 1.5"},
+        {"KHR_materials_iridescence", "thin films are left out"},
+        {"KHR_materials_sheen", "sheen is left out"},
+        {"KHR_materials_specular", "dielectrics reflect 0.04"},
+        {"KHR_materials_transmission", "surfaces are opaque"},
+        {"KHR_materials_variants", "the first look of each surface is shown"},
+        {"KHR_materials_volume", "surfaces are opaque"},
+        {"KHR_node_visibility", "hidden nodes are shown"},
+        {"KHR_texture_basisu", Images},
+        {"KHR_xmp", "its metadata are left out"},
+        {"KHR_xmp_json_ld", "its metadata are left out"},
+        {"MSFT_lod", "the finest level of detail is shown"},
+        {"MSFT_texture_dds", Images},
+    }};
+    const auto* found = std::find_if(Losses.begin(), Losses.end(),
+                                     [&](const Loss& loss) { return loss.extension == extension; });
+    return found == Losses.end() ? std::string_view() : found->loss;
 }
 
 } // namespace
@@ -135,6 +221,13 @@ float fraction(const Json& object, const char* key, float fallback) {
     if (!(value >= 0.0 && value <= 1.0))
         fail(key, "a number of 0 to 1", require(object, key));
     return static_cast<float>(value);
+}
+
+bool flag(const Json& object, const char* key) {
+    const Json* value = find(object, key);
+    if (value != nullptr && !value->is_boolean())
+        fail(key, "true or false", *value);
+    return value != nullptr && value->get<bool>();
 }
 
 std::string text(const Json& object, const char* key, const std::string& fallback) {
@@ -173,7 +266,12 @@ Document::Document(std::span<const std::byte> file, std::filesystem::path folder
     if (json_text_.starts_with("glTF"))
         split_glb(file);
     try {
-        root_ = Json::parse(json_text_);
+        try {
+            root_ = Json::parse(json_text_);
+        } catch (const Json::parse_error&) {
+            // A name in the encoding of an old program must not make the whole file unreadable.
+            root_ = Json::parse(with_latin1(json_text_));
+        }
     } catch (const Json::parse_error& error) {
         fail("glTF's JSON", fmt::format("a syntax error at byte {}", error.byte));
     } catch (const Json::exception&) {
@@ -184,6 +282,7 @@ Document::Document(std::span<const std::byte> file, std::filesystem::path folder
         fail("glTF version 2", excerpt(version));
     check_extensions();
     buffers_.resize(count("buffers"));
+    views_.resize(count("bufferViews"));
 }
 
 std::uint64_t Document::num_bytes() const {
@@ -217,14 +316,35 @@ void Document::split_glb(std::span<const std::byte> file) {
     chunk_ = file.subspan(8, word(file, 0));
 }
 
-void Document::check_extensions() const {
-    constexpr std::array<std::string_view, 5> Understood = {
-        "KHR_materials_unlit", "KHR_texture_transform", "KHR_mesh_quantization",
-        "KHR_lights_punctual", "KHR_materials_variants"};
-    for (const Json& name : child(root_, "extensionsRequired"))
-        if (!name.is_string() || std::find(Understood.begin(), Understood.end(),
-                                           name.get<std::string>()) == Understood.end())
-            fail("extensions that are understood", described(name));
+void Document::check_extensions() {
+    constexpr std::array<std::string_view, 8> Understood = {"EXT_mesh_gpu_instancing",
+                                                            "EXT_meshopt_compression",
+                                                            "EXT_texture_webp",
+                                                            "KHR_draco_mesh_compression",
+                                                            "KHR_materials_pbrSpecularGlossiness",
+                                                            "KHR_materials_unlit",
+                                                            "KHR_mesh_quantization",
+                                                            "KHR_texture_transform"};
+    const auto names = [this](const char* key) {
+        std::set<std::string> result;
+        for (const Json& name : child(root_, key)) {
+            if (!name.is_string())
+                fail(fmt::format("names in \"{}\"", key), described(name));
+            result.insert(name.get<std::string>());
+        }
+        return result;
+    };
+    const auto is_understood = [&](const std::string& name) {
+        return std::find(Understood.begin(), Understood.end(), name) != Understood.end();
+    };
+    for (const std::string& name : names("extensionsRequired"))
+        if (!is_understood(name) && lost_without(name).empty())
+            fail("required extensions that are understood", excerpt(name));
+    for (const std::string& name : names("extensionsUsed"))
+        if (!is_understood(name))
+            warnings_.push_back(fmt::format(
+                "the extension {} is not read: {}", excerpt(name),
+                lost_without(name).empty() ? "what it describes is left out" : lost_without(name)));
 }
 
 const Json& Document::element(const char* array, std::uint64_t index) const {
@@ -260,15 +380,44 @@ std::span<const std::byte> Document::buffer(std::uint64_t index) {
     return bytes.first(num_bytes);
 }
 
-std::span<const std::byte> Document::view(std::uint64_t index) {
-    const Json& description = element("bufferViews", index);
+std::span<const std::byte> Document::part(const Json& description, std::uint64_t view) {
     const std::span<const std::byte> bytes = buffer(whole(description, "buffer"));
     const std::uint64_t offset = whole(description, "byteOffset", 0);
     const std::uint64_t length = whole(description, "byteLength");
     if (offset > bytes.size() || length > bytes.size() - offset)
-        fail(fmt::format("buffer view {} inside its buffer of {} bytes", index, bytes.size()),
+        fail(fmt::format("buffer view {} inside its buffer of {} bytes", view, bytes.size()),
              fmt::format("{} bytes at {}", length, offset));
     return bytes.subspan(offset, length);
+}
+
+std::vector<std::byte> Document::unpacked(const Json& packed, std::uint64_t view) {
+    const std::span<const std::byte> data = part(packed, view);
+    const MeshoptView layout{.count = whole(packed, "count"),
+                             .stride = whole(packed, "byteStride"),
+                             .mode = text(packed, "mode"),
+                             .filter = text(packed, "filter", "NONE")};
+    // As much as views of different data can give. Views of the same data would have no limit.
+    num_unpacked_bytes_ += layout.count * layout.stride;
+    if (num_unpacked_bytes_ / MaxMeshoptRatio > num_bytes())
+        fail(fmt::format("at most {} bytes for each of the file's in packed buffer views",
+                         MaxMeshoptRatio),
+             "more");
+    try {
+        return decode_meshopt(data, layout);
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("buffer view {}: {}", view, error.what()));
+    }
+}
+
+std::span<const std::byte> Document::view(std::uint64_t index) {
+    const Json& description = element("bufferViews", index);
+    const Json& packed = child(child(description, "extensions"), "EXT_meshopt_compression");
+    if (packed.empty())
+        return part(description, index);
+    std::optional<std::vector<std::byte>>& view = views_[index];
+    if (!view)
+        view = unpacked(packed, index);
+    return *view;
 }
 
 std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) const {
@@ -279,7 +428,10 @@ std::optional<std::vector<std::byte>> Document::fetch(const std::string& uri) co
             fail("base64 in a data URI", excerpt(uri));
         return base64(std::string_view(uri).substr(comma + 1));
     }
-    const std::filesystem::path path = find_file(folder_, percent_decoded(uri));
+    const std::string name = percent_decoded(uri);
+    std::filesystem::path path = find_file(folder_, name);
+    if (path.empty())
+        path = find_file(folder_, latin1_bytes(name));
     if (path.empty())
         return std::nullopt;
     return files::read(path);

@@ -32,6 +32,8 @@ using Json = nlohmann::json;
                             std::optional<double> fallback = {});
 /// Returns a number in [0, 1].
 [[nodiscard]] float fraction(const Json& object, const char* key, float fallback);
+/// Returns a truth value; false if it is absent.
+[[nodiscard]] bool flag(const Json& object, const char* key);
 [[nodiscard]] std::string text(const Json& object, const char* key,
                                const std::string& fallback = {});
 /// Returns an array of finite numbers, as many as `fallback` has. Returns `fallback` if the
@@ -44,8 +46,8 @@ using Json = nlohmann::json;
 /// A parsed file, and the buffers that it names.
 class Document {
 public:
-    /// `file` is a whole .gltf or .glb and must outlive the document. Versions other than 2, and
-    /// required extensions that are not understood, are refused.
+    /// `file` is a whole .gltf or .glb and must outlive the document. Versions other than 2 are
+    /// refused, and required extensions without which there is no mesh.
     Document(std::span<const std::byte> file, std::filesystem::path folder);
 
     [[nodiscard]] const Json& root() const { return root_; }
@@ -55,7 +57,12 @@ public:
     [[nodiscard]] const Json& element(const char* array, std::uint64_t index) const;
     [[nodiscard]] std::size_t count(const char* array) const { return child(root_, array).size(); }
 
-    /// Returns the bytes of a buffer view, checked against its buffer.
+    /// Returns one line for each extension that the file uses and the reader does not: what is
+    /// lost.
+    [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
+
+    /// Returns the bytes of a buffer view, checked against its buffer, and decoded if
+    /// EXT_meshopt_compression packed them.
     [[nodiscard]] std::span<const std::byte> view(std::uint64_t index);
 
     /// Returns the content of a URI: a data: URI or a file. Nothing if there is no such file.
@@ -63,8 +70,11 @@ public:
 
 private:
     void split_glb(std::span<const std::byte> file);
-    void check_extensions() const;
+    void check_extensions();
     [[nodiscard]] std::span<const std::byte> buffer(std::uint64_t index);
+    /// Returns the bytes that an object with buffer, byteOffset and byteLength names.
+    [[nodiscard]] std::span<const std::byte> part(const Json& description, std::uint64_t view);
+    [[nodiscard]] std::vector<std::byte> unpacked(const Json& packed, std::uint64_t view);
 
     std::filesystem::path folder_;
     std::uint64_t file_bytes_;
@@ -74,6 +84,10 @@ private:
     Json root_;
     /// The buffers of URIs, each loaded when it was first needed.
     std::vector<std::optional<std::vector<std::byte>>> buffers_;
+    /// The buffer views that were packed, each decoded when it was first needed.
+    std::vector<std::optional<std::vector<std::byte>>> views_;
+    std::uint64_t num_unpacked_bytes_ = 0;
+    std::vector<std::string> warnings_;
 };
 
 } // namespace relumine::mesh::gltf

@@ -20,10 +20,13 @@ struct Materials {
     std::vector<std::optional<std::uint64_t>> uv_sets;
     std::vector<Texture> textures;
     std::vector<std::string> missing;
+    /// What the materials have and the result does not, a line each.
+    std::vector<std::string> warnings;
 };
 
-/// Reads factors, textures, samplers and KHR_texture_transform. A KHR_materials_unlit material
-/// becomes Lambert. Alpha, emission, normal maps and the other extensions are skipped.
+/// Reads factors, textures, samplers, KHR_texture_transform and EXT_texture_webp. A
+/// KHR_materials_unlit material becomes Lambert, KHR_materials_pbrSpecularGlossiness its own model.
+/// Alpha, emission, normal maps and the other extensions are skipped.
 /// Throws:  std::runtime_error "expected X, got Y".
 [[nodiscard]] Materials read_materials(Document& document);
 

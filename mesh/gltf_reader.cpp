@@ -1,9 +1,9 @@
 // Reads glTF 2.0: all triangle primitives of the nodes of the default scene, in world space, with
 // their materials.
 //
-// A vertex is repeated for each node that shows it. Points and lines are skipped. Skins and morph
-// targets stay at rest, as the file stores them; as the format demands, a skinned mesh ignores its
-// node's place.
+// A vertex is repeated for each node and each instance (EXT_mesh_gpu_instancing) that shows it.
+// Points and lines are skipped. Skins and morph targets stay at rest, as the file stores them; as
+// the format demands, a skinned mesh ignores its node's place.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,6 +19,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/matrix.hpp>
 
+#include "mesh/draco_decoder.h"
 #include "mesh/gltf_accessors.h"
 #include "mesh/gltf_document.h"
 #include "mesh/gltf_materials.h"
@@ -39,6 +40,25 @@ struct Primitive {
     std::uint32_t material = 0;
 };
 
+/// A place in the form of nodes and instances: the scale comes first, the translation last.
+struct Placement {
+    std::vector<double> translation = {0.0, 0.0, 0.0};
+    /// A quaternion: x, y, z, w.
+    std::vector<double> rotation = {0.0, 0.0, 0.0, 1.0};
+    std::vector<double> scale = {1.0, 1.0, 1.0};
+};
+
+glm::dmat4 matrix_of(const Placement& placement) {
+    const auto& [t, r, s] = placement;
+    const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
+    if (!(length > 0.0))
+        throw std::runtime_error("expected a unit quaternion as \"rotation\", got zeros");
+    const glm::dmat3 rotation =
+        glm::mat3_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
+    return {glm::dvec4(rotation[0] * s[0], 0.0), glm::dvec4(rotation[1] * s[1], 0.0),
+            glm::dvec4(rotation[2] * s[2], 0.0), glm::dvec4(t[0], t[1], t[2], 1.0)};
+}
+
 glm::dmat4 local_transform(const Json& node) {
     if (node.contains("matrix")) {
         const std::vector<double> m = gltf::numbers(node, "matrix", std::vector<double>(16, 0.0));
@@ -47,16 +67,10 @@ glm::dmat4 local_transform(const Json& node) {
             matrix[i / 4][i % 4] = m[static_cast<std::size_t>(i)];
         return matrix;
     }
-    const std::vector<double> t = gltf::numbers(node, "translation", {0.0, 0.0, 0.0});
-    const std::vector<double> r = gltf::numbers(node, "rotation", {0.0, 0.0, 0.0, 1.0});
-    const std::vector<double> s = gltf::numbers(node, "scale", {1.0, 1.0, 1.0});
-    const double length = std::sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2] + r[3] * r[3]);
-    if (!(length > 0.0))
-        throw std::runtime_error("expected a unit quaternion as \"rotation\", got zeros");
-    const glm::dmat3 rotation =
-        glm::mat3_cast(glm::dquat(r[3] / length, r[0] / length, r[1] / length, r[2] / length));
-    return {glm::dvec4(rotation[0] * s[0], 0.0), glm::dvec4(rotation[1] * s[1], 0.0),
-            glm::dvec4(rotation[2] * s[2], 0.0), glm::dvec4(t[0], t[1], t[2], 1.0)};
+    const Placement none;
+    return matrix_of({.translation = gltf::numbers(node, "translation", none.translation),
+                      .rotation = gltf::numbers(node, "rotation", none.rotation),
+                      .scale = gltf::numbers(node, "scale", none.scale)});
 }
 
 class GltfReader {
@@ -71,6 +85,8 @@ private:
     [[nodiscard]] std::optional<Primitive> primitive(const Json& description);
     [[nodiscard]] std::vector<Triangle> triangles(const Json& description, std::uint64_t mode,
                                                   std::size_t num_vertices);
+    void check_counts(const Json& description, const DracoMesh& mesh);
+    [[nodiscard]] std::vector<glm::dmat4> instances(const Json& node);
     void count(const Primitive& primitive);
     void append(const Primitive& primitive, const glm::dmat4& transform, std::uint32_t group);
     [[nodiscard]] std::uint32_t group(const Json& node, std::uint64_t mesh);
@@ -84,7 +100,7 @@ private:
     /// Vertices and triangles that primitives and nodes have made so far.
     std::uint64_t num_elements_ = 0;
     PolygonSoup soup_;
-    bool has_colors_ = false, has_uvs_ = false;
+    bool has_colors_ = false, has_uvs_ = false, has_skins_ = false, has_targets_ = false;
 };
 
 /// Returns the roots of the default scene, or of the first one. In a file without scenes, nodes
@@ -165,21 +181,89 @@ std::vector<Vector> vectors(const gltf::Floats& floats) {
     return result;
 }
 
+/// The arrays of a primitive by name. KHR_draco_mesh_compression holds some or all of them.
+class Attributes {
+public:
+    Attributes(gltf::Document& document, const Json& description);
+
+    [[nodiscard]] bool contains(const std::string& name) const { return accessors_.contains(name); }
+    [[nodiscard]] gltf::Floats read(const std::string& name, std::uint32_t num_components);
+    /// Empty: the primitive is not compressed.
+    [[nodiscard]] std::optional<DracoMesh>& draco() { return draco_; }
+
+private:
+    gltf::Document& document_;
+    const Json& accessors_;
+    std::optional<DracoMesh> draco_;
+    /// Places in DracoMesh::values.
+    std::map<std::string, std::size_t> places_;
+};
+
+Attributes::Attributes(gltf::Document& document, const Json& description)
+    : document_(document), accessors_(gltf::child(description, "attributes")) {
+    const Json& extension =
+        gltf::child(gltf::child(description, "extensions"), "KHR_draco_mesh_compression");
+    if (extension.empty())
+        return;
+    const Json& ids = gltf::child(extension, "attributes");
+    std::vector<DracoAttribute> wanted;
+    const auto add = [&](const std::string& name, std::uint32_t num_components) {
+        if (!ids.contains(name) || !contains(name))
+            return;
+        const Json& accessor = document.element("accessors", gltf::whole(accessors_, name.c_str()));
+        places_.emplace(name, wanted.size());
+        wanted.push_back({.id = static_cast<std::uint32_t>(gltf::whole(ids, name.c_str())),
+                          .num_components = num_components,
+                          .is_normalized = gltf::flag(accessor, "normalized")});
+    };
+    add("POSITION", 3), add("NORMAL", 3), add("COLOR_0", 3);
+    for (const auto& [name, id] : ids.items())
+        if (name.starts_with("TEXCOORD_"))
+            add(name, 2);
+    draco_ = decode_draco(document.view(gltf::whole(extension, "bufferView")), wanted);
+}
+
+gltf::Floats Attributes::read(const std::string& name, std::uint32_t num_components) {
+    if (const auto place = places_.find(name); place != places_.end())
+        return {.count = draco_->num_vertices, .values = std::move(draco_->values[place->second])};
+    return gltf::read_floats(document_, gltf::whole(accessors_, name.c_str()), num_components);
+}
+
+/// The accessors of compressed arrays say how many elements there are. Some encoders leave the
+/// counts of the mesh before compression; the data govern then, as in other readers.
+void GltfReader::check_counts(const Json& description, const DracoMesh& mesh) {
+    const auto declared = [&](const Json& parent, const char* key, std::uint64_t fallback) {
+        return parent.contains(key)
+                   ? gltf::whole(document_.element("accessors", gltf::whole(parent, key)), "count")
+                   : fallback;
+    };
+    const std::uint64_t num_corners = 3 * mesh.triangles.size();
+    const std::uint64_t vertices =
+        declared(gltf::child(description, "attributes"), "POSITION", mesh.num_vertices);
+    // A strip's accessor counts the strip.
+    const std::uint64_t corners = gltf::whole(description, "mode", 4) == 4
+                                      ? declared(description, "indices", num_corners)
+                                      : num_corners;
+    if (vertices != mesh.num_vertices || corners != num_corners)
+        soup_.warnings.push_back(
+            fmt::format("Draco data of {} vertices and {} indices; the accessors say {} and {}",
+                        mesh.num_vertices, num_corners, vertices, corners));
+}
+
 std::optional<Primitive> GltfReader::primitive(const Json& description) {
     const std::uint64_t mode = gltf::whole(description, "mode", 4);
     if (mode > 6)
         throw std::runtime_error(
             fmt::format("expected a primitive's mode of 0 to 6, got {}", mode));
-    const Json& attributes = gltf::child(description, "attributes");
-    if (mode < 4 || !attributes.contains("POSITION"))
+    if (mode < 4 || !gltf::child(description, "attributes").contains("POSITION"))
         return std::nullopt;
+    Attributes attributes(document_, description);
     Primitive result;
     const auto read = [&](const std::string& name, auto& values) {
         using Vector = typename std::remove_reference_t<decltype(values)>::value_type;
         if (!attributes.contains(name))
             return;
-        values = vectors<Vector>(
-            gltf::read_floats(document_, gltf::whole(attributes, name.c_str()), Vector::length()));
+        values = vectors<Vector>(attributes.read(name, Vector::length()));
         if (values.size() != result.positions.size())
             throw std::runtime_error(
                 fmt::format("expected {} elements of {}, as many as of POSITION, got {}",
@@ -196,7 +280,15 @@ std::optional<Primitive> GltfReader::primitive(const Json& description) {
         result.material = default_material();
     }
     read(fmt::format("TEXCOORD_{}", materials_.uv_sets[result.material].value_or(0)), result.uvs);
-    result.triangles = triangles(description, mode, result.positions.size());
+    if (std::optional<DracoMesh>& draco = attributes.draco()) {
+        if (draco->num_vertices != result.positions.size())
+            throw std::runtime_error(fmt::format("expected Draco data of {} vertices, got {}",
+                                                 result.positions.size(), draco->num_vertices));
+        check_counts(description, *draco);
+        result.triangles = std::move(draco->triangles);
+    } else {
+        result.triangles = triangles(description, mode, result.positions.size());
+    }
     if (result.normals.empty()) {
         TriangleMesh plain;
         plain.positions = result.positions;
@@ -211,13 +303,59 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
     std::optional<std::vector<Primitive>>& mesh = meshes_[index];
     if (!mesh) {
         mesh.emplace();
-        for (const Json& item : gltf::child(description, "primitives"))
+        for (const Json& item : gltf::child(description, "primitives")) {
+            has_targets_ |= !gltf::child(item, "targets").empty();
             if (std::optional<Primitive> read = primitive(item)) {
                 count(*read);
                 mesh->push_back(std::move(*read));
             }
+        }
     }
     return *mesh;
+}
+
+/// Returns the places of a node's instances in the node. EXT_mesh_gpu_instancing has them as arrays
+/// of translations, rotations and scales.
+std::vector<glm::dmat4> GltfReader::instances(const Json& node) {
+    const Json& extension = gltf::child(gltf::child(node, "extensions"), "EXT_mesh_gpu_instancing");
+    if (extension.empty())
+        return {glm::dmat4(1.0)};
+    const Json& attributes = gltf::child(extension, "attributes");
+    std::optional<std::size_t> count;
+    const auto read = [&](const char* name, std::uint32_t num_components) {
+        if (!attributes.contains(name))
+            return std::vector<float>();
+        gltf::Floats floats =
+            gltf::read_floats(document_, gltf::whole(attributes, name), num_components);
+        if (count && *count != floats.count)
+            throw std::runtime_error(
+                fmt::format("expected {} elements of {}, as many as of the instances' other "
+                            "attributes, got {}",
+                            *count, name, floats.count));
+        count = floats.count;
+        return std::move(floats.values);
+    };
+    const std::vector<float> translations = read("TRANSLATION", 3);
+    const std::vector<float> rotations = read("ROTATION", 4), scales = read("SCALE", 3);
+    if (!count)
+        throw std::runtime_error(
+            "expected TRANSLATION, ROTATION or SCALE of a node's instances, got none");
+    std::vector<glm::dmat4> result;
+    for (std::size_t i = 0; i < *count; ++i) {
+        const auto value = [i](const std::vector<float>& values, std::size_t size, std::size_t j,
+                               double fallback) {
+            return values.empty() ? fallback : double{values[i * size + j]};
+        };
+        Placement placement;
+        for (std::size_t j = 0; j < 4; ++j)
+            placement.rotation[j] = value(rotations, 4, j, placement.rotation[j]);
+        for (std::size_t j = 0; j < 3; ++j) {
+            placement.translation[j] = value(translations, 3, j, 0.0);
+            placement.scale[j] = value(scales, 3, j, 1.0);
+        }
+        result.push_back(matrix_of(placement));
+    }
+    return result;
 }
 
 /// Nodes are the file's objects. A node without a name takes its mesh's name.
@@ -303,11 +441,14 @@ PolygonSoup GltfReader::read() {
         const glm::dmat4 transform = visit.parent * local_transform(node);
         if (node.contains("mesh")) {
             const std::uint64_t index = gltf::whole(node, "mesh");
-            for (const Primitive& primitive : mesh(index)) {
-                count(primitive);
-                append(primitive, node.contains("skin") ? glm::dmat4(1.0) : transform,
-                       group(node, index));
-            }
+            has_skins_ |= node.contains("skin");
+            for (const glm::dmat4& instance : instances(node))
+                for (const Primitive& primitive : mesh(index)) {
+                    count(primitive);
+                    append(primitive,
+                           node.contains("skin") ? glm::dmat4(1.0) : transform * instance,
+                           group(node, index));
+                }
         }
         const Json& children = gltf::child(node, "children");
         for (std::size_t i = children.size(); i-- > 0;)
@@ -320,6 +461,13 @@ PolygonSoup GltfReader::read() {
     soup_.materials = std::move(materials_.materials);
     soup_.textures = std::move(materials_.textures);
     soup_.missing = std::move(materials_.missing);
+    std::vector<std::string> warnings = document_.warnings();
+    warnings.insert(warnings.end(), materials_.warnings.begin(), materials_.warnings.end());
+    if (has_skins_)
+        warnings.emplace_back("skins are at rest: their joints move nothing");
+    if (has_targets_)
+        warnings.emplace_back("morph targets are at rest: their weights are 0");
+    soup_.warnings.insert(soup_.warnings.begin(), warnings.begin(), warnings.end());
     return std::move(soup_);
 }
 

@@ -24,12 +24,13 @@
 
 #include "mesh/jpeg_decoder.h"
 #include "mesh/text_reader.h"
+#include "mesh/webp_decoder.h"
 
 namespace relumine::mesh {
 
 namespace {
 
-enum class Format { Png, Jpeg, Bmp, Tga };
+enum class Format { Png, Jpeg, WebP, Bmp, Tga };
 
 /// Returns the format by the file's first bytes. TGA files have no mark, so a file with no other
 /// mark counts as TGA.
@@ -38,8 +39,11 @@ Format format_of(std::span<const std::byte> file) {
         return file.size() >= magic.size() &&
                std::memcmp(file.data(), magic.data(), magic.size()) == 0;
     };
+    const bool is_webp =
+        begins_with("RIFF") && file.size() >= 12 && std::memcmp(file.data() + 8, "WEBP", 4) == 0;
     return begins_with("\x89PNG")        ? Format::Png
            : begins_with("\xff\xd8\xff") ? Format::Jpeg
+           : is_webp                     ? Format::WebP
            : begins_with("BM")           ? Format::Bmp
                                          : Format::Tga;
 }
@@ -62,6 +66,8 @@ std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::u
     // A block of 64 takes at least a bit, and chroma may be four times as coarse in each direction.
     case Format::Jpeg:
         return num_pixels / 1024;
+    case Format::WebP: // one colour takes no bytes at all
+        return 0;
     // stb_image reads only uncompressed files. Rows end at multiples of four bytes.
     case Format::Bmp: {
         const std::uint64_t data = number_at(file, 10, 4);
@@ -112,27 +118,33 @@ void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint6
                                              width, height, file.size()));
 }
 
-} // namespace
-
-DecodedImage decode_image(std::span<const std::byte> file) {
+/// Decodes to bytes of RGB (3 channels) or RGBA (4; not JPEG).
+DecodedImage decode(std::span<const std::byte> file, int num_channels) {
     if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
         throw std::runtime_error(
             fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
-    DecodedImage image{.rgb = {nullptr, std::free}};
+    DecodedImage image{.bytes = {nullptr, std::free}};
     const auto check = [&](std::uint32_t width, std::uint32_t height) {
         check_size(file, width, height);
         image.width = width;
         image.height = height;
     };
-    if (format_of(file) == Format::Jpeg) {
-        decode_jpeg(file, [&](std::uint32_t width, std::uint32_t height) {
-            check(width, height);
-            image.rgb.reset(
-                static_cast<std::uint8_t*>(std::malloc(std::size_t{width} * height * 3)));
-            if (!image.rgb)
-                throw std::bad_alloc();
-            return image.rgb.get();
-        });
+    const auto allocate = [&](std::uint32_t width, std::uint32_t height) {
+        check(width, height);
+        const std::size_t size =
+            std::size_t{width} * height * static_cast<std::size_t>(num_channels);
+        image.bytes.reset(static_cast<std::uint8_t*>(std::malloc(size)));
+        if (!image.bytes)
+            throw std::bad_alloc();
+        return image.bytes.get();
+    };
+    const Format format = format_of(file);
+    if (format == Format::Jpeg) {
+        decode_jpeg(file, allocate);
+        return image;
+    }
+    if (format == Format::WebP) {
+        decode_webp(file, num_channels == 4, allocate);
         return image;
     }
     const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
@@ -140,17 +152,42 @@ DecodedImage decode_image(std::span<const std::byte> file) {
     int width = 0, height = 0, channels = 0;
     if (file.empty() || stbi_info_from_memory(bytes, num_bytes, &width, &height, &channels) == 0)
         throw std::runtime_error(fmt::format(
-            "expected a PNG, JPEG, BMP or TGA image, got {} bytes of something else", file.size()));
-    if (format_of(file) == Format::Png)
+            "expected a PNG, JPEG, WebP, BMP or TGA image, got {} bytes of something else",
+            file.size()));
+    if (format == Format::Png)
         check_png_chunks(file);
     check(static_cast<std::uint32_t>(std::max(width, 0)),
           static_cast<std::uint32_t>(std::max(height, 0)));
-    image.rgb.reset(stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, 3));
-    if (!image.rgb)
+    image.bytes.reset(
+        stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, num_channels));
+    if (!image.bytes)
         throw std::runtime_error(
             fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
                         image.width, image.height,
                         excerpt(stbi_failure_reason()))); // may quote the file
+    return image;
+}
+
+} // namespace
+
+DecodedImage decode_image(std::span<const std::byte> file) {
+    return decode(file, 3);
+}
+
+DecodedImage decode_alpha(std::span<const std::byte> file) {
+    if (format_of(file) == Format::Jpeg) {
+        DecodedImage image{.width = 1,
+                           .height = 1,
+                           .bytes = {static_cast<std::uint8_t*>(std::malloc(1)), std::free}};
+        if (!image.bytes)
+            throw std::bad_alloc();
+        *image.bytes = 255;
+        return image;
+    }
+    DecodedImage image = decode(file, 4);
+    const std::size_t num_pixels = std::size_t{image.width} * image.height;
+    for (std::size_t i = 0; i < num_pixels; ++i)
+        image.bytes.get()[i] = image.bytes.get()[4 * i + 3];
     return image;
 }
 

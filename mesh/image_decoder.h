@@ -1,5 +1,5 @@
-// Decodes PNG, JPEG, BMP and TGA files to bytes of RGB. The only user of stb_image; jpeg_decoder.h
-// decodes JPEG.
+// Decodes PNG, JPEG, WebP, BMP and TGA files to bytes of RGB. The only user of stb_image;
+// jpeg_decoder.h decodes JPEG, webp_decoder.h WebP.
 #pragma once
 
 #include <cstddef>
@@ -19,13 +19,17 @@ inline constexpr std::uint64_t MaxCheapPixels = std::uint64_t{1} << 26;
 struct DecodedImage {
     std::uint32_t width = 0;
     std::uint32_t height = 0;
-    /// [height * width * 3] from the top left.
-    std::unique_ptr<std::uint8_t, void (*)(void*)> rgb{nullptr, nullptr};
+    /// [height * width * 3] from the top left; decode_alpha(): [height * width].
+    std::unique_ptr<std::uint8_t, void (*)(void*)> bytes{nullptr, nullptr};
 };
 
 /// Decodes an image. Grey becomes RGB, alpha is dropped, 16 bits become 8. The size that the header
 /// declares is checked against the file's size before memory is allocated.
 /// Throws:  std::runtime_error "expected X, got Y".
 [[nodiscard]] DecodedImage decode_image(std::span<const std::byte> file);
+
+/// Decodes the alpha of an image: 255 everywhere if it has none. A JPEG never has any, and gives
+/// one pixel. Throws:  as decode_image().
+[[nodiscard]] DecodedImage decode_alpha(std::span<const std::byte> file);
 
 } // namespace relumine::mesh

@@ -5,6 +5,7 @@
 #include <cctype>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 
 #include <fmt/format.h>
 
@@ -47,7 +48,8 @@ bool has_mesh_extension(const std::filesystem::path& path) {
 
 TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
     const std::string extension = extension_of(path);
-    static_cast<void>(files::size(path)); // a name that is not there says so first
+    // A name that is not there says so first.
+    static_cast<void>(files::size(path));
     if (!has_mesh_extension(path))
         throw std::runtime_error(fmt::format(
             "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",

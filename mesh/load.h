@@ -19,7 +19,9 @@ enum class NormalSource {
 ///
 /// Vertices keep the file's count and order. STL has no shared vertices, so equal points are welded
 /// exactly. Polygons are triangulated, also concave and degenerate ones: n corners give n - 2
-/// triangles. Faces of one or two corners are skipped.
+/// triangles. Faces of one or two corners are skipped, with a warning.
+///
+/// A mesh of coordinates below 2^-40 is enlarged by a power of two, with a warning.
 ///
 /// Colours of vertices are kept as in the file, without alpha; bytes are divided by 255. Colours of
 /// faces are skipped. Colours and uvs are left out if some are not finite. An OBJ whose vertices

@@ -36,19 +36,21 @@ enum class MaterialModel : std::uint8_t {
     Phong,
     /// The model of glTF 2.0, or of MTL with Pr or Pm.
     MetallicRoughness,
+    /// KHR_materials_pbrSpecularGlossiness of glTF: GGX with a diffuse colour and F0.
+    SpecularGlossiness,
 };
 
 /// One material. Colours are linear RGB.
 struct Material {
     std::string name = {};
     MaterialModel model = MaterialModel::Phong;
-    /// In [0, 1]. Phong: Kd.
+    /// In [0, 1]. Phong: Kd. SpecularGlossiness: the diffuse colour, of which F0 takes its part.
     glm::vec3 base_color{1.0f};
     /// In [0, 1].
     float metallic = 0.0f;
     /// In [0, 1].
     float roughness = 1.0f;
-    /// Phong: Ks, in [0, 1].
+    /// In [0, 1]. Phong: Ks. SpecularGlossiness: F0.
     glm::vec3 specular{0.0f};
     /// Phong: Ns, >= 0.
     float exponent = 0.0f;
@@ -58,6 +60,8 @@ struct Material {
     std::optional<TextureSlot> base_color_texture = {};
     /// Its G multiplies roughness, its B metallic.
     std::optional<TextureSlot> metallic_roughness_texture = {};
+    /// SpecularGlossiness: its RGB multiplies specular.
+    std::optional<TextureSlot> specular_texture = {};
 
     bool operator==(const Material&) const = default;
 };

@@ -1,6 +1,6 @@
 // Reads the Object File Format (Geomview): [ST][C][N]OFF, ASCII, with one vertex or one face per
-// line. Comments may stand anywhere. Faces may end in up to four colour values, which are skipped.
-// Colours of vertices have three or four values.
+// line, or binary. Comments may stand anywhere in ASCII. Faces may end in up to four colour values,
+// which are skipped. Colours of vertices have three or four values, in binary files four.
 //
 // The project has its own reader for these reasons:
 // - OpenMesh refuses comments, misreads polygons followed by colours and counts on the keyword's
@@ -9,6 +9,10 @@
 // - CGAL is right about nearly all of this, but accepts surplus values and lines, and would bring
 //   Boost and GMP for little more than the hundred lines below, which share their text reader with
 //   the other formats.
+#include <algorithm>
+#include <bit>
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "mesh/polygon_soup.h"
@@ -38,6 +42,20 @@ bool take(std::string_view& text, std::string_view prefix) {
     return found;
 }
 
+/// Takes the keyword's letters off the front of a word. What remains is empty or follows without a
+/// space. Returns nothing for a word that is no keyword.
+std::optional<Layout> take_keyword(std::string_view& word) {
+    std::string_view rest = word;
+    Layout layout;
+    layout.has_uv = take(rest, "ST");
+    layout.has_color = take(rest, "C");
+    layout.has_normal = take(rest, "N");
+    if (!take(rest, "OFF"))
+        return std::nullopt;
+    word = rest;
+    return layout;
+}
+
 class OffReader {
 public:
     explicit OffReader(std::string_view text) : reader_(text, '#'), num_bytes_(text.size()) {}
@@ -61,15 +79,11 @@ std::vector<std::string_view> OffReader::read_keyword() {
         reader_.fail("an OFF header", "the end of the file");
     std::vector<std::string_view> words = reader_.words();
     std::string_view keyword = words[0];
-    layout_.has_uv = take(keyword, "ST");
-    layout_.has_color = take(keyword, "C");
-    layout_.has_normal = take(keyword, "N");
-    const bool has_keyword = take(keyword, "OFF");
-    if (!has_keyword && words[0].find_first_not_of("0123456789") != std::string_view::npos)
+    if (const auto layout = take_keyword(keyword))
+        layout_ = *layout;
+    else if (keyword.find_first_not_of("0123456789") != std::string_view::npos)
         reader_.fail("OFF with an optional ST, C, N in front, in three dimensions",
-                     excerpt(words[0]));
-    if (words.size() > 1 && words[1] == "BINARY")
-        reader_.fail("ASCII OFF", "'BINARY'");
+                     excerpt(keyword));
     // Some files lack the space between the keyword and the counts (ModelNet's).
     words[0] = keyword;
     if (keyword.empty())
@@ -156,10 +170,96 @@ PolygonSoup OffReader::read() {
     return std::move(soup_);
 }
 
+/// Reads the data of a binary file: words of 32 bits, high byte first.
+class BinaryOff {
+public:
+    explicit BinaryOff(std::span<const std::byte> data) : rest_(data) {}
+    PolygonSoup read(const Layout& layout);
+
+private:
+    [[nodiscard]] std::uint32_t word();
+    /// Returns a whole number below `limit`.
+    [[nodiscard]] std::uint32_t number(const char* what, std::uint64_t limit);
+    [[nodiscard]] float real() { return std::bit_cast<float>(word()); }
+    [[nodiscard]] glm::vec3 vector();
+
+    std::span<const std::byte> rest_;
+};
+
+std::uint32_t BinaryOff::word() {
+    if (rest_.size() < 4)
+        throw std::runtime_error(
+            "expected all vertices and faces of a binary OFF file, got the end "
+            "of the file");
+    std::uint32_t result = 0;
+    for (const std::byte byte : rest_.first(4))
+        result = result << 8 | std::to_integer<std::uint32_t>(byte);
+    rest_ = rest_.subspan(4);
+    return result;
+}
+
+std::uint32_t BinaryOff::number(const char* what, std::uint64_t limit) {
+    const std::uint32_t result = word();
+    if (result >= limit)
+        throw std::runtime_error(fmt::format("expected {} below {}, got {}", what, limit, result));
+    return result;
+}
+
+glm::vec3 BinaryOff::vector() {
+    const float x = real(), y = real(), z = real();
+    return {x, y, z};
+}
+
+PolygonSoup BinaryOff::read(const Layout& layout) {
+    // A vertex takes at least three words, a face at least two.
+    const std::uint64_t num_words = rest_.size() / 4;
+    const std::uint32_t num_vertices = number("a number of vertices", num_words / 3 + 1);
+    const std::uint32_t num_faces = number("a number of faces", num_words / 2 + 1);
+    static_cast<void>(word()); // edges
+    PolygonSoup soup;
+    soup.positions.reserve(num_vertices);
+    for (std::uint32_t i = 0; i < num_vertices; ++i) {
+        soup.positions.push_back(vector());
+        if (layout.has_normal)
+            soup.normals.push_back(vector());
+        if (layout.has_color) {
+            soup.colors.push_back(vector());
+            static_cast<void>(real()); // alpha
+        }
+        if (layout.has_uv) {
+            const float u = real(), v = real();
+            soup.uvs.emplace_back(u, v);
+        }
+    }
+    for (std::uint32_t i = 0; i < num_faces; ++i) {
+        const std::uint32_t num_corners = number("a number of corners", num_words);
+        for (std::uint32_t corner = 0; corner < num_corners; ++corner)
+            soup.corners.push_back(number("vertex indices", num_vertices));
+        const std::uint32_t num_colors = number("a number of colour values", 5);
+        for (std::uint32_t j = 0; j < num_colors; ++j)
+            static_cast<void>(word());
+        soup.end_face();
+    }
+    if (!rest_.empty())
+        throw std::runtime_error(fmt::format("expected nothing after {} vertices and {} faces, got "
+                                             "{} bytes",
+                                             num_vertices, num_faces, rest_.size()));
+    return soup;
+}
+
 } // namespace
 
 PolygonSoup read_off(std::span<const std::byte> bytes) {
-    return OffReader(as_text(bytes)).read();
+    // A binary file says so on its first line.
+    const std::string_view text = as_text(bytes);
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    TextReader reader(text.substr(0, std::min(end, text.find('\0'))));
+    if (reader.next_line() && reader.words().size() == 2 && reader.words()[1] == "BINARY") {
+        std::string_view keyword = reader.words()[0];
+        if (const auto layout = take_keyword(keyword); layout && keyword.empty())
+            return BinaryOff(bytes.subspan(std::min(end + 1, bytes.size()))).read(*layout);
+    }
+    return OffReader(text).read();
 }
 
 } // namespace relumine::mesh

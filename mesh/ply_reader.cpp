@@ -1,6 +1,7 @@
 // Reads the Polygon File Format (Greg Turk's PLY 1.0): ASCII and binary of both byte orders, with
-// any number type for any property and elements in any order. Further elements, properties and
-// lists are skipped.
+// any number type for any property and elements in any order. Faces are polygons or strips of
+// triangles ("tristrips", as trimesh2 writes them). Further elements, properties and lists are
+// skipped.
 //
 // The project has its own reader, because no library in Debian reads all valid files and refuses
 // all others:
@@ -209,9 +210,11 @@ void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
     }
 }
 
-template<class Values>
-void read_faces(const Element& element, std::uint64_t num_vertices, Values& values,
-                PolygonSoup& soup) {
+/// Reads the elements' lists of vertex indices. Calls `add` with each index and `end` after each
+/// list. -1 is an index, too, where `least` is -1.
+template<class Values, class Add, class End>
+void read_index_lists(const Element& element, std::uint64_t num_vertices, int least, Values& values,
+                      const Add& add, const End& end) {
     const auto is_index_list = [](const Property& property) {
         return (property.name == "vertex_indices" || property.name == "vertex_index") &&
                property.size_type && !ply_format::is_float(property.type);
@@ -220,8 +223,8 @@ void read_faces(const Element& element, std::uint64_t num_vertices, Values& valu
         std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
     if (indices == element.properties.end())
         throw std::runtime_error(
-            "expected faces with a list of whole numbers 'vertex_indices', got none");
-    soup.face_ends.reserve(element.count);
+            fmt::format("expected {} with a list of whole numbers 'vertex_indices', got none",
+                        element.name == "face" ? "faces" : "tristrips"));
     for (std::uint64_t i = 0; i < element.count; ++i) {
         for (auto property = element.properties.begin(); property != element.properties.end();
              ++property) {
@@ -229,19 +232,52 @@ void read_faces(const Element& element, std::uint64_t num_vertices, Values& valu
                 skip(*property, values);
                 continue;
             }
-            const std::uint32_t num_corners = list_size(*property, values);
-            for (std::uint32_t corner = 0; corner < num_corners; ++corner) {
+            const std::uint32_t count = list_size(*property, values);
+            for (std::uint32_t place = 0; place < count; ++place) {
                 const double index = values.next(property->type);
-                if (!(index >= 0.0 && index < static_cast<double>(num_vertices)) ||
+                if (!(index >= least && index < static_cast<double>(num_vertices)) ||
                     index != std::floor(index))
                     throw std::runtime_error(
-                        fmt::format("expected vertex indices of 0 to {}, got {}",
+                        fmt::format("expected vertex indices of {} to {}, got {}", least,
                                     static_cast<std::int64_t>(num_vertices) - 1, index));
-                soup.corners.push_back(static_cast<std::uint32_t>(index));
+                add(static_cast<std::int64_t>(index));
             }
         }
-        soup.end_face();
+        end();
     }
+}
+
+template<class Values>
+void read_faces(const Element& element, std::uint64_t num_vertices, Values& values,
+                PolygonSoup& soup) {
+    soup.face_ends.reserve(soup.face_ends.size() + element.count);
+    read_index_lists(
+        element, num_vertices, 0, values,
+        [&](std::int64_t index) { soup.corners.push_back(static_cast<std::uint32_t>(index)); },
+        [&] { soup.end_face(); });
+}
+
+/// Reads lists of strips. -1 ends a strip. Every second triangle of a strip is turned.
+template<class Values>
+void read_strips(const Element& element, std::uint64_t num_vertices, Values& values,
+                 PolygonSoup& soup) {
+    std::array<std::uint32_t, 2> last{};
+    std::size_t length = 0;
+    const auto add = [&](std::int64_t index) {
+        if (index < 0) {
+            length = 0;
+            return;
+        }
+        const auto vertex = static_cast<std::uint32_t>(index);
+        if (length >= 2) {
+            const std::size_t turned = length % 2;
+            soup.corners.insert(soup.corners.end(), {last[turned], last[1 - turned], vertex});
+            soup.end_face();
+        }
+        last = {last[1], vertex};
+        ++length;
+    };
+    read_index_lists(element, num_vertices, -1, values, add, [&] { length = 0; });
 }
 
 template<class Values>
@@ -260,6 +296,8 @@ PolygonSoup read_body(const Header& header, Values values) {
             read_vertices(element, values, soup);
         else if (element.name == "face" && element.count > 0)
             read_faces(element, num_vertices, values, soup);
+        else if (element.name == "tristrips" && element.count > 0)
+            read_strips(element, num_vertices, values, soup);
         else
             skip(element, values);
     }

@@ -39,11 +39,13 @@ void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
     mesh.triangles.reserve(soup.face_ends.size());
     Triangulator triangulator(soup.positions);
     std::vector<std::array<std::uint32_t, 3>> cut;
-    std::size_t begin = 0;
+    std::size_t begin = 0, num_skipped = 0;
     for (std::size_t face = 0; face < soup.face_ends.size(); ++face) {
         const std::size_t end = soup.face_ends[face];
         cut.clear();
-        if (end - begin >= 3)
+        if (end - begin < 3)
+            ++num_skipped;
+        else
             triangulator.cut(std::span(soup.corners).subspan(begin, end - begin), cut);
         for (const auto& [a, b, c] : cut) {
             mesh.triangles.push_back(
@@ -62,6 +64,28 @@ void triangulate(const PolygonSoup& soup, TriangleMesh& mesh) {
         throw std::runtime_error(
             fmt::format("expected faces with three or more corners, got {} vertices and {} faces",
                         soup.positions.size(), soup.face_ends.size()));
+    if (num_skipped > 0)
+        mesh.warnings.push_back(fmt::format("{} of {} faces have fewer than three corners",
+                                            num_skipped, soup.face_ends.size()));
+}
+
+/// Brings a tiny mesh to a size of about 1. Products of coordinates below 1e-19 would be lost, and
+/// shadows with them. A power of two changes nothing but the size.
+void enlarge(PolygonSoup& soup) {
+    constexpr float Least = 0x1p-40f;
+    float size = 0.0f;
+    for (const glm::vec3& p : soup.positions)
+        size = std::max({size, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+    if (size == 0.0f || size >= Least)
+        return;
+    const int exponent = -std::ilogb(size);
+    for (glm::vec3& p : soup.positions)
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = std::ldexp(p[axis], exponent);
+    soup.warnings.push_back(fmt::format(
+        "coordinates are at most {:.3g}, too small to compute with; the mesh is read 2^{} times as "
+        "large",
+        size, exponent));
 }
 
 /// Makes the normals unit length. Returns false if a vertex of some face has no usable normal.
@@ -84,7 +108,9 @@ bool normalize_normals(TriangleMesh& mesh) {
 
 TriangleMesh to_mesh(PolygonSoup soup, NormalSource source) {
     check(soup);
+    enlarge(soup);
     TriangleMesh mesh;
+    mesh.warnings = std::move(soup.warnings);
     triangulate(soup, mesh);
     mesh.positions = std::move(soup.positions);
     mesh.normals = std::move(soup.normals);

@@ -40,7 +40,7 @@ struct PolygonSoup {
     std::vector<std::string> groups;
     std::vector<Texture> textures;
     /// As in TriangleMesh.
-    std::vector<std::string> missing;
+    std::vector<std::string> missing, warnings;
 
     /// Closes the face whose corners were appended to `corners` since the last call.
     void end_face() { face_ends.push_back(corners.size()); }

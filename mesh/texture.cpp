@@ -59,20 +59,42 @@ Pair neighbours(float coordinate, std::uint32_t size, Wrap wrap) {
     return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(x - below)};
 }
 
-} // namespace
-
-Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
-    const DecodedImage image = decode_image(file);
+/// Puts the image's rows into the order of v. `texel` gives the pixel of a number from the top
+/// left.
+template<class Texel>
+Texture in_rows_of_v(const DecodedImage& image, VOrigin origin, const Texel& texel) {
     Texture texture;
     texture.width = image.width;
     texture.height = image.height;
     texture.texels.resize(std::size_t{texture.width} * texture.height);
     for (std::size_t row = 0; row < texture.height; ++row) {
         const std::size_t from = origin == VOrigin::Top ? row : texture.height - 1 - row;
-        std::memcpy(texture.texels.data() + row * texture.width,
-                    image.rgb.get() + from * texture.width * 3, std::size_t{texture.width} * 3);
+        for (std::size_t column = 0; column < texture.width; ++column)
+            texture.texels[row * texture.width + column] = texel(from * texture.width + column);
     }
     return texture;
+}
+
+} // namespace
+
+Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
+    const DecodedImage image = decode_image(file);
+    Texture texture = in_rows_of_v(image, origin, [&](std::size_t pixel) {
+        Channels texel{};
+        std::memcpy(texel.data(), image.bytes.get() + 3 * pixel, texel.size());
+        return texel;
+    });
+    texture.file.assign(file.begin(), file.end());
+    texture.origin = origin;
+    return texture;
+}
+
+Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin) {
+    const DecodedImage image = decode_alpha(file);
+    return in_rows_of_v(image, origin, [&](std::size_t pixel) {
+        const std::uint8_t alpha = image.bytes.get()[pixel];
+        return Channels{alpha, alpha, alpha};
+    });
 }
 
 glm::vec3 sample(const Texture& texture, const TextureSlot& slot, const glm::vec2& mesh_uv) {

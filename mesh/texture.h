@@ -27,16 +27,23 @@ struct Texture {
     std::uint32_t height = 0;
     /// [height x width], rows along u, from v = 0 on.
     std::vector<std::array<std::uint8_t, 3>> texels;
+    /// The image file that was decoded, and its end at v = 0. Empty for a texture that was computed.
+    std::vector<std::byte> file;
+    VOrigin origin = VOrigin::Top;
 
     bool operator==(const Texture&) const = default;
 };
 
-/// Decodes a PNG, JPEG, BMP or TGA file. Grey becomes RGB, alpha is dropped, 16 bits become 8.
-/// `origin` is the end from which the mesh's uvs count.
-/// Throws:  std::runtime_error "expected X, got Y" for a file that is no such image, is broken, or
+/// Decodes a PNG, JPEG, WebP, BMP or TGA file. Grey becomes RGB, alpha is dropped, 16 bits
+/// become 8. `origin` is the end from which the mesh's uvs count. Throws:  std::runtime_error
+/// "expected X, got Y" for a file that is no such image, is broken, or
 ///          declares more than 16384 x 16384 pixels or more than its bytes can hold
 ///          (mesh/image_decoder.h).
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> file, VOrigin origin);
+
+/// Decodes the alpha of an image, as grey: 255 if it has none.
+/// Throws:  as decode_texture().
+[[nodiscard]] Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin);
 
 /// Returns the texture's value at a uv of the mesh, each channel in [0, 1]. Values are bilinear
 /// between texel centres, which lie at (i + 0.5) / width. A uv that is not finite counts as 0.

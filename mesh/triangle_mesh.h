@@ -49,6 +49,8 @@ struct TriangleMesh {
     std::vector<Texture> textures;
     /// Material and image files that the file names but that do not exist.
     std::vector<std::string> missing;
+    /// What the file holds and the mesh does not, a line each.
+    std::vector<std::string> warnings;
 
     [[nodiscard]] std::size_t num_vertices() const { return positions.size(); }
     [[nodiscard]] std::size_t num_triangles() const { return triangles.size(); }

@@ -57,6 +57,25 @@ struct Sum {
     // functions around it.
     Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
 
+    /// Adds max(n.E, 0).
+    void add_clamped(const Normals& n, const float* e) {
+        add(n.cosine(e), n.cosine(e + 3), n.cosine(e + 6));
+    }
+
+    void add(FloatVec r, FloatVec g, FloatVec b) {
+        red = hn::Add(red, r);
+        green = hn::Add(green, g);
+        blue = hn::Add(blue, b);
+    }
+
+    /// Gives all that was added so far the count of a whole cluster.
+    void count_full() {
+        const auto full = hn::Set(Floats(), static_cast<float>(prt::FullCount));
+        red = hn::Mul(red, full);
+        green = hn::Mul(green, full);
+        blue = hn::Mul(blue, full);
+    }
+
     /// Adds c max(n.E, 0).
     void add_clamped(FloatVec count, const Normals& n, const float* e) {
         add(count, n.cosine(e), n.cosine(e + 3), n.cosine(e + 6));
@@ -110,9 +129,13 @@ std::size_t first_float(std::uint64_t bits) {
     return static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride;
 }
 
-/// The mixed clusters of a block and word. `counts` begins at the word's first entry.
+/// The clusters of a block and word that add up per receiver.
 struct MixedWord {
-    std::uint64_t clusters;
+    /// Seen in part.
+    std::uint64_t mixed;
+    /// Seen whole, across a horizon.
+    std::uint64_t across;
+    /// Begins at the first entry of `mixed`.
     const std::uint8_t* counts;
     const BlockNormals& normals;
 };
@@ -122,9 +145,11 @@ void sum_clamped(const MixedWord& word, const float* vectors, WordSum& result) {
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
         const Normals n(word.normals, lane);
         Sum sum;
+        for (std::uint64_t bits = word.across; bits != 0; bits &= bits - 1)
+            sum.add_clamped(n, vectors + first_float(bits));
+        sum.count_full();
         const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.clusters; bits != 0;
-             bits &= bits - 1, counts += prt::BlockSize)
+        for (std::uint64_t bits = word.mixed; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
             sum.add_clamped(load_counts(counts), n, vectors + first_float(bits));
         sum.store(result, lane);
     }
@@ -135,8 +160,7 @@ void sum_unclamped(const MixedWord& word, const float* vectors, WordSum& result)
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
         VectorSum sum;
         const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.clusters; bits != 0;
-             bits &= bits - 1, counts += prt::BlockSize)
+        for (std::uint64_t bits = word.mixed; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
             sum.add(load_counts(counts), vectors + first_float(bits));
         sum.on(Normals(word.normals, lane)).store(result, lane);
     }
@@ -149,8 +173,19 @@ void sum_clamped_twice(const MixedWord& word, std::uint64_t changed, const float
         const Normals n(word.normals, lane);
         Sum sum_before;
         Sum sum_after;
+        for (std::uint64_t bits = word.across; bits != 0; bits &= bits - 1) {
+            const float* e = before + first_float(bits);
+            const auto red = n.cosine(e), green = n.cosine(e + 3), blue = n.cosine(e + 6);
+            sum_before.add(red, green, blue);
+            if ((changed & bits & (~bits + 1)) == 0)
+                sum_after.add(red, green, blue);
+            else
+                sum_after.add_clamped(n, after + first_float(bits));
+        }
+        sum_before.count_full();
+        sum_after.count_full();
         const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.clusters; bits != 0;
+        for (std::uint64_t bits = word.mixed; bits != 0;
              bits &= bits - 1, counts += prt::BlockSize) {
             const auto count = load_counts(counts);
             const float* e = before + first_float(bits);
@@ -243,25 +278,36 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
     const std::size_t end = counts.tile_begin(tile + 1);
     std::fill(light + begin, light + end, BlockLight{});
     for (std::size_t w = 0; w < counts.words_per_block(); ++w) {
-        const TileWord& blocks = scene.words[tile * counts.words_per_block() + w];
+        const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + w];
         const std::size_t first_word = counts.word(begin, w);
         const float* vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride;
         const double* prefix = lights.prefix.data() + w * 64 * ClusterLights::Stride;
-        const auto mixed = [&](std::size_t block, std::size_t word) {
-            return MixedWord{counts.mixed[word], counts.mixed_counts(word, 0),
+        const auto mixed = [&](std::size_t block, std::size_t word, std::uint64_t across) {
+            return MixedWord{counts.mixed[word], across, counts.mixed_counts(word, 0),
                              scene.normals[block]};
         };
-        for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
-            add_runs(counts.visible[word], prefix, light[block].visible.data());
-        });
-        for_blocks(blocks.clamped, begin, first_word, [&](std::size_t block, std::size_t word) {
+        const auto add_clamped = [&](const MixedWord& word, std::size_t block) {
             WordSum sum;
-            sum_clamped(mixed(block, word), vectors, sum);
+            sum_clamped(word, vectors, sum);
             add(sum, light[block]);
+        };
+        const std::uint64_t* across = scene.words.across.data() + blocks.across_before;
+        for_blocks(blocks.across, begin, first_word, [&](std::size_t block, std::size_t word) {
+            if (const std::uint64_t above = counts.visible[word] & ~*across; above != 0)
+                add_runs(above, prefix, light[block].visible.data());
+            add_clamped(mixed(block, word, *across++), block);
         });
+        for_blocks(blocks.visible & ~blocks.across, begin, first_word,
+                   [&](std::size_t block, std::size_t word) {
+                       add_runs(counts.visible[word], prefix, light[block].visible.data());
+                   });
+        for_blocks(blocks.clamped & ~blocks.across, begin, first_word,
+                   [&](std::size_t block, std::size_t word) {
+                       add_clamped(mixed(block, word, 0), block);
+                   });
         for_blocks(blocks.unclamped, begin, first_word, [&](std::size_t block, std::size_t word) {
             WordSum sum;
-            sum_unclamped(mixed(block, word), vectors, sum);
+            sum_unclamped(mixed(block, word, 0), vectors, sum);
             add(sum, light[block]);
         });
     }
@@ -295,7 +341,7 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
     const std::size_t begin = counts.tile_begin(tile);
     std::uint64_t touched = 0;
     for (const ChangedWord& change : changes) {
-        const TileWord& blocks = scene.words[tile * counts.words_per_block() + change.word];
+        const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + change.word];
         const std::size_t first_word = counts.word(begin, change.word);
         const float* before = all_before + std::size_t{change.word} * 64 * ClusterLights::Stride;
         const float* after = all_after + std::size_t{change.word} * 64 * ClusterLights::Stride;
@@ -303,7 +349,9 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
         // neighbours in the sky.
         const VectorDifference all(change.clusters, before, after);
         for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
-            const std::uint64_t seen = counts.visible[word] & change.clusters;
+            const std::uint64_t seen = counts.visible[word] &
+                                       ~scene.words.across_of(blocks, block - begin) &
+                                       change.clusters;
             if (seen == 0)
                 return;
             touched |= std::uint64_t{1} << (block - begin);
@@ -314,11 +362,12 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
         });
         for_blocks(blocks.clamped | blocks.unclamped, begin, first_word,
                    [&](std::size_t block, std::size_t word) {
-                       if ((counts.mixed[word] & change.clusters) == 0)
+                       const MixedWord mixed{counts.mixed[word],
+                                             scene.words.across_of(blocks, block - begin),
+                                             counts.mixed_counts(word, 0), scene.normals[block]};
+                       if (((mixed.mixed | mixed.across) & change.clusters) == 0)
                            return;
                        touched |= std::uint64_t{1} << (block - begin);
-                       const MixedWord mixed{counts.mixed[word], counts.mixed_counts(word, 0),
-                                             scene.normals[block]};
                        WordSum sum_before;
                        WordSum sum_after;
                        if ((blocks.clamped >> (block - begin) & 1u) != 0) {

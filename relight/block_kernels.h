@@ -34,7 +34,7 @@ struct ClusterLights {
 };
 
 /// The light that a block of 16 receivers has received, in two parts. Clusters that all 16 see
-/// whole add up to one vector. Clusters that they see in part add up per receiver.
+/// whole, above their horizons, add up to one vector. Other clusters add up per receiver.
 ///
 /// The sums consist of float sums over 64 clusters each, added in double. An update subtracts such
 /// a float sum and adds the new one. So nothing remains of a light that is gone, not even its
@@ -77,7 +77,7 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light,
 struct BlockScene {
     const prt::VisibleCounts& counts;
     /// From tile_words().
-    std::span<const TileWord> words;
+    const TileWords& words;
     /// [num_blocks]
     std::span<const BlockNormals> normals;
 };

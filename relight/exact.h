@@ -5,13 +5,16 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <span>
 #include <stop_token>
 #include <vector>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/image/environment.h"
 #include "prt/receivers/receivers.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
@@ -41,6 +44,25 @@ exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> r
                const prt::Blockers& blockers, const cubemap::CubeMap& environment,
                const ExactOptions& options = {});
 
+/// An environment as its file has it, and how the map that lights the scene was turned.
+struct EnvironmentFile {
+    std::shared_ptr<const cubemap::EnvironmentImage> image;
+    /// What the image shows in direction w lights the scene from `turn` w.
+    glm::dmat3 turn{1.0};
+};
+
+/// Integrates the pixels of an environment's file, without a cube map between: each pixel is a
+/// small area of even radiance. Pixels that hold much of the light are cut into parts, so that no
+/// ray stands for much of it. Dim neighbours of large images share a ray.
+///
+/// Cost:    about half a million rays for each receiver at most, and some thousand for bright
+///          pixels.
+/// Throws:  as above.
+[[nodiscard]] std::vector<glm::dvec3>
+exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
+               const prt::Blockers& blockers, const EnvironmentFile& environment,
+               const ExactOptions& options = {});
+
 /// Returns `count` receivers chosen at random without repetition; all of them for 0, or for more
 /// than there are. The same seed gives the same receivers. Neighbours in space stand together, so
 /// that their rays are traced together.
@@ -55,6 +77,8 @@ struct ErrorReport {
     double mean_abs = 0.0;
     /// Largest |B - B_exact|, over mean_radiance.
     double max_abs = 0.0;
+    /// Mean of B - B_exact over receivers and RGB, over mean_radiance.
+    double bias = 0.0;
     /// Mean of B_exact over receivers and RGB.
     double mean_radiance = 0.0;
     /// The receiver with max_abs.

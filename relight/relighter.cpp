@@ -122,7 +122,7 @@ private:
     /// [num_blocks]
     std::vector<BlockNormals> normals_;
     /// From tile_words().
-    std::vector<TileWord> words_;
+    TileWords words_;
     /// [num_blocks]
     std::vector<BlockLight> light_;
     ClusterLights lights_;

@@ -1,9 +1,14 @@
 #include "relight/tile_words.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cstring>
 
+#include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
+
+#include "prt/clusters/lattice.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -16,13 +21,13 @@ namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Clusters of a word.
+constexpr std::size_t WordClusters = 64;
 /// Corners of a cell: x, y, z of four directions.
 constexpr std::size_t CornerFloats = 12;
 
-/// Whether every receiver with a count has all four corners above its horizon, and so the whole
-/// cell.
-bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals,
-                     const float* corners) {
+/// Whether a receiver that counts the cell has one of its four corners below its horizon.
+bool lies_across(const std::uint8_t* counts, const BlockNormals& normals, const float* corners) {
     const hn::CappedTag<float, prt::BlockSize> d;
     const hn::Rebind<std::uint8_t, decltype(d)> bytes;
     const hn::Rebind<std::int32_t, decltype(d)> integers;
@@ -39,21 +44,64 @@ bool sees_only_above(const std::uint8_t* counts, const BlockNormals& normals,
         const auto count = hn::PromoteTo(integers, hn::LoadU(bytes, counts + lane));
         const auto counted = hn::RebindMask(d, hn::Gt(count, hn::Zero(integers)));
         if (!hn::AllFalse(d, hn::And(counted, hn::Lt(lowest, hn::Zero(d)))))
-            return false;
+            return true;
     }
-    return true;
+    return false;
 }
 
-/// Whether sees_only_above() holds for all clusters in `mixed`. `counts` and `corners` begin at the
-/// word's first entry and cluster.
-bool needs_no_clamp(std::uint64_t mixed, const std::uint8_t* counts, const BlockNormals& normals,
-                    const float* corners) {
+/// Returns the clusters of a word whose cells may reach below the horizon of a receiver of the
+/// block. `bounds` are x, y, z and radius of the word's first cell, `stride` floats apart.
+std::uint64_t near_horizon(const float* bounds, std::size_t stride, const glm::vec3& normal,
+                           float normal_length, float normal_radius) {
+    // Float sums of four terms err by less than this.
+    constexpr float Slack = 1e-6f;
+    const hn::CappedTag<float, 16> d;
+    std::uint64_t near = 0;
+    for (std::size_t i = 0; i < WordClusters; i += hn::Lanes(d)) {
+        // n.w over the cell and the normals is at least n.c - |n| radius of the cell - radius of
+        // the normals.
+        const auto along_z = hn::Mul(hn::Set(d, normal.z), hn::LoadU(d, bounds + 2 * stride + i));
+        const auto along_yz =
+            hn::MulAdd(hn::Set(d, normal.y), hn::LoadU(d, bounds + stride + i), along_z);
+        const auto cosine = hn::MulAdd(hn::Set(d, normal.x), hn::LoadU(d, bounds + i), along_yz);
+        const auto lowest =
+            hn::NegMulAdd(hn::Set(d, normal_length), hn::LoadU(d, bounds + 3 * stride + i), cosine);
+        std::uint8_t bits[8] = {};
+        hn::StoreMaskBits(d, hn::Lt(lowest, hn::Set(d, normal_radius + Slack)), bits);
+        std::uint64_t word = 0;
+        std::memcpy(&word, bits, sizeof word);
+        near |= word << i;
+    }
+    return near;
+}
+
+/// Returns the clusters of `near` that the block sees whole across a horizon.
+std::uint64_t visible_across(std::uint64_t near, const BlockNormals& normals,
+                             const float* corners) {
+    static constexpr auto All = [] {
+        std::array<std::uint8_t, prt::BlockSize> counts{};
+        counts.fill(prt::FullCount);
+        return counts;
+    }();
+    std::uint64_t across = 0;
+    for (; near != 0; near &= near - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(near));
+        if (lies_across(All.data(), normals, corners + bit * CornerFloats))
+            across |= std::uint64_t{1} << bit;
+    }
+    return across;
+}
+
+/// Whether the block sees a part of any cluster of `near` across a horizon. `counts` begins at the
+/// first entry of the word's `mixed` clusters.
+bool any_mixed_across(std::uint64_t near, std::uint64_t mixed, const std::uint8_t* counts,
+                      const BlockNormals& normals, const float* corners) {
     for (; mixed != 0; mixed &= mixed - 1, counts += prt::BlockSize) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(mixed));
-        if (!sees_only_above(counts, normals, corners + bit * CornerFloats))
-            return false;
+        if ((near >> bit & 1u) != 0 && lies_across(counts, normals, corners + bit * CornerFloats))
+            return true;
     }
-    return true;
+    return false;
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE
@@ -64,46 +112,122 @@ namespace relumine::relight {
 
 namespace {
 
-HWY_EXPORT(needs_no_clamp);
+HWY_EXPORT(any_mixed_across);
+HWY_EXPORT(near_horizon);
+HWY_EXPORT(visible_across);
 
-std::vector<std::array<glm::vec3, 4>> corners_of(const prt::Quadtree& quadtree) {
+/// The cells' places on the sphere.
+struct CellBounds {
+    /// [num_clusters][4]
     std::vector<std::array<glm::vec3, 4>> corners;
-    corners.reserve(quadtree.leaves().size());
-    for (const prt::Cell& cell : quadtree.leaves()) {
-        std::array<glm::vec3, 4>& of_cell = corners.emplace_back();
-        for (std::uint32_t i = 0; i < 4; ++i)
-            of_cell[i] = glm::vec3(cubemap::direction(cell.face, (cell.x + (i & 1u)) * cell.size(),
-                                                      (cell.y + (i >> 1u)) * cell.size()));
+    /// Floats of one array below: whole words.
+    std::size_t stride;
+    /// [4 * stride] x, y and z of the cells' centres, and the largest distance from a centre to a
+    /// point of its cell.
+    std::vector<float> bounds;
+
+    explicit CellBounds(const prt::Quadtree& quadtree)
+        : corners(quadtree.num_leaves()), stride((quadtree.num_leaves() + 63) / 64 * 64),
+          bounds(4 * stride) {
+        for (std::size_t leaf = 0; leaf < corners.size(); ++leaf) {
+            const prt::Cell& cell = quadtree.leaves()[leaf];
+            const auto at = [&](double x, double y) {
+                return glm::vec3(cubemap::direction(cell.face, (cell.x + x) * cell.size(),
+                                                    (cell.y + y) * cell.size()));
+            };
+            const glm::vec3 centre = at(0.5, 0.5);
+            for (int axis = 0; axis < 3; ++axis)
+                bounds[static_cast<std::size_t>(axis) * stride + leaf] = centre[axis];
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                corners[leaf][i] = at(i & 1u, i >> 1u);
+                float& radius = bounds[3 * stride + leaf];
+                radius = std::max(radius, glm::distance(centre, corners[leaf][i]));
+            }
+        }
     }
-    return corners;
-}
+};
+
+/// The normals of a block differ from `mean` by at most `radius`.
+struct NormalBounds {
+    glm::vec3 mean{0.0f};
+    float length = 0.0f;
+    float radius = 0.0f;
+
+    explicit NormalBounds(const BlockNormals& normals) {
+        const auto normal = [&](std::size_t i) {
+            return glm::vec3(normals.axes[0][i], normals.axes[1][i], normals.axes[2][i]);
+        };
+        float num_normals = 0.0f;
+        for (std::size_t i = 0; i < prt::BlockSize; ++i)
+            if (normal(i) != glm::vec3(0.0f)) {
+                mean += normal(i);
+                ++num_normals;
+            }
+        mean /= std::max(num_normals, 1.0f);
+        length = glm::length(mean);
+        // A zero normal has no horizon.
+        for (std::size_t i = 0; i < prt::BlockSize; ++i)
+            if (normal(i) != glm::vec3(0.0f))
+                radius = std::max(radius, glm::distance(mean, normal(i)));
+    }
+};
 
 } // namespace
 
-std::vector<TileWord> tile_words(const prt::Transfer& transfer,
-                                 std::span<const BlockNormals> normals) {
+TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals> normals) {
     const prt::VisibleCounts& counts = transfer.counts;
-    const std::vector<std::array<glm::vec3, 4>> corners = corners_of(transfer.quadtree);
+    const CellBounds cells(transfer.quadtree);
     const std::size_t num_words = counts.words_per_block();
-    std::vector<TileWord> result(counts.num_tiles() * num_words);
+    TileWords result;
+    result.words.resize(counts.num_tiles() * num_words);
+    std::vector<std::vector<std::uint64_t>> across_of_tiles(counts.num_tiles());
     tbb::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
         const std::size_t begin = counts.tile_begin(tile);
         const std::size_t end = counts.tile_begin(tile + 1);
+        std::vector<std::uint64_t>& all_across = across_of_tiles[tile];
+        std::vector<NormalBounds> blocks;
         for (std::size_t block = begin; block < end; ++block)
-            for (std::size_t w = 0; w < num_words; ++w) {
+            blocks.emplace_back(normals[block]);
+        for (std::size_t w = 0; w < num_words; ++w) {
+            TileWord& of_tile = result.words[tile * num_words + w];
+            of_tile.across_before = all_across.size();
+            const float* corners = &cells.corners[w * 64].front().x;
+            for (std::size_t block = begin; block < end; ++block) {
                 const std::size_t word = counts.word(block, w);
-                const std::uint64_t bit = std::uint64_t{1} << (block - begin);
-                TileWord& of_tile = result[tile * num_words + w];
-                if (counts.visible[word] != 0)
-                    of_tile.visible |= bit;
-                if (counts.mixed[word] == 0)
+                const std::uint64_t visible = counts.visible[word];
+                const std::uint64_t mixed = counts.mixed[word];
+                if ((visible | mixed) == 0)
                     continue;
-                const bool unclamped = HWY_DYNAMIC_DISPATCH(needs_no_clamp)(
-                    counts.mixed[word], counts.mixed_counts(word, 0), normals[block],
-                    &corners[w * 64].front().x);
-                (unclamped ? of_tile.unclamped : of_tile.clamped) |= bit;
+                const std::uint64_t bit = std::uint64_t{1} << (block - begin);
+                const NormalBounds& of_block = blocks[block - begin];
+                const std::uint64_t near = HWY_DYNAMIC_DISPATCH(near_horizon)(
+                    cells.bounds.data() + w * 64, cells.stride, of_block.mean, of_block.length,
+                    of_block.radius);
+                const std::uint64_t across =
+                    HWY_DYNAMIC_DISPATCH(visible_across)(near & visible, normals[block], corners);
+                if ((visible & ~across) != 0)
+                    of_tile.visible |= bit;
+                if (across != 0) {
+                    of_tile.across |= bit;
+                    all_across.push_back(across);
+                }
+                const bool clamped = across != 0 || ((near & mixed) != 0 &&
+                                                     HWY_DYNAMIC_DISPATCH(any_mixed_across)(
+                                                         near, mixed, counts.mixed_counts(word, 0),
+                                                         normals[block], corners));
+                if (clamped)
+                    of_tile.clamped |= bit;
+                else if (mixed != 0)
+                    of_tile.unclamped |= bit;
             }
+        }
     });
+    for (std::size_t tile = 0; tile < counts.num_tiles(); ++tile) {
+        for (std::size_t w = 0; w < num_words; ++w)
+            result.words[tile * num_words + w].across_before += result.across.size();
+        result.across.insert(result.across.end(), across_of_tiles[tile].begin(),
+                             across_of_tiles[tile].end());
+    }
     return result;
 }
 

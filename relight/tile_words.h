@@ -1,6 +1,7 @@
 // Which blocks of a tile have which work to do for a word of 64 clusters.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -15,24 +16,47 @@ namespace relumine::relight {
 /// the tile's block b. Loops over these bits jump to the work. Loops over all words would ask each
 /// word, and the processor would guess the branch wrong.
 struct TileWord {
-    /// The block sees some clusters whole.
+    /// The block sees some clusters whole, and all of them lie above its receivers' horizons.
     std::uint64_t visible = 0;
-    /// The block sees some clusters in part, and the sums need max(n.E, 0).
+    /// The block sees some clusters in part, or whole but across a receiver's horizon, and the sums
+    /// need max(n.E, 0).
     std::uint64_t clamped = 0;
     /// The block sees some clusters in part, and the sums need no clamp. Never set with `clamped`.
     std::uint64_t unclamped = 0;
+    /// The block sees some clusters whole across a receiver's horizon: it has an entry in
+    /// TileWords::across.
+    std::uint64_t across = 0;
+    /// Entries in TileWords::across before the first block's.
+    std::uint64_t across_before = 0;
 };
 
-/// Returns the words of all tiles.
+/// The words of all tiles.
 ///
-/// A word is unclamped when each receiver of the block has the whole cell of every cluster that it
-/// counts above its horizon. Then n.E >= 0 for any light of the cell, and the sum of c max(n.E, 0)
-/// over the word is n . sum of c E, which costs a third less. Half of the bunny's words are
-/// unclamped.
+/// A cluster lies across a block's horizons when a receiver that counts it has a part of its cell
+/// below its horizon. There n.E may be negative, and max(n.E, 0) must be taken for each receiver
+/// and colour. Elsewhere n.E >= 0 for any light of the cell: whole clusters add up before they meet
+/// the normals, and the sum of c max(n.E, 0) over the parts of a word is n . sum of c E, which
+/// costs a third less.
+struct TileWords {
+    /// [num_tiles * words_per_block], tile by tile.
+    std::vector<TileWord> words;
+    /// For each word and block in `across`: the clusters that are seen whole across a horizon.
+    std::vector<std::uint64_t> across;
+
+    /// Returns the clusters that a tile's block sees whole across a horizon.
+    [[nodiscard]] std::uint64_t across_of(const TileWord& word, std::size_t block_of_tile) const {
+        const std::uint64_t bit = std::uint64_t{1} << block_of_tile;
+        if ((word.across & bit) == 0)
+            return 0;
+        return across[word.across_before +
+                      static_cast<std::size_t>(std::popcount(word.across & (bit - 1)))];
+    }
+};
+
+/// Finds the work of all tiles.
 ///
-/// Shape:   [num_tiles * words_per_block], tile by tile.
-/// Cost:    O(mixed pairs); parallel (TBB).
-[[nodiscard]] std::vector<TileWord> tile_words(const prt::Transfer& transfer,
-                                               std::span<const BlockNormals> normals);
+/// Cost:    O(mixed pairs, and visible pairs near the horizon); parallel (TBB).
+[[nodiscard]] TileWords tile_words(const prt::Transfer& transfer,
+                                   std::span<const BlockNormals> normals);
 
 } // namespace relumine::relight

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -92,11 +93,14 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const cubemap::EnvironmentImage image = load_environment_image(path, options);
+    const auto image =
+        std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
     const Clock::time_point loaded = Clock::now();
-    Environment result{.map = cube_map_of(image, options), .assumptions = image.assumptions};
-    result.num_fixed_pixels = image.fixed ? image.bad_pixels.count() : 0;
-    result.warnings = warnings_about(image, cubemap::light_from_below(result.map));
+    Environment result{.map = cube_map_of(*image, options),
+                       .file = {.image = image, .turn = world_from_image(image->layout, options)},
+                       .assumptions = image->assumptions};
+    result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
+    result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));
     result.seconds_load = std::chrono::duration<double>(loaded - start).count();
     result.seconds_resample = std::chrono::duration<double>(Clock::now() - loaded).count();
     return result;

@@ -12,6 +12,7 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
+#include "relight/exact.h"
 
 namespace relumine {
 
@@ -36,6 +37,8 @@ struct EnvironmentOptions {
 /// An environment ready to light a scene, and what was found out about its file.
 struct Environment {
     cubemap::CubeMap map;
+    /// What the map was made from
+    relight::EnvironmentFile file;
     /// One sentence: which layout and sampling the file has, and why
     std::string assumptions;
     /// Pixels that were replaced

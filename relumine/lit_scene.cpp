@@ -72,6 +72,7 @@ struct LitScene::Impl {
             made->set_base(relighter->environment());
         editor = std::move(made);
         relighter.reset();
+        file = {};
         is_lit_by_list = false;
         return *editor;
     }
@@ -82,6 +83,8 @@ struct LitScene::Impl {
     /// One of the two lights the scene; none before the first light()
     std::optional<relight::Relighter> relighter;
     std::unique_ptr<relight::LightEditor> editor;
+    /// What the environment was made from, while nothing has changed it
+    relight::EnvironmentFile file;
     /// Behind light lists
     cubemap::CubeMap black{1};
     cubemap::CubeMap nothing;
@@ -126,11 +129,15 @@ RelightTimes LitScene::light(cubemap::CubeMap environment) {
         impl_->editor ? impl_->editor->set_base(std::move(environment))
                       : impl_->plain_relighter().set_environment(std::move(environment));
     impl_->is_lit_by_list = false;
+    impl_->file = {};
     return times;
 }
 
 RelightTimes LitScene::light(Environment environment) {
-    return light(std::move(environment.map));
+    const RelightTimes times = light(std::move(environment.map));
+    if (!impl_->editor)
+        impl_->file = std::move(environment.file);
+    return times;
 }
 
 BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
@@ -157,13 +164,17 @@ RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
         impl_->editor.reset();
     }
     impl_->is_lit_by_list = true;
+    impl_->file = {};
     return times;
 }
 
 UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
                                      std::span<const glm::vec3> radiance) {
-    if (!impl_->editor)
-        return impl_->plain_relighter().update_region(rectangle, radiance);
+    if (!impl_->editor) {
+        const UpdateReport report = impl_->plain_relighter().update_region(rectangle, radiance);
+        impl_->file = {};
+        return report;
+    }
     if (!impl_->has_environment())
         throw std::invalid_argument("expected an environment before its first update");
     cubemap::CubeMap base = *impl_->editor->base();
@@ -223,11 +234,16 @@ Verification LitScene::verify(const VerifyOptions& options) const {
     Verification result;
     result.receivers =
         relight::random_receivers(impl_->scene.transfer, options.num_samples, options.seed);
-    const std::vector<glm::dvec3> exact = relight::exact_radiance(
-        impl_->scene.receivers, result.receivers, impl_->rays, relighter.environment(),
-        {.bias = impl_->scene.settings.bias,
-         .stop = options.stop,
-         .on_progress = options.on_progress});
+    const relight::ExactOptions exact_options{.bias = impl_->scene.settings.bias,
+                                              .stop = options.stop,
+                                              .on_progress = options.on_progress};
+    const auto exact_under = [&](const auto& light) {
+        return relight::exact_radiance(impl_->scene.receivers, result.receivers, impl_->rays, light,
+                                       exact_options);
+    };
+    result.of_file = impl_->file.image != nullptr;
+    const std::vector<glm::dvec3> exact =
+        result.of_file ? exact_under(impl_->file) : exact_under(relighter.environment());
     result.error = relight::compare(result.receivers, exact, relighter.radiance());
     return result;
 }

@@ -51,6 +51,8 @@ struct Verification {
     /// The receivers that were looked at
     std::vector<std::uint32_t> receivers;
     relight::ErrorReport error;
+    /// Whether the pixels of the environment's file were integrated, not the texels of the map
+    bool of_file = false;
 };
 
 /// What a part of the environment gives to a scene.
@@ -164,11 +166,13 @@ public:
     /// Throws:  std::logic_error before the first light() and for a scene without clusters.
     [[nodiscard]] const relight::Relighter& relighter() const;
 
-    /// Compares the radiance with exact integration: every texel of the environment, every shadow
-    /// ray.
+    /// Compares the radiance with exact integration, every shadow ray traced. Under an Environment
+    /// from a file, its own pixels are integrated, each as a small area: so the error includes that
+    /// of resampling. Under a map, or when layers or updates changed the environment, the map's
+    /// texels are.
     ///
     /// Throws:  std::logic_error unless an environment lights the scene; Cancelled.
-    /// Cost:    6 R^2 rays for each receiver: seconds for 2000 of them at R = 256.
+    /// Cost:    half a million rays for each receiver, or 6 R^2: seconds for 2000 of them.
     [[nodiscard]] Verification verify(const VerifyOptions& options = {}) const;
 
     /// What lights these receivers: the environment, each texel weighted by how much of it they

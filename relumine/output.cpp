@@ -70,7 +70,10 @@ void require_finite(const std::filesystem::path& path, std::span<const glm::vec3
 } // namespace
 
 Painter::Painter(const LitScene& lit, const OutputOptions& options)
-    : scene_(lit.scene()), rays_(lit.rays()), options_(options) {}
+    : scene_(lit.scene()), rays_(lit.rays()), options_(options) {
+    if (std::holds_alternative<prt::VertexLayout>(scene_.layout) && !scene_.transfer.glossy)
+        surface_colors_ = {scene_.mesh, scene_.receivers.surfaces};
+}
 
 Picture Painter::draw(std::span<const glm::vec3> radiance, const cubemap::CubeMap& environment) {
     const std::vector<glm::vec3> colors = colors_of(scene_, radiance, options_.albedo);
@@ -86,10 +89,11 @@ Picture Painter::draw(std::span<const glm::vec3> radiance, const cubemap::CubeMa
         options_.camera ? *options_.camera : camera_of(scene_, size, options_.fov_degrees);
     // What one picture's rays hit need not be kept.
     if (!std::exchange(drew_one_, true))
-        return relight::draw(scene_.mesh, rays_, colors, environment, camera, size);
+        return relight::draw(scene_.mesh, rays_, colors, environment, camera, size,
+                             surface_colors_);
     if (!view_)
         view_ = std::make_unique<relight::PictureView>(scene_.mesh, rays_, camera, size);
-    return view_->draw(colors, environment);
+    return view_->draw(colors, environment, surface_colors_);
 }
 
 std::vector<glm::vec3> Painter::values(std::span<const glm::vec3> radiance) const {

@@ -69,7 +69,8 @@ public:
     Painter(const LitScene& lit, const OutputOptions& options);
     Painter(LitScene&&, const OutputOptions&) = delete;
 
-    /// What vertices look like from the camera, the pixels' own picture, or the texels' lightmap.
+    /// What vertices look like from the camera, with the textures of the mesh where there are no
+    /// highlights; the pixels' own picture; or the texels' lightmap.
     /// `radiance` as LitScene::radiance() has it; the environment is the background.
     [[nodiscard]] Picture draw(std::span<const glm::vec3> radiance,
                                const cubemap::CubeMap& environment);
@@ -88,6 +89,8 @@ private:
     OutputOptions options_;
     /// Made when a second picture is drawn
     std::unique_ptr<relight::PictureView> view_;
+    /// Of vertices without highlights.
+    relight::SurfaceColors surface_colors_;
     bool drew_one_ = false;
 };
 

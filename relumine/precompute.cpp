@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <glm/common.hpp>
 
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/scene/checkpoint_file.h"
@@ -204,6 +205,7 @@ private:
         prt::Receivers& receivers = scene_.receivers;
         if (receivers.points.empty()) {
             receivers.surfaces = prt::vertex_surfaces(mesh, options_.surface);
+            prepare_textures();
         } else {
             receivers.surfaces.clear();
             for (const prt::MeshPoint& point : receivers.points) {
@@ -214,6 +216,27 @@ private:
         }
         if (receivers.to_eye.empty())
             leave_highlights_out();
+    }
+
+    /// Pictures take the light of the vertices and the colours of the textures. So the option's
+    /// surfaces lose their textures, and black vertices keep a trace by which their light is known:
+    /// the lowest value that an image of 8 bits has.
+    void prepare_textures() {
+        mesh::TriangleMesh& mesh = scene_.mesh;
+        if (mesh.textures.empty())
+            return;
+        if (options_.surface) {
+            const auto plain = static_cast<std::uint32_t>(mesh.materials.size());
+            mesh.materials.push_back({.name = "option"});
+            for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i) {
+                const prt::Surface own = prt::surface_at(mesh, i, glm::vec2(1.0f / 3.0f));
+                if (options_.surface(mesh, i, own) != own)
+                    mesh.triangle_materials[i] = plain;
+            }
+        }
+        constexpr float LeastAlbedo = 1.0f / 255.0f / 12.92f;
+        for (prt::Surface& surface : scene_.receivers.surfaces)
+            surface.albedo = glm::max(surface.albedo, LeastAlbedo);
     }
 
     void leave_highlights_out() {

@@ -31,6 +31,8 @@ void set_colors(Scene& scene, const SurfaceColors& colors) {
         surface.albedo = colors.albedo.value_or(surface.albedo);
         surface.specular = colors.specular.value_or(surface.specular);
     }
+    if (colors.albedo) // textures, too, give way to it
+        scene.mesh.triangle_materials.clear();
     prt::set_surfaces(scene.transfer, scene.receivers);
 }
 

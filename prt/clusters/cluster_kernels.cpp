@@ -3,6 +3,8 @@
 #include <bit>
 #include <cstring>
 
+#include "prt/clusters/horizon.h"
+
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "prt/clusters/cluster_kernels.cpp"
@@ -94,20 +96,15 @@ std::array<std::uint64_t, 256> bytes_from_bits() {
     return table;
 }
 
-/// Appends the weighted counts of 16 receivers. Each sample gives 16 bits.
-void append_counts(const std::array<std::uint16_t, SamplesPerCell>& lit,
-                   const std::array<std::uint8_t, SamplesPerCell>& weights,
-                   std::vector<std::uint8_t>& counts) {
-    static const std::array<std::uint64_t, 256> Bytes = bytes_from_bits();
-    std::array<std::uint64_t, 2> sums{};
-    for (std::size_t l = 0; l < SamplesPerCell; ++l) {
-        sums[0] += Bytes[lit[l] & 0xffu] * weights[l];
-        sums[1] += Bytes[lit[l] >> 8u] * weights[l];
-    }
-    static_assert(std::endian::native == std::endian::little, "byte i of a word is receiver i");
-    const std::size_t end = counts.size();
-    counts.resize(end + BlockSize);
-    std::memcpy(counts.data() + end, sums.data(), BlockSize);
+/// Returns round(16 s / a) at [a][s]; 0 where a is 0. There are no halves to round: 32 s / a is no
+/// odd number for any a up to 16.
+constexpr std::array<std::array<std::uint8_t, FullCount + 1>, FullCount + 1> visible_parts() {
+    std::array<std::array<std::uint8_t, FullCount + 1>, FullCount + 1> table{};
+    for (std::size_t above = 1; above <= FullCount; ++above)
+        for (std::size_t seen = 0; seen <= FullCount; ++seen)
+            table[above][seen] = static_cast<std::uint8_t>(
+                seen >= above ? FullCount : (2 * FullCount * seen + above) / (2 * above));
+    return table;
 }
 
 } // namespace
@@ -131,7 +128,31 @@ std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals
     return sums;
 }
 
-LeafColumn leaf_column(const CellSamples& samples,
+std::array<std::uint8_t, BlockSize>
+weights_of(const std::array<std::uint16_t, SamplesPerCell>& samples,
+           const std::array<std::uint8_t, SamplesPerCell>& weights) {
+    static const std::array<std::uint64_t, 256> Bytes = bytes_from_bits();
+    std::array<std::uint64_t, 2> sums{};
+    for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+        sums[0] += Bytes[samples[l] & 0xffu] * weights[l];
+        sums[1] += Bytes[samples[l] >> 8u] * weights[l];
+    }
+    static_assert(std::endian::native == std::endian::little, "byte i of a word is receiver i");
+    return std::bit_cast<std::array<std::uint8_t, BlockSize>>(sums);
+}
+
+bool divide_by_weight_above(std::span<std::uint8_t, BlockSize> seen,
+                            std::span<const std::uint8_t, BlockSize> above) {
+    static constexpr auto VisibleParts = visible_parts();
+    bool all = true;
+    for (std::size_t i = 0; i < BlockSize; ++i) {
+        seen[i] = VisibleParts[above[i]][seen[i]];
+        all = all && (above[i] == 0 || seen[i] == FullCount);
+    }
+    return all;
+}
+
+LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
                        const std::array<std::uint8_t, SamplesPerCell>& weights,
                        std::size_t num_receivers) {
     const std::size_t num_blocks = (num_receivers + BlockSize - 1) / BlockSize;
@@ -150,15 +171,24 @@ LeafColumn leaf_column(const CellSamples& samples,
             any |= lit[l];
             all &= lit[l];
         }
-        // Lanes after the last receiver count as lit, so they never make a block mixed.
-        const std::size_t num_lanes = std::min(num_receivers - block * BlockSize, BlockSize);
-        all |= 0xffffu << num_lanes & 0xffffu;
         if (any == 0)
             continue;
-        std::vector<std::uint64_t>& class_bits = all == 0xffff ? column.visible : column.mixed;
-        class_bits[block / 64] |= std::uint64_t{1} << (block % 64);
-        if (all != 0xffff)
-            append_counts(lit, weights, column.counts);
+        const std::uint64_t bit = std::uint64_t{1} << (block % 64);
+        if (all == 0xffff) {
+            column.visible[block / 64] |= bit;
+            continue;
+        }
+        // Lanes after the last receiver have no normal and so nothing above a horizon. They never
+        // make a block mixed.
+        std::array<std::uint8_t, BlockSize> counts = weights_of(lit, weights);
+        const std::array<std::uint8_t, BlockSize> above = weights_of(
+            samples_above_horizon(normals, block * BlockSize, samples.directions), weights);
+        if (divide_by_weight_above(counts, above)) {
+            column.visible[block / 64] |= bit;
+        } else {
+            column.mixed[block / 64] |= bit;
+            column.counts.insert(column.counts.end(), counts.begin(), counts.end());
+        }
     }
     column.counts.shrink_to_fit();
     return column;

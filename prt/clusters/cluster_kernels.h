@@ -41,9 +41,24 @@ struct CellSamples {
 [[nodiscard]] std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
                                                                    const CellSamples& samples);
 
-/// Returns the visible counts of the cell for all receivers. `weights` sum to 16.
-[[nodiscard]] LeafColumn leaf_column(const CellSamples& samples,
+/// Returns the visible counts of the cell for all receivers. A sample counts by its weight;
+/// `weights` sum to 16.
+[[nodiscard]] LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
                                      const std::array<std::uint8_t, SamplesPerCell>& weights,
                                      std::size_t num_receivers);
+
+/// Turns the weights of the samples that 16 receivers see into visible counts: 16 times the seen
+/// part of what is above the receiver's horizon, rounded. A receiver with nothing of the cell above
+/// its horizon counts 0.
+///
+/// Shape:   seen and above are 16 weights of samples, 0..16; seen becomes the counts.
+/// Returns whether every receiver with something above its horizon counts 16.
+bool divide_by_weight_above(std::span<std::uint8_t, BlockSize> seen,
+                            std::span<const std::uint8_t, BlockSize> above);
+
+/// Returns the weight of the samples whose bits are set, for 16 receivers; a sample gives 16 bits.
+[[nodiscard]] std::array<std::uint8_t, BlockSize>
+weights_of(const std::array<std::uint16_t, SamplesPerCell>& samples,
+           const std::array<std::uint8_t, SamplesPerCell>& weights);
 
 } // namespace relumine::prt

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -94,7 +93,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
                        const PrecomputeOptions& options, const PrecomputeContext& context)
     : options_(options), context_(context), order_(spatial_order(receivers)),
       progress_(options.stop, options.on_progress),
-      max_level_(static_cast<std::uint32_t>(std::bit_width(options.face_resolution - 1))),
+      max_level_(texel_level(options.face_resolution)),
       allowed_(allowed_squared_distance(options, receivers.size())) {
     ordered_normals_.reserve(order_.size());
     origins_.reserve(order_.size());
@@ -222,10 +221,9 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
     const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
     // A domain of one light has that light's transfer [JN, Section 4.1].
     if (is_single_texel(cell)) {
+        samples.directions.fill(direction(points[CentreSample]));
         samples.lit.fill(planes_->plane(points[CentreSample]));
-        constexpr std::array<std::uint8_t, SamplesPerCell> CentreOnly = {0, 0, 0, 0, FullCount,
-                                                                         0, 0, 0, 0};
-        return {cell, leaf_column(samples, CentreOnly, origins_.size())};
+        return {cell, leaf_column(normals_, samples, CentreWeights, origins_.size())};
     }
     for (std::size_t l = 0; l < SamplesPerCell; ++l) {
         samples.directions[l] = direction(points[l]);
@@ -236,7 +234,7 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
         std::all_of(distances.begin(), distances.end(), [&](double d) { return d < allowed_; });
     if (!similar)
         return {cell, std::nullopt};
-    return {cell, leaf_column(samples, SampleWeights, origins_.size())};
+    return {cell, leaf_column(normals_, samples, SampleWeights, origins_.size())};
 }
 
 /// Keeps the clusters, goes on with the children of the other cells, and forgets the planes that

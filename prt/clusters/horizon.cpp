@@ -37,6 +37,25 @@ void directions_above_horizon(const NormalArrays& normals, std::size_t first,
     }
 }
 
+void samples_above_horizon(const NormalArrays& normals, std::size_t first,
+                           const glm::vec3* directions, std::uint16_t* above) {
+    const hn::CappedTag<float, BlockSize> d;
+    for (std::size_t l = 0; l < SamplesPerCell; ++l)
+        above[l] = 0;
+    for (std::size_t i = 0; i < BlockSize; i += hn::Lanes(d)) {
+        const auto nx = hn::LoadU(d, normals.x.data() + first + i);
+        const auto ny = hn::LoadU(d, normals.y.data() + first + i);
+        const auto nz = hn::LoadU(d, normals.z.data() + first + i);
+        for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+            const glm::vec3& w = directions[l];
+            const auto xy = hn::Add(hn::Mul(nx, hn::Set(d, w.x)), hn::Mul(ny, hn::Set(d, w.y)));
+            const auto cosine = hn::Add(xy, hn::Mul(nz, hn::Set(d, w.z)));
+            above[l] =
+                static_cast<std::uint16_t>(above[l] | bits_of(d, hn::Gt(cosine, hn::Zero(d))) << i);
+        }
+    }
+}
+
 } // namespace relumine::prt::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -45,11 +64,20 @@ namespace relumine::prt {
 
 namespace {
 HWY_EXPORT(directions_above_horizon);
-}
+HWY_EXPORT(samples_above_horizon);
+} // namespace
 
 void directions_above_horizon(const NormalArrays& normals, std::size_t first,
                               const DirectionPatch& patch, std::span<std::uint64_t> rays) {
     HWY_DYNAMIC_DISPATCH(directions_above_horizon)(normals, first, patch, rays);
+}
+
+std::array<std::uint16_t, SamplesPerCell>
+samples_above_horizon(const NormalArrays& normals, std::size_t first,
+                      std::span<const glm::vec3, SamplesPerCell> directions) {
+    std::array<std::uint16_t, SamplesPerCell> above;
+    HWY_DYNAMIC_DISPATCH(samples_above_horizon)(normals, first, directions.data(), above.data());
+    return above;
 }
 
 } // namespace relumine::prt

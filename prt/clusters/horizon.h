@@ -1,6 +1,7 @@
 // Which directions lie above a receiver's horizon. Vectorised with run-time dispatch.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -16,5 +17,11 @@ namespace relumine::prt {
 /// cluster's bits never depend on the machine.
 void directions_above_horizon(const NormalArrays& normals, std::size_t first,
                               const DirectionPatch& patch, std::span<std::uint64_t> rays);
+
+/// Returns the same answers for the nine samples of a cell and 16 receivers: bit i of entry l is
+/// set where n.w > 0 for receiver first + i and direction l.
+[[nodiscard]] std::array<std::uint16_t, SamplesPerCell>
+samples_above_horizon(const NormalArrays& normals, std::size_t first,
+                      std::span<const glm::vec3, SamplesPerCell> directions);
 
 } // namespace relumine::prt

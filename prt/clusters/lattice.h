@@ -21,6 +21,9 @@ inline constexpr std::size_t CentreSample = 4;
 /// quarter of the centre's area, and the cells that meet there share it consistently.
 inline constexpr std::array<std::uint8_t, SamplesPerCell> SampleWeights = {1, 2, 1, 2, 4,
                                                                            2, 1, 2, 1};
+/// Weights where a cell is one texel: its centre stands for all of it.
+inline constexpr std::array<std::uint8_t, SamplesPerCell> CentreWeights = {0, 0, 0, 0, 16,
+                                                                           0, 0, 0, 0};
 /// Sum of the weights: every sample sees the light.
 inline constexpr int FullCount = 16;
 

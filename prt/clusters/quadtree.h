@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,6 +41,11 @@ struct FaceRectangle {
 
 /// Deepest level of a cell: 2^14 texels along a face's edge.
 inline constexpr std::uint32_t MaxLevel = 14;
+
+/// Returns the level whose cells are no larger than the texels of a 6 x R x R environment.
+[[nodiscard]] constexpr std::uint32_t texel_level(std::uint32_t face_resolution) {
+    return static_cast<std::uint32_t>(std::bit_width(face_resolution - 1));
+}
 
 /// Six quadtrees, one per face; immutable. Leaves are numbered depth first, face by face, so every
 /// subtree owns a range of leaves.

@@ -14,7 +14,8 @@ inline constexpr std::size_t BlockSize = 16;
 
 /// Visible counts of one cluster for all receivers.
 struct LeafColumn {
-    /// [ceil(num_blocks / 64)] bit b is set where every receiver of block b counts 16.
+    /// [ceil(num_blocks / 64)] bit b is set where every receiver of block b counts
+    /// 16.
     std::vector<std::uint64_t> visible;
     /// [ceil(num_blocks / 64)] bit b is set where block b has entries in `counts`.
     std::vector<std::uint64_t> mixed;
@@ -24,9 +25,15 @@ struct LeafColumn {
 
 /// The count c in 0..16 of every (receiver, leaf) pair, receivers in spatial order.
 ///
-/// c is the weighted number of the leaf's nine samples that reach the receiver, so T_C(x) = c/16
-/// max(n.w, 0)/pi for albedo 1 [JN, Eq. 10]. Most blocks of 16 receivers see all of a leaf or
-/// nothing. Two bits say so; only mixed blocks store 16 counts.
+/// c is the visible part, in sixteenths, of what lies above the receiver's horizon: the weight of
+/// the leaf's nine samples that reach the receiver over the weight of those that are above its
+/// horizon. T_C(x) = c/16 max(n.w, 0)/pi for albedo 1.
+///
+/// Differs from [JN, Eq. 10], where samples below the horizon count as dark. The cosine already
+/// leaves out the light below the horizon, so a cell across it would be darkened twice.
+///
+/// Most blocks of 16 receivers see all of a leaf or nothing. Two bits say so; only mixed blocks
+/// store 16 counts. A receiver that has all of the leaf below its horizon takes either.
 ///
 /// Layout (promised): tiles of 64 blocks; in a tile, words of 64 leaves ascending; in a word, the
 /// tile's blocks; in a block, the word's mixed leaves ascending. So both uses stream through

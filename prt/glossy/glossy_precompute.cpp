@@ -128,8 +128,7 @@ float tightened(float tolerance, const BlockToRefine& block) {
 }
 
 std::uint32_t deepest_level(std::uint32_t face_resolution) {
-    return std::min(static_cast<std::uint32_t>(std::bit_width(face_resolution - 1)),
-                    MaxGlossyLevel);
+    return std::min(texel_level(face_resolution), MaxGlossyLevel);
 }
 
 class GlossyPrecompute {

@@ -1,5 +1,6 @@
 #include "prt/glossy/surface_sampling.h"
 
+#include <algorithm>
 #include <array>
 
 #include <glm/common.hpp>
@@ -33,7 +34,8 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     if (mesh.triangle_materials.empty())
         return {};
     const mesh::Material& material = mesh.materials[mesh.triangle_materials[triangle]];
-    const glm::vec2 uv = material.base_color_texture || material.metallic_roughness_texture
+    const glm::vec2 uv = material.base_color_texture || material.metallic_roughness_texture ||
+                                 material.specular_texture
                              ? uv_at(mesh, triangle, barycentric)
                              : glm::vec2(0.0f);
     glm::vec3 base = material.base_color;
@@ -58,6 +60,15 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
         const glm::vec3 texel = mesh::sample(mesh.textures[slot->texture], *slot, uv);
         roughness *= texel.g;
         metallic *= texel.b;
+    }
+    if (material.model == mesh::MaterialModel::SpecularGlossiness) {
+        glm::vec3 specular = material.specular;
+        if (const auto& slot = material.specular_texture)
+            specular *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
+        return {.albedo = base * (1.0f - std::max({specular.r, specular.g, specular.b})),
+                .specular = specular,
+                .highlight = Highlight::Ggx,
+                .roughness_or_exponent = roughness};
     }
     return {.albedo = base * (1.0f - metallic),
             .specular = glm::mix(glm::vec3(0.04f), base, metallic),

@@ -16,8 +16,9 @@ namespace relumine::prt {
 /// (x, y).
 ///
 /// Lambert of albedo 1 where the mesh has no materials. Metallic-roughness materials give GGX with
-/// albedo = base (1 - metallic) and F0 = mix(0.04, base, metallic). Phong materials give
-/// Blinn-Phong where Ks > 0, Lambert otherwise.
+/// albedo = base (1 - metallic) and F0 = mix(0.04, base, metallic), specular-glossiness materials
+/// GGX with albedo = base (1 - max F0). Phong materials give Blinn-Phong where Ks > 0, Lambert
+/// otherwise.
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric);
 

@@ -13,7 +13,7 @@ namespace {
 
 /// Version of the algorithm and of a checkpoint's content. Raise it when a change of either makes
 /// old checkpoints worthless.
-constexpr int FingerprintVersion = 1;
+constexpr int FingerprintVersion = 2;
 
 class Hash {
 public:

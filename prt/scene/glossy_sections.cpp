@@ -1,7 +1,6 @@
 #include "prt/scene/glossy_sections.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "prt/clusters/cell_index.h"
@@ -83,10 +82,8 @@ LobeCuts read_lobe(const SectionReader& reader, std::size_t lobe, std::size_t nu
     if (cuts.begin.front() != 0 || cuts.begin.back() != cuts.num_entries() ||
         !std::is_sorted(cuts.begin.begin(), cuts.begin.end()))
         reader.fail(begin, "ranges of cells");
-    if (cuts.scales.size() != cuts.num_entries() ||
-        !std::all_of(cuts.scales.begin(), cuts.scales.end(),
-                     [](float s) { return std::isfinite(s) && s >= 0.0f; }))
-        reader.fail(scales, "one number >= 0 for each cell");
+    if (cuts.scales.size() != cuts.num_entries())
+        reader.fail(scales, "one number for each cell");
     cuts.values = reader.elements<std::uint8_t>(name_of(lobe, 'v'), cuts.num_entries() * BlockSize);
     for (std::size_t block = 0; block < num_blocks; ++block)
         if (!is_a_cut(std::span(cuts.cells)

@@ -1,7 +1,6 @@
 #include "prt/scene/receiver_sections.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -107,31 +106,16 @@ void add_surfaces(Sections& sections, const std::vector<Surface>& surfaces) {
     sections["r_shape"] = bytes_of(shape);
 }
 
-bool is_finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
-std::vector<glm::vec3> finite_vectors(const SectionReader& reader, const std::string& name,
-                                      std::size_t count, bool optional = false) {
-    std::vector<glm::vec3> vectors = reader.elements<glm::vec3>(name, count, optional);
-    if (!std::all_of(vectors.begin(), vectors.end(), is_finite))
-        reader.fail(name, "finite numbers");
-    return vectors;
-}
-
 std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t count) {
     if (!reader.has("r_albedo"))
         return {};
-    const std::vector<glm::vec3> albedo = finite_vectors(reader, "r_albedo", count);
-    const std::vector<glm::vec3> specular = finite_vectors(reader, "r_specular", count);
+    const std::vector<glm::vec3> albedo = reader.elements<glm::vec3>("r_albedo", count);
+    const std::vector<glm::vec3> specular = reader.elements<glm::vec3>("r_specular", count);
     const auto highlight = reader.elements<std::uint8_t>("r_highlight", count);
     const auto shape = reader.elements<float>("r_shape", count);
     if (std::any_of(highlight.begin(), highlight.end(),
                     [](auto h) { return h > static_cast<std::uint8_t>(Highlight::BlinnPhong); }))
         reader.fail("r_highlight", "highlights of known shapes");
-    if (!std::all_of(shape.begin(), shape.end(),
-                     [](float s) { return std::isfinite(s) && s >= 0.0f; }))
-        reader.fail("r_shape", "numbers >= 0");
     std::vector<Surface> surfaces(count);
     for (std::size_t i = 0; i < count; ++i)
         surfaces[i] = {.albedo = albedo[i],
@@ -226,10 +210,10 @@ void add_receiver_sections(Sections& sections, const Receivers& receivers,
 ReceiverLayout read_layout(const SectionReader& reader) {
     if (!reader.has("layout"))
         return VertexLayout{};
-    const std::vector<char> text = reader.elements<char>("layout");
+    const nlohmann::json json = reader.json("layout");
     ReceiverLayout layout;
     try {
-        layout = layout_of(nlohmann::json::parse(text.begin(), text.end()));
+        layout = layout_of(json);
     } catch (const std::exception&) {
         reader.fail("layout", "JSON with the layout of the receivers");
     }
@@ -249,11 +233,11 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
         const auto* pixels = std::get_if<PixelLayout>(&layout);
         const std::size_t count = pixels != nullptr ? pixels->samples.size()
                                                     : std::get<TexelLayout>(layout).texels.size();
-        receivers.positions = finite_vectors(reader, "r_positions", count);
-        receivers.normals = finite_vectors(reader, "r_normals", count);
+        receivers.positions = reader.elements<glm::vec3>("r_positions", count);
+        receivers.normals = reader.elements<glm::vec3>("r_normals", count);
         receivers.points = read_points(reader, count, mesh);
     }
-    receivers.to_eye = finite_vectors(reader, "r_to_eye", receivers.size(), true);
+    receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());
     return receivers;
 }

@@ -1,4 +1,5 @@
-// `relumine info FILE.prt --check`: whether a scene file is one that a precompute writes.
+// The one check of a scene's values: whatever is read from a file, and whatever is written to one,
+// passes it.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +8,10 @@
 
 namespace relumine::prt {
 
-/// Checks more than load_scene() needs: normals and directions to the eye have length one or zero,
-/// uvs are finite, colours are not negative, a precompute accepts the settings, the tree is as deep
-/// as they say, the floor fits the mesh. `path` is for messages.
+/// Checks that a scene can be lit and drawn: numbers are finite and in their ranges, normals and
+/// directions to the eye are unit vectors, rays can start at all positions, a precompute accepts
+/// the settings, the tree is as deep as they say, the floor fits the mesh. Indices, sizes and
+/// counts were checked before. `path` is for messages.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for the first failure.
 void check_scene(const Scene& scene, const std::filesystem::path& path);

@@ -1,7 +1,6 @@
 #include "prt/scene/scene_file.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <stdexcept>
 #include <utility>
@@ -12,7 +11,10 @@
 
 #include "files/output_file.h"
 #include "prt/scene/glossy_sections.h"
+#include "prt/scene/material_sections.h"
+#include "prt/scene/older_counts.h"
 #include "prt/scene/receiver_sections.h"
+#include "prt/scene/scene_check.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_reader.h"
 
@@ -52,8 +54,8 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
 
 class SceneReader {
 public:
-    SceneReader(const std::filesystem::path& path, Sections&& sections)
-        : reader_(path, std::move(sections)) {}
+    SceneReader(const std::filesystem::path& path, Sections&& sections, std::uint32_t version)
+        : reader_(path, std::move(sections)), version_(version) {}
 
     Scene scene() const {
         Scene scene;
@@ -61,7 +63,8 @@ public:
         scene.settings = settings();
         scene.layout = read_layout(reader_);
         scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
-        scene.transfer = transfer(scene.receivers);
+        scene.transfer = transfer(scene.receivers, scene.settings);
+        check_scene(scene, reader_.path());
         return scene;
     }
 
@@ -77,23 +80,14 @@ private:
             if (std::any_of(triangle.begin(), triangle.end(),
                             [&](auto i) { return i >= mesh.num_vertices(); }))
                 reader_.fail("triangles", "indices of vertices");
-        const auto finite = [](const glm::vec3& p) {
-            return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
-        };
-        if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), finite))
-            reader_.fail("positions", "finite positions");
-        if (!std::all_of(mesh.normals.begin(), mesh.normals.end(), finite))
-            reader_.fail("normals", "finite normals");
-        if (!std::all_of(mesh.colors.begin(), mesh.colors.end(), finite))
-            reader_.fail("colors", "finite colours");
+        read_material_sections(reader_, mesh);
         return mesh;
     }
 
     SceneSettings settings() const {
-        const std::vector<char> text = reader_.elements<char>("settings");
+        const nlohmann::json json = reader_.json("settings");
         SceneSettings settings;
         try {
-            const nlohmann::json json = nlohmann::json::parse(text.begin(), text.end());
             settings.tolerance = real(json.at("tolerance"));
             settings.min_level = natural(json.at("min_level"));
             settings.face_resolution = natural(json.at("face_resolution"));
@@ -114,6 +108,8 @@ private:
                 settings.view = Camera{.eye = {at(0), at(1), at(2)},
                                        .target = {at(3), at(4), at(5)},
                                        .fov_degrees = at(6)};
+                // Throws for a camera without a direction.
+                static_cast<void>(axes_of(*settings.view, 1.0f));
             }
         } catch (const std::exception&) {
             reader_.fail("settings", "JSON with the settings");
@@ -132,6 +128,8 @@ private:
         std::vector<bool> flags(num_flags);
         for (std::size_t i = 0; i < flags.size(); ++i)
             flags[i] = (bytes[sizeof num_flags + i / 8] >> (i % 8) & 1) != 0;
+        if (num_flags % 8 != 0 && bytes.back() >> (num_flags % 8) != 0)
+            reader_.fail("quadtree", "split flags");
         try {
             return Quadtree(flags);
         } catch (const std::invalid_argument&) {
@@ -139,7 +137,7 @@ private:
         }
     }
 
-    Transfer transfer(const Receivers& receivers) const {
+    Transfer transfer(const Receivers& receivers, const SceneSettings& settings) const {
         Transfer transfer;
         const std::size_t num_receivers = receivers.size();
         transfer.quadtree = quadtree();
@@ -157,10 +155,16 @@ private:
         transfer.counts.mixed = reader_.elements<std::uint64_t>("mixed");
         transfer.counts.counts = reader_.elements<std::uint8_t>("counts");
         try {
-            transfer.counts.index();
+            if (version_ < 2)
+                move_into_tiles(transfer.counts);
+            else
+                transfer.counts.index();
         } catch (const std::invalid_argument&) {
             reader_.fail("counts", "counts that fit the receivers and the tree");
         }
+        if (version_ < 3)
+            count_above_horizon(transfer.counts, transfer.quadtree, transfer.normals,
+                                texel_level(settings.face_resolution));
         if (has_glossy(reader_)) {
             if (receivers.to_eye.empty() || receivers.surfaces.empty())
                 reader_.fail("g_specular_b", "directions to the eye and surfaces with highlights");
@@ -171,6 +175,7 @@ private:
     }
 
     SectionReader reader_;
+    std::uint32_t version_;
 };
 
 } // namespace
@@ -191,6 +196,7 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
                         "vertices, got {} and {}",
                         path.string(), num_receivers, scene.mesh.num_vertices(),
                         scene.transfer.num_receivers(), scene.mesh.normals.size()));
+    check_scene(scene, path);
     const VisibleCounts& counts = scene.transfer.counts;
     Sections sections;
     sections["settings"] = settings_json(scene.settings);
@@ -201,6 +207,8 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
         sections["colors"] = bytes_of(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())
         sections["uvs"] = bytes_of(scene.mesh.uvs);
+    if (on_vertices && !scene.receivers.surfaces.empty())
+        add_material_sections(sections, scene.mesh);
     add_receiver_sections(sections, scene.receivers, scene.layout);
     sections["order"] = bytes_of(scene.transfer.order);
     sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
@@ -213,11 +221,13 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
 }
 
 Scene load_scene(const std::filesystem::path& path) {
-    return scene_of(path, read_sections(path));
+    std::uint32_t version = 0;
+    Sections sections = read_sections(path, &version);
+    return scene_of(path, std::move(sections), version);
 }
 
-Scene scene_of(const std::filesystem::path& path, Sections&& sections) {
-    return SceneReader(path, std::move(sections)).scene();
+Scene scene_of(const std::filesystem::path& path, Sections&& sections, std::uint32_t version) {
+    return SceneReader(path, std::move(sections), version).scene();
 }
 
 std::uint64_t file_hash(const std::filesystem::path& path) {

@@ -50,12 +50,13 @@ struct Scene {
 /// Writes the scene, whole or not at all. Returns the file's size in bytes. Positions and normals
 /// of receivers on vertices are taken from the mesh.
 ///
-/// Throws:  std::runtime_error that names the path; std::invalid_argument when mesh, receivers,
-///          layout and transfer do not belong together.
+/// Throws:  std::runtime_error that names the path, also for values that load_scene() refuses;
+///          std::invalid_argument when mesh, receivers, layout and transfer do not belong together.
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
-/// Reads a scene and checks all of it: sizes against the file before anything is allocated,
-/// checksums, indices, the tree, the counts.
+/// Reads a scene of any version and checks all of it: sizes against the file before anything is
+/// allocated, checksums, indices, the tree, the counts, the range of every number. A scene that was
+/// read can be lit and drawn. Counts of versions 1 and 2 become what a precompute finds now.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);

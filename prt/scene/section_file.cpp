@@ -25,7 +25,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little, ".prt files are little-endian");
 
 constexpr std::array<char, 8> Magic = {'R', 'E', 'L', 'U', 'M', 'I', 'N', 'E'};
-constexpr std::uint32_t Version = 2;
 constexpr std::uint32_t ByteOrderMark = 0x01020304;
 constexpr std::uint32_t MaxSections = 64;
 
@@ -71,16 +70,17 @@ class Reader {
 public:
     explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(files::read(path)) {}
 
-    Sections sections() {
+    Sections sections(std::uint32_t* version) {
         const Header header = checked_header();
+        if (version != nullptr)
+            *version = header.version;
         const std::vector<SectionEntry> table = checked_table(header);
         std::vector<std::vector<std::byte>> contents(table.size());
         tbb::parallel_for(std::size_t{0}, table.size(),
                           [&](std::size_t i) { contents[i] = content(table[i]); });
         Sections result;
         for (std::size_t i = 0; i < table.size(); ++i)
-            if (!result.emplace(name(table[i]), std::move(contents[i])).second)
-                fail("sections of different names", fmt::format("'{}' twice", name(table[i])));
+            result.emplace(name(table[i]), std::move(contents[i]));
         return result;
     }
 
@@ -100,17 +100,17 @@ private:
             fail("a little-endian .prt scene", "a big-endian one");
         if (header.byte_order_mark != ByteOrderMark)
             fail("a .prt scene", "a damaged header");
-        if (header.version > Version)
-            fail(fmt::format(".prt version {}", Version),
+        if (header.version > SceneFileVersion)
+            fail(fmt::format(".prt version {}", SceneFileVersion),
                  fmt::format("version {}, made by a newer relumine", header.version));
-        if (header.version != Version)
-            fail(fmt::format(".prt version {}", Version),
-                 fmt::format("version {}", header.version));
+        if (header.version == 0)
+            fail(fmt::format(".prt version 1 to {}", SceneFileVersion), "version 0");
         if (header.file_size != bytes_.size())
             fail(fmt::format("{} bytes", header.file_size),
                  fmt::format("{} (truncated or damaged)", bytes_.size()));
         if (header.num_sections > MaxSections ||
-            sizeof header + header.num_sections * sizeof(SectionEntry) > bytes_.size())
+            sizeof header + header.num_sections * sizeof(SectionEntry) > bytes_.size() ||
+            header.reserved != 0)
             fail("a .prt scene", "a damaged header");
         return header;
     }
@@ -123,6 +123,7 @@ private:
         if (table_checksum(header, table) != header.checksum)
             fail("a matching checksum", "a damaged section table");
         std::uint64_t end = sizeof header + table.size() * sizeof(SectionEntry);
+        std::string last_name;
         for (const SectionEntry& entry : table) {
             // Sections follow each other without gaps, so they are inside the file and every byte
             // belongs to one.
@@ -135,6 +136,9 @@ private:
             if (!std::all_of(own_name.begin(), own_name.end(),
                              [](char c) { return c > ' ' && c <= '~'; }))
                 fail("names of sections", "a damaged section table");
+            if (own_name <= last_name || !is_padded_with_zeros(entry))
+                fail("names of sections in ascending order", "a damaged section table");
+            last_name = own_name;
         }
         if (end != bytes_.size())
             fail("sections that fill the file", "a damaged section table");
@@ -143,6 +147,11 @@ private:
 
     static std::string name(const SectionEntry& entry) {
         return {entry.name.begin(), std::find(entry.name.begin(), entry.name.end(), '\0')};
+    }
+
+    static bool is_padded_with_zeros(const SectionEntry& entry) {
+        return std::all_of(std::find(entry.name.begin(), entry.name.end(), '\0'), entry.name.end(),
+                           [](char c) { return c == '\0'; });
     }
 
     std::vector<std::byte> content(const SectionEntry& entry) const {
@@ -207,7 +216,7 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
 
     Header header{.magic = Magic,
                   .byte_order_mark = ByteOrderMark,
-                  .version = Version,
+                  .version = SceneFileVersion,
                   .file_size = sizeof(Header) + stored.size() * sizeof(SectionEntry),
                   .num_sections = static_cast<std::uint32_t>(stored.size()),
                   .reserved = 0,
@@ -240,8 +249,8 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
     return header.file_size;
 }
 
-Sections read_sections(const std::filesystem::path& path) {
-    return Reader(path).sections();
+Sections read_sections(const std::filesystem::path& path, std::uint32_t* version) {
+    return Reader(path).sections(version);
 }
 
 } // namespace relumine::prt

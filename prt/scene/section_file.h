@@ -11,6 +11,9 @@
 
 namespace relumine::prt {
 
+/// The version that is written. All versions up to this one are read.
+inline constexpr std::uint32_t SceneFileVersion = 3;
+
 /// Sections by name (1 to 16 ASCII letters), each a string of bytes.
 using Sections = std::map<std::string, std::vector<std::byte>>;
 
@@ -20,10 +23,12 @@ using Sections = std::map<std::string, std::vector<std::byte>>;
 /// Throws:  std::runtime_error that names the path.
 std::uint64_t write_sections(const std::filesystem::path& path, const Sections& sections);
 
-/// Reads a file of sections. Refuses a file that is truncated, longer than it says, of another
-/// version or byte order, or changed in any bit that matters, before its sizes are believed.
+/// Reads a file of sections. Refuses a file that is truncated, longer than it says, of an unknown
+/// version or byte order, or changed in any bit, before its sizes are believed. `version` receives
+/// the file's version, 1 to SceneFileVersion.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
-[[nodiscard]] Sections read_sections(const std::filesystem::path& path);
+[[nodiscard]] Sections read_sections(const std::filesystem::path& path,
+                                     std::uint32_t* version = nullptr);
 
 } // namespace relumine::prt

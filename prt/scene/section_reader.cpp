@@ -1,5 +1,6 @@
 #include "prt/scene/section_reader.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,6 +24,14 @@ const std::vector<std::byte>& SectionReader::bytes(const std::string& name) cons
         throw std::runtime_error(
             fmt::format("{}: expected a section '{}', got none", path_.string(), name));
     return found->second;
+}
+
+nlohmann::json SectionReader::json(const std::string& name) const {
+    const std::vector<char> text = elements<char>(name);
+    nlohmann::json json = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
+    if (json.is_discarded() || std::find(text.begin(), text.end(), '\0') != text.end())
+        fail(name, "JSON text");
+    return json;
 }
 
 std::vector<bool> SectionReader::bits(const std::string& name, std::size_t count) const {

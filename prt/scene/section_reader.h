@@ -39,6 +39,7 @@ public:
 
     [[noreturn]] void fail(std::string_view section, std::string_view expected) const;
 
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     [[nodiscard]] bool has(const std::string& name) const { return sections_.contains(name); }
     /// Returns the section's bytes. Fails where there is none.
     [[nodiscard]] const std::vector<std::byte>& bytes(const std::string& name) const;
@@ -66,6 +67,10 @@ public:
             fail(name, fmt::format("{} elements", count));
         return result;
     }
+
+    /// Parses a section of JSON text. Fails for other text, and for zero bytes, which end a text
+    /// for the JSON library.
+    [[nodiscard]] nlohmann::json json(const std::string& name) const;
 
     /// Returns exactly `count` bits. The rest of the last byte must be zero.
     [[nodiscard]] std::vector<bool> bits(const std::string& name, std::size_t count) const;

@@ -13,8 +13,8 @@
 
 namespace relumine::prt {
 
-/// The limit on coordinates of triangles and of rays' origins: Embree drops triangles beyond it
-/// (its FLT_LARGE), and rays from there end the process.
+/// Triangles lie within this distance from the origin along each axis, and rays start within it.
+/// Embree silently drops triangles beyond it, and aborts for rays from there (its FLT_LARGE).
 inline constexpr float LargestCoordinate = 1.844e18f;
 
 /// The point where a ray first meets the mesh.
@@ -35,8 +35,8 @@ public:
     /// Builds the accelerator. The mesh need not outlive this object.
     ///
     /// Cost:    O(n log n), about 100 bytes per triangle.
-    /// Throws:  std::runtime_error when Embree fails (out of memory, for example), or a triangle's
-    ///          coordinates are beyond its range of 1.8e18.
+    /// Throws:  std::runtime_error when Embree fails (out of memory, for example), or a triangle
+    ///          lies beyond LargestCoordinate.
     explicit RayScene(const mesh::TriangleMesh& mesh);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;

@@ -92,8 +92,8 @@ Camera automatic_camera(const mesh::TriangleMesh& mesh, const PictureOptions& op
 
 Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
              std::span<const glm::vec3> vertex_radiance, const cubemap::CubeMap& background,
-             const Camera& camera, const PictureOptions& options) {
-    return PictureView(mesh, rays, camera, options, 0).draw(vertex_radiance, background);
+             const Camera& camera, const PictureOptions& options, const SurfaceColors& colors) {
+    return PictureView(mesh, rays, camera, options, 0).draw(vertex_radiance, background, colors);
 }
 
 namespace {
@@ -129,7 +129,7 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
 }
 
 Picture PictureView::draw(std::span<const glm::vec3> vertex_radiance,
-                          const cubemap::CubeMap& background) const {
+                          const cubemap::CubeMap& background, const SurfaceColors& colors) const {
     if (vertex_radiance.size() != mesh_.num_vertices())
         throw std::invalid_argument("expected one radiance per vertex");
     if (background.resolution == 0)
@@ -144,6 +144,9 @@ Picture PictureView::draw(std::span<const glm::vec3> vertex_radiance,
         }
         if (sample.triangle == NoTriangle)
             return cubemap::sample(background, grid.direction(x, y, i));
+        if (colors.has(sample.triangle))
+            return colors.radiance(vertex_radiance, {.triangle = sample.triangle,
+                                                     .barycentric = {sample.second, sample.third}});
         const mesh::Triangle& triangle = mesh_.triangles[sample.triangle];
         const float first = 1.0f - sample.second - sample.third;
         return first * vertex_radiance[triangle[0]] + sample.second * vertex_radiance[triangle[1]] +

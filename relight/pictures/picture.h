@@ -13,6 +13,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/camera.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/pictures/surface_colors.h"
 
 namespace relumine::relight {
 
@@ -33,8 +34,8 @@ struct PictureOptions {
                                       const PictureOptions& options = {},
                                       float fov_degrees = 35.0f);
 
-/// Draws the mesh as the camera sees it, with radiance interpolated between vertices and the
-/// environment behind it.
+/// Draws the mesh as the camera sees it, with radiance interpolated between vertices, and the
+/// environment behind it. Triangles that have `colors` take the light from the vertices alone.
 ///
 /// Shape:   vertex_radiance is [num_vertices].
 /// Throws:  std::invalid_argument for a camera without a direction, a field of view outside (0,
@@ -42,7 +43,7 @@ struct PictureOptions {
 [[nodiscard]] Picture draw(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
                            std::span<const glm::vec3> vertex_radiance,
                            const cubemap::CubeMap& background, const Camera& camera,
-                           const PictureOptions& options = {});
+                           const PictureOptions& options = {}, const SurfaceColors& colors = {});
 
 /// A camera's view of a still scene, traced once and drawn in any light. Pictures are bit by bit
 /// the pictures of draw().
@@ -56,7 +57,8 @@ public:
                 const PictureOptions& options = {}, std::size_t max_bytes = std::size_t{1} << 30);
 
     [[nodiscard]] Picture draw(std::span<const glm::vec3> vertex_radiance,
-                               const cubemap::CubeMap& background) const;
+                               const cubemap::CubeMap& background,
+                               const SurfaceColors& colors = {}) const;
 
 private:
     /// The point where a sample's ray meets the mesh.

@@ -82,9 +82,11 @@ TEST_F(Degenerate, OneTriangleSeesItsHemisphere) {
         EXPECT_NEAR(radiance[0], 1.0f, 2e-3f); // a white furnace, but for the horizon's clusters
     for (const auto& radiance : lit(up, "below.hdr"))
         EXPECT_NEAR(radiance[0], 0.0f, 1e-12f); // cells end at the horizon but for rounding
-    EXPECT_LT(
-        succeed({"verify", "mesh.prt", "lamp.hdr", "--json"}).json()["relative_l2"].get<double>(),
-        0.02);
+    // The lamp stands on the horizon: texels of its pixels' size would move its middle.
+    EXPECT_LT(succeed({"verify", "mesh.prt", "lamp.hdr", "--face-resolution", "512", "--json"})
+                  .json()["relative_l2"]
+                  .get<double>(),
+              0.02);
     // Turned over, it is the other way round.
     const std::string down = "v 0 0 0\nv 0 0 1\nv 1 0 0\nf 1 3 2\n";
     for (const auto& radiance : lit(down, "below.hdr"))

@@ -48,7 +48,8 @@ void require_sound(const mesh::TriangleMesh& mesh) {
                 all_below(mesh.triangle_groups, mesh.groups.size()),
             "triangles have materials and groups of the mesh");
     for (const mesh::Material& material : mesh.materials)
-        for (const auto& slot : {material.base_color_texture, material.metallic_roughness_texture})
+        for (const auto& slot : {material.base_color_texture, material.metallic_roughness_texture,
+                                 material.specular_texture})
             require(!slot || slot->texture < mesh.textures.size(),
                     "materials have textures of the mesh");
 }

@@ -10,6 +10,20 @@
 
 namespace relumine::fuzz {
 
+namespace {
+
+/// Under light of about 1, highlights within the limits of a file reflect no more than this.
+constexpr float MaxReflected = 1e12f;
+
+void require_moderate(std::span<const glm::vec3> radiance) {
+    for (const glm::vec3& value : radiance)
+        for (int channel = 0; channel < 3; ++channel)
+            require(value[channel] >= 0.0f && value[channel] <= MaxReflected,
+                    "radiance is finite, not negative and moderate");
+}
+
+} // namespace
+
 void require_sound(const prt::Scene& scene) {
     const prt::Transfer& transfer = scene.transfer;
     const std::size_t num_receivers = scene.receivers.size();
@@ -33,9 +47,11 @@ void require_sound(const prt::Scene& scene) {
     std::fill(map.texels.begin(), map.texels.end(), glm::vec3(1.0f, 0.5f, 2.0f));
     relighter.set_environment(std::move(map));
     require(relighter.radiance().size() == num_receivers, "every receiver has a radiance");
+    require_moderate(relighter.radiance());
     const std::vector<glm::vec3> red(4, glm::vec3(1.0f, 0.0f, 0.0f));
     relighter.update_region({.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
                             red);
+    require_moderate(relighter.radiance());
 }
 
 } // namespace relumine::fuzz

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 34> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 38> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -40,6 +40,10 @@ inline constexpr std::array<std::string_view, 34> SectionNames = {"settings",
                                                                   "g_diff_grazing_b",
                                                                   "g_diff_grazing_c",
                                                                   "g_diff_grazing_s",
-                                                                  "g_diff_grazing_v"};
+                                                                  "g_diff_grazing_v",
+                                                                  "materials",
+                                                                  "images",
+                                                                  "t_materials",
+                                                                  "corner_uvs"};
 
 } // namespace relumine::fuzz

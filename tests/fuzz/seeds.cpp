@@ -25,6 +25,7 @@
 #include "prt/scene/section_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/app/small_files.h"
+#include "tests/fuzz/prt_file.h"
 #include "tests/fuzz/section_names.h"
 #include "tests/mesh/texture_files.h"
 
@@ -245,6 +246,13 @@ void write_scenes(const fs::path& folder) {
     scene.receivers = prt::vertex_receivers(scene.mesh);
     scene.transfer = prt::precompute(scene.receivers, rays, options);
     save("vertices");
+    for (const std::uint32_t version : {1u, 2u}) {
+        std::vector<std::byte> older = files::read(folder / "prt/vertices.prt");
+        fuzz::set_version(older, version);
+        older = fuzz::with_checksums(older);
+        write(folder / fmt::format("prt/version_{}.prt", version),
+              {reinterpret_cast<const char*>(older.data()), older.size()});
+    }
     prt::look_from(scene.receivers, glm::vec3(0.0f, 1.0f, 3.0f));
     scene.receivers.surfaces.assign(scene.receivers.size(), {.specular = glm::vec3(0.5f),
                                                              .highlight = prt::Highlight::Ggx,
@@ -253,6 +261,7 @@ void write_scenes(const fs::path& folder) {
         prt::precompute_glossy(scene.receivers, rays, scene.transfer,
                                {.tolerance = 0.5f, .face_resolution = 4, .bias = 1e-4f});
     prt::set_surfaces(scene.transfer, scene.receivers);
+    scene.settings.glossy_tolerance = 0.5f;
     save("glossy");
 
     // Four texels of one triangle.
@@ -267,6 +276,7 @@ void write_scenes(const fs::path& folder) {
     }
     texels.transfer = prt::precompute(texels.receivers, rays, options);
     texels.settings = scene.settings;
+    texels.settings.glossy_tolerance.reset();
     std::swap(scene, texels);
     save("texels");
 }

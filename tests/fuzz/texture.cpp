@@ -7,8 +7,12 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     using namespace relumine;
     const auto texture = fuzz::accepted(
         [&] { return mesh::decode_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
+    const auto alpha = fuzz::accepted(
+        [&] { return mesh::decode_alpha_texture(fuzz::bytes(data, size), mesh::VOrigin::Bottom); });
     if (!texture)
         return 0;
+    fuzz::require(alpha && (alpha->width == texture->width || alpha->width == 1),
+                  "an image has an alpha");
     fuzz::require(texture->texels.size() == std::size_t{texture->width} * texture->height,
                   "a texture has all its texels");
     for (const float u : {0.0f, 1.0f, -0.3f, 1e30f, NAN})

@@ -37,10 +37,6 @@ std::string small_gltf() {
            R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAEC"}]})";
 }
 
-TriangleMesh gltf(std::string_view text, NormalSource normals) {
-    return to_mesh(read_gltf(bytes_of(text), {}), normals);
-}
-
 std::string small_off() {
     return "CNOFF # c\n5 2 0\n0 0 0 0 0 1 255 0 0 255\n1 0 0 0 0 1 0 255 0 255\n1 1 0 0 0 1 0 0 "
            "255 255\n"

@@ -2,106 +2,15 @@
 #include <cmath>
 #include <numbers>
 
-#include <nlohmann/json.hpp>
-
 #include "mesh/save.h"
-#include "tests/mesh/mesh_files.h"
+#include "tests/mesh/encoders.h"
+#include "tests/mesh/gltf_model.h"
 #include "tests/mesh/texture_files.h"
 
 namespace relumine::mesh {
 namespace {
 
-using Json = nlohmann::json;
 using testing::ElementsAre;
-
-std::string base64(const std::string& bytes) {
-    constexpr std::string_view Alphabet =
-        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string text;
-    for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        std::uint32_t bits = 0;
-        for (std::size_t j = 0; j < 3; ++j)
-            bits =
-                bits << 8u | (i + j < bytes.size() ? static_cast<unsigned char>(bytes[i + j]) : 0u);
-        for (std::size_t j = 0; j < 4; ++j)
-            text += i + j > bytes.size() ? '=' : Alphabet[bits >> (18 - 6 * j) & 63u];
-    }
-    return text;
-}
-
-/// A model under construction: JSON and one buffer.
-struct Model {
-    Json json = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", {0}}}}}};
-    std::string buffer;
-
-    std::size_t add_view(const std::string& bytes, std::size_t stride = 0) {
-        buffer.resize((buffer.size() + 3) / 4 * 4);
-        Json view = {{"buffer", 0}, {"byteOffset", buffer.size()}, {"byteLength", bytes.size()}};
-        if (stride > 0)
-            view["byteStride"] = stride;
-        buffer += bytes;
-        json["bufferViews"].push_back(view);
-        return json["bufferViews"].size() - 1;
-    }
-    template<class Value>
-    std::size_t add(const std::vector<Value>& values, int component_type, const char* type,
-                    bool normalized = false, std::size_t count = 0) {
-        const std::string bytes(reinterpret_cast<const char*>(values.data()),
-                                values.size() * sizeof(Value));
-        json["accessors"].push_back({{"bufferView", add_view(bytes)},
-                                     {"componentType", component_type},
-                                     {"type", type},
-                                     {"normalized", normalized},
-                                     {"count", count == 0 ? values.size() : count}});
-        return json["accessors"].size() - 1;
-    }
-    [[nodiscard]] std::string embedded() const {
-        Json copy = json;
-        copy["buffers"] = {{{"byteLength", buffer.size()},
-                            {"uri", "data:application/octet-stream;base64," + base64(buffer)}}};
-        return copy.dump();
-    }
-    [[nodiscard]] std::string external(const std::string& uri) const {
-        Json copy = json;
-        copy["buffers"] = {{{"byteLength", buffer.size()}, {"uri", uri}}};
-        return copy.dump();
-    }
-    [[nodiscard]] std::string glb() const {
-        Json copy = json;
-        copy["buffers"] = {{{"byteLength", buffer.size()}}};
-        std::string text = copy.dump(), binary = buffer;
-        text.resize((text.size() + 3) / 4 * 4, ' ');
-        binary.resize((binary.size() + 3) / 4 * 4, '\0');
-        std::string file = "glTF";
-        const auto word = [&file](std::size_t value) {
-            const auto number = static_cast<std::uint32_t>(value);
-            file.append(reinterpret_cast<const char*>(&number), 4);
-        };
-        word(2), word(12 + 8 + text.size() + 8 + binary.size());
-        word(text.size()), word(0x4E4F534Au), file += text;
-        word(binary.size()), word(0x004E4942u), file += binary;
-        return file;
-    }
-};
-
-/// A square in the plane z = 0 with uvs, two triangles, one node.
-Model square() {
-    Model model;
-    const auto positions =
-        model.add<glm::vec3>({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, 5126, "VEC3");
-    const auto uvs = model.add<glm::vec2>({{0, 1}, {1, 1}, {1, 0}, {0, 0}}, 5126, "VEC2");
-    const auto indices = model.add<std::uint16_t>({0, 1, 2, 0, 2, 3}, 5123, "SCALAR");
-    model.json["meshes"] = {{{"name", "square"},
-                             {"primitives",
-                              {{{"attributes", {{"POSITION", positions}, {"TEXCOORD_0", uvs}}},
-                                {"indices", indices}}}}}};
-    model.json["nodes"] = {{{"mesh", 0}}};
-    return model;
-}
-
-TriangleMesh gltf(const std::string& file) {
-    return to_mesh(read_gltf(bytes_of(file), {}), NormalSource::File);
-}
 
 using GltfTest = MeshFileTest;
 
@@ -307,6 +216,143 @@ TEST_F(GltfTest, TextureTransformAndOtherUvSets) {
     expect_refusal([&] { return gltf(model.embedded()); }, "material 0: expected one texCoord");
 }
 
+/// The WebP image comes before its twin; the twin serves where the WebP file is gone.
+TEST_F(GltfTest, WebpAndItsTwin) {
+    Model model = square();
+    static_cast<void>(write("four.png", four_colors()));
+    static_cast<void>(write("blue.webp", webp(2, 1, {{0, 0, 255, 9}, {0, 0, 255, 255}})));
+    model.json["images"] = {{{"uri", "four.png"}}, {{"uri", "blue.webp"}}};
+    model.json["textures"] = {
+        {{"source", 0}, {"extensions", {{"EXT_texture_webp", {{"source", 1}}}}}}};
+    model.json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    model.json["extensionsUsed"] = {"EXT_texture_webp"};
+    const auto path = write("a.gltf", model.embedded());
+    TriangleMesh mesh = load(path);
+    ASSERT_EQ(mesh.textures.size(), 1u);
+    EXPECT_EQ(mesh.textures[0].name, "blue.webp");
+    EXPECT_EQ(mesh.textures[0].texels, (std::vector<Rgb8>{Blue, Blue}));
+    EXPECT_THAT(mesh.warnings, ElementsAre());
+    std::filesystem::remove(folder_ / "blue.webp");
+    mesh = load(path);
+    EXPECT_EQ(mesh.textures[0].name, "four.png");
+    EXPECT_THAT(mesh.missing, ElementsAre("blue.webp"));
+    const std::string whole = webp(2, 1, {{0, 0, 255, 9}, {0, 0, 255, 255}});
+    static_cast<void>(write("blue.webp", whole.substr(0, whole.size() - 4)));
+    expect_refusal([&] { return load(path); }, "blue.webp: expected a");
+}
+
+TEST_F(GltfTest, SpecularGlossiness) {
+    Model model = square();
+    const std::string image = webp(2, 1, {{255, 128, 0, 255}, {0, 0, 0, 51}});
+    static_cast<void>(write("specular.webp", image));
+    static_cast<void>(write("four.png", four_colors()));
+    model.json["images"] = {{{"uri", "four.png"}}, {{"uri", "specular.webp"}}};
+    model.json["textures"] = {{{"source", 0}}, {{"source", 1}}};
+    const Json extension = {{"diffuseFactor", {0.5, 0.25, 1, 1}},
+                            {"diffuseTexture", {{"index", 0}}},
+                            {"specularFactor", {0.5, 1, 1}},
+                            {"glossinessFactor", 0.8},
+                            {"specularGlossinessTexture", {{"index", 1}}}};
+    model.json["materials"] = {
+        {{"extensions", {{"KHR_materials_pbrSpecularGlossiness", extension}}},
+         {"pbrMetallicRoughness", {{"roughnessFactor", 0.125}}}},
+        {{"extensions", {{"KHR_materials_pbrSpecularGlossiness", Json::object()}}}}};
+    model.json["extensionsRequired"] = {"KHR_materials_pbrSpecularGlossiness"};
+    const TriangleMesh mesh = load(write("a.gltf", model.embedded()));
+    const Material& material = mesh.materials[0];
+    EXPECT_EQ(material.model, MaterialModel::SpecularGlossiness);
+    EXPECT_EQ(material.base_color, glm::vec3(0.5f, 0.25f, 1.0f));
+    EXPECT_EQ(material.specular, glm::vec3(0.5f, 1.0f, 1.0f));
+    EXPECT_EQ(mesh.textures[material.base_color_texture->texture].name, "four.png");
+    EXPECT_EQ(mesh.textures[material.specular_texture->texture].texels,
+              (std::vector<Rgb8>{{255, 128, 0}, {0, 0, 0}}));
+    EXPECT_TRUE(material.specular_texture->is_srgb);
+    // 1 - 0.8 * alpha, in bytes.
+    EXPECT_EQ(material.roughness, 1.0f);
+    const Texture& roughness = mesh.textures[material.metallic_roughness_texture->texture];
+    EXPECT_FALSE(material.metallic_roughness_texture->is_srgb);
+    EXPECT_EQ(roughness.texels, (std::vector<Rgb8>{{51, 51, 51}, {214, 214, 214}}));
+    EXPECT_EQ(mesh.materials[1].specular, glm::vec3(1.0f)) << "the extension's default";
+    EXPECT_EQ(mesh.materials[1].roughness, 0.0f);
+    model.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"]
+              ["specularFactor"] = {2, 0, 0};
+    expect_refusal([&] { return gltf(model.embedded()); },
+                   "material 0: expected numbers of 0 to 1 as \"specularFactor\", got 2");
+}
+
+TEST_F(GltfTest, NamesInLatin1) {
+    Model model = square();
+    static_cast<void>(write("gr\xfcn.png", four_colors()));
+    model.json["nodes"][0]["name"] = "w\xc3\xa4nde";
+    model.json["images"] = {{{"uri", "gr?n.png"}}};
+    model.json["textures"] = {{{"source", 0}}};
+    model.json["materials"] = {
+        {{"name", "gr?n"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+    const TriangleMesh mesh =
+        load(write("a.gltf", replace_all(model.embedded(), "gr?n", "gr\xfcn")));
+    EXPECT_THAT(mesh.groups, ElementsAre("w\xc3\xa4nde")) << "UTF-8 stays";
+    EXPECT_EQ(mesh.materials[0].name, "gr\xc3\xbcn");
+    EXPECT_THAT(mesh.missing, ElementsAre());
+    EXPECT_EQ(mesh.textures.size(), 1u);
+}
+
+TEST_F(GltfTest, Instances) {
+    Model model = square();
+    const double h = std::sqrt(0.5);
+    using Rotation = std::array<std::int16_t, 4>;
+    const auto turn = static_cast<std::int16_t>(std::lround(h * 32767));
+    const Json attributes = {
+        {"TRANSLATION", model.add<glm::vec3>({{0, 0, 0}, {5, 0, 0}}, 5126, "VEC3")},
+        {"ROTATION",
+         model.add<Rotation>({{0, 0, 0, 32767}, {0, turn, 0, turn}}, 5122, "VEC4", true)},
+        {"SCALE", model.add<glm::vec3>({{1, 1, 1}, {-1, 2, 1}}, 5126, "VEC3")},
+        {"_TEMPERATURE", 0}};
+    model.json["nodes"] = {
+        {{"mesh", 0},
+         {"translation", {0, 0, 100}},
+         {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}}};
+    model.json["extensionsRequired"] = {"EXT_mesh_gpu_instancing"};
+    const TriangleMesh mesh = gltf(model.embedded());
+    EXPECT_EQ(defect(mesh), "");
+    ASSERT_EQ(mesh.num_vertices(), 8u);
+    EXPECT_EQ(mesh.positions[2], glm::vec3(1, 1, 100));
+    // (1, 1) is mirrored and stretched, then turned by 90 degrees about +Y, then moved.
+    EXPECT_LT(glm::distance(mesh.positions[6], glm::vec3(5, 2, 101)), 1e-4f);
+    EXPECT_EQ(mesh.triangles[2], (Triangle{4, 6, 5})) << "mirrored: turned back";
+    Json& changed = model.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+    changed["SCALE"] = 0;
+    expect_refusal([&] { return gltf(model.embedded()); },
+                   "2 elements of SCALE, as many as of the instances' other attributes");
+    changed = {{"_TEMPERATURE", 0}};
+    expect_refusal([&] { return gltf(model.embedded()); },
+                   "TRANSLATION, ROTATION or SCALE of a node's instances, got none");
+}
+
+TEST_F(GltfTest, SaysWhatIsLeftOut) {
+    Model model = square();
+    EXPECT_THAT(gltf(model.embedded()).warnings, ElementsAre());
+    model.json["extensionsUsed"] = {"KHR_materials_clearcoat", "VENDOR_wind", "KHR_texture_basisu",
+                                    "KHR_texture_transform", "KHR_materials_clearcoat"};
+    model.json["extensionsRequired"] = {"KHR_texture_basisu"};
+    model.json["materials"] = {{{"alphaMode", "MASK"}},
+                               {{"alphaMode", "MASK"}},
+                               {{"alphaMode", "OPAQUE"}},
+                               {{"alphaMode", "BLEND"}}};
+    model.json["nodes"][0]["skin"] = 0;
+    model.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", 0}}};
+    EXPECT_THAT(
+        gltf(model.embedded()).warnings,
+        ElementsAre("the extension 'KHR_materials_clearcoat' is not read: clear coats are left out",
+                    "the extension 'KHR_texture_basisu' is not read: its images are left out; "
+                    "without another image, a surface has its factors alone",
+                    "the extension 'VENDOR_wind' is not read: what it describes is left out",
+                    "2 materials cut out by alpha (leaves, fences); alpha is not read: what is cut "
+                    "out is opaque",
+                    "1 material transparent by alpha; alpha is not read: surfaces are opaque",
+                    "skins are at rest: their joints move nothing",
+                    "morph targets are at rest: their weights are 0"));
+}
+
 TEST_F(GltfTest, RefusesWhatItWouldMisread) {
     const auto refused = [](const auto& change, const std::string& part) {
         Model model = square();
@@ -325,8 +371,8 @@ TEST_F(GltfTest, RefusesWhatItWouldMisread) {
     expect_refusal([] { return gltf(square().external("data:;base64,%%%%")); }, "base64");
     expect_refusal([] { return gltf(square().external("data:;base64,AAAA")); }, "got 3");
     refused([](Json& j) { j["asset"]["version"] = "1.0"; }, "got '1.0'");
-    refused([](Json& j) { j["extensionsRequired"] = {"KHR_draco_mesh_compression"}; },
-            "KHR_draco_mesh_compression");
+    refused([](Json& j) { j["extensionsRequired"] = {"VENDOR_other_geometry"}; },
+            "VENDOR_other_geometry");
     refused([](Json& j) { j["nodes"][0]["mesh"] = 1; }, "indices of \"meshes\" below 1, got 1");
     refused([](Json& j) { j["nodes"][0]["mesh"] = -1; }, "a whole number as \"mesh\", got '-1'");
     refused([](Json& j) { j["nodes"][0]["mesh"] = "0"; }, "a whole number as \"mesh\"");

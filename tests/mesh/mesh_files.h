@@ -112,6 +112,9 @@ inline void expect_box(const TriangleMesh& mesh) {
     EXPECT_NEAR(volume(mesh), 6.0, 1e-6);
 }
 
+inline TriangleMesh gltf(std::string_view file, NormalSource normals = NormalSource::File) {
+    return to_mesh(read_gltf(bytes_of(file), {}), normals);
+}
 inline TriangleMesh obj(std::string_view text, NormalSource normals = NormalSource::File) {
     return to_mesh(read_obj(bytes_of(text)), normals);
 }

@@ -100,7 +100,10 @@ TEST(ObjReader, ColorsOfVertices) {
 }
 
 TEST(ObjReader, SkipsFacesOfFewerThanThreeCorners) {
-    expect_box(obj(box_obj() + "f 1 2\nf 3\nf\n"));
+    const TriangleMesh mesh = obj(box_obj() + "f 1 2\nf 3\nf\n");
+    expect_box(mesh);
+    EXPECT_THAT(mesh.warnings,
+                testing::ElementsAre("3 of 10 faces have fewer than three corners"));
     expect_refusal([] { return obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"); },
                    "got 3 vertices and 1 faces");
 }

@@ -1,3 +1,5 @@
+#include <bit>
+
 #include "tests/mesh/mesh_files.h"
 
 namespace relumine::mesh {
@@ -52,7 +54,63 @@ TEST(OffReader, EveryLayoutOfVertices) {
 }
 
 TEST(OffReader, SkipsFacesOfFewerThanThreeCorners) {
-    expect_box(off(replace_all(box_off(), "8 7 0\n", "8 10 0\n") + "2 0 1\n1 0\n0\n"));
+    const TriangleMesh mesh =
+        off(replace_all(box_off(), "8 7 0\n", "8 10 0\n") + "2 0 1\n1 0\n0\n");
+    expect_box(mesh);
+    EXPECT_THAT(mesh.warnings, testing::ElementsAre("3 of 10 faces have fewer than three corners"));
+    EXPECT_THAT(off(box_off()).warnings, testing::IsEmpty());
+}
+
+/// Words of 32 bits, high byte first.
+std::string words(std::initializer_list<std::uint32_t> values) {
+    std::string text;
+    for (const std::uint32_t value : values)
+        for (const int shift : {24, 16, 8, 0})
+            text += static_cast<char>(value >> shift & 0xffu);
+    return text;
+}
+
+/// The box in binary: each vertex with further words, each face with further words.
+std::string binary_off(const std::string& keyword = "OFF BINARY\n",
+                       const std::string& of_vertex = "", const std::string& of_face = words({0})) {
+    std::string text = keyword + words({8, 7, 0});
+    for (const glm::vec3& p : BoxPositions)
+        text += words({std::bit_cast<std::uint32_t>(p.x), std::bit_cast<std::uint32_t>(p.y),
+                       std::bit_cast<std::uint32_t>(p.z)}) +
+                of_vertex;
+    for (const auto& face : BoxFaces) {
+        text += words({static_cast<std::uint32_t>(face.size())});
+        for (const std::uint32_t corner : face)
+            text += words({corner});
+        text += of_face;
+    }
+    return text;
+}
+
+TEST(OffReader, BinaryFiles) {
+    expect_box(off(binary_off()));
+    expect_box(off(binary_off("OFF BINARY\r\n")));
+    const std::uint32_t one = std::bit_cast<std::uint32_t>(1.0f);
+    const std::uint32_t half = std::bit_cast<std::uint32_t>(0.5f);
+    const TriangleMesh mesh =
+        off(binary_off("STCNOFF BINARY\n", words({0, one, 0, one, half, 0, one, half, 0}),
+                       words({4, one, one, one, one})));
+    expect_box(mesh);
+    EXPECT_EQ(mesh.normals[3], glm::vec3(0, 1, 0));
+    EXPECT_EQ(mesh.colors[3], glm::vec3(1.0f, 0.5f, 0.0f));
+    EXPECT_EQ(mesh.uvs[3], glm::vec2(0.5f, 0.0f));
+    const std::string text = binary_off();
+    for (std::size_t length = 11; length < text.size(); ++length)
+        expect_refusal([&] { return off(text.substr(0, length)); }, "got");
+    expect_refusal([&] { return off(text + "x"); }, "nothing after 8 vertices and 7 faces, got 1");
+    const auto changed = [&](std::size_t word, std::uint32_t value) {
+        return text.substr(0, 11 + 4 * word) + words({value}) + text.substr(15 + 4 * word);
+    };
+    expect_refusal([&] { return off(changed(0, 0xffffffffu)); }, "a number of vertices below");
+    expect_refusal([&] { return off(changed(1, 1000)); }, "a number of faces below");
+    expect_refusal([&] { return off(changed(3 + 24, 4000)); }, "a number of corners below");
+    expect_refusal([&] { return off(changed(3 + 25, 8)); }, "vertex indices below 8, got 8");
+    expect_refusal([&] { return off(changed(3 + 29, 5)); }, "a number of colour values below 5");
 }
 
 TEST(OffReader, RefusesWhatItWouldMisread) {
@@ -63,7 +121,7 @@ TEST(OffReader, RefusesWhatItWouldMisread) {
     };
     refused("OFF", "4OFF", "'4OFF'");
     refused("OFF", "nOFF", "'nOFF'");
-    refused("OFF", "OFF BINARY", "BINARY");
+    refused("OFF", "OFF BINARY", "a number of vertices below");
     refused("OFF", "PLY", "'PLY'");
     refused("8 7 0", "8 7", "edges");
     refused("8 7 0", "353535235358 7 0", "353535235358");

@@ -140,5 +140,57 @@ TEST(PlyReader, RefusesWhatItWouldMisread) {
     expect_refusal([] { return ply("ply\nformat ascii 1.0\nend_header\n"); }, "vertices, got none");
 }
 
+/// Strips as trimesh2 and Stanford's tools write them: one list, -1 between strips.
+TEST(PlyReader, StripsOfTriangles) {
+    const std::string header = "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\n"
+                               "property float y\nproperty float z\n";
+    const std::string strips =
+        "element tristrips 1\nproperty list int int vertex_indices\nend_header\n";
+    // Around the box, then both ends.
+    const std::string around = "0 1 3 2 7 6 4 5 0 1", left = "0 3 4 7", right = "1 5 2 6";
+    const std::string all = around + " -1 " + left + " -1 " + right;
+    const TriangleMesh mesh = ply(header + strips + box_vertex_lines() + "20 " + all + "\n");
+    EXPECT_EQ(mesh.positions, BoxPositions);
+    ASSERT_EQ(mesh.num_triangles(), 12u);
+    EXPECT_EQ(mesh.triangles[0], (Triangle{0, 1, 3}));
+    EXPECT_EQ(mesh.triangles[1], (Triangle{3, 1, 2}));
+    EXPECT_EQ(mesh.triangles[8], (Triangle{0, 3, 4}));
+    EXPECT_NEAR(area(mesh), BoxArea, 1e-6);
+    EXPECT_NEAR(std::abs(volume(mesh)), 6.0, 1e-6) << "all face the same side";
+
+    // Faces beside strips, and a list for each strip, binary.
+    const TriangleMesh both =
+        ply(header + "element face 1\nproperty list uchar int vertex_indices\n" + strips +
+            box_vertex_lines() + "4 0 3 2 1\n20 " + all + "\n");
+    EXPECT_EQ(both.num_triangles(), 14u);
+    std::string binary =
+        replace_all(header, "ascii", "binary_little_endian") +
+        "element tristrips 2\nproperty list uchar short vertex_indices\nend_header\n";
+    for (const glm::vec3& p : BoxPositions)
+        binary.append(reinterpret_cast<const char*>(&p), sizeof p);
+    for (const std::vector<std::int16_t>& strip :
+         {std::vector<std::int16_t>{0, 3, 4, 7}, {1, 5, 2, -1, 5, 6, 2}}) {
+        binary += static_cast<char>(strip.size());
+        binary.append(reinterpret_cast<const char*>(strip.data()), 2 * strip.size());
+    }
+    EXPECT_EQ(ply(binary).triangles,
+              (std::vector<Triangle>{{0, 3, 4}, {4, 3, 7}, {1, 5, 2}, {5, 6, 2}}));
+
+    const auto refused = [&](const std::string& list, const std::string& part) {
+        expect_refusal([&] { return ply(header + strips + box_vertex_lines() + list + "\n"); },
+                       part);
+    };
+    refused("4 0 1 2 8", "vertex indices of -1 to 7, got 8");
+    refused("4 0 1 2 -2", "vertex indices of -1 to 7, got -2");
+    refused("5 0 1 -1 2 3", "faces with three or more corners");
+    refused("4 0 1 2", "a number");
+    expect_refusal(
+        [&] {
+            return ply(replace_all(header + strips, "int int", "int float") + box_vertex_lines() +
+                       "4 0 1 2 3\n");
+        },
+        "tristrips with a list of whole numbers 'vertex_indices', got none");
+}
+
 } // namespace
 } // namespace relumine::mesh

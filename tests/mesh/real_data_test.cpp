@@ -64,6 +64,31 @@ constexpr RealMesh RealMeshes[] = {
     {"ugly/manifold_boxNotManifold.obj", 9, 12},
 };
 
+/// Counts of POSITION's accessors, and a third of the counts of the indices', summed over nodes and
+/// instances.
+constexpr RealMesh RealGltf[] = {
+    {"draco/ambulance.gltf", 6222, 2588},
+    {"draco/apple.gltf", 252, 136},
+    {"draco/barrel.gltf", 484, 308},
+    {"draco/bike.gltf", 372845, 276540},
+    {"draco/boat-small.gltf", 260, 104},
+    {"draco/bridge-01.gltf", 1716, 3198},
+    {"draco/bunny.gltf", 29598, 58754},
+    {"draco/burger.gltf", 524, 294},
+    {"draco/cactus.gltf", 56861, 85590},
+    {"draco/cannon-large.gltf", 2382, 1056},
+    {"draco/chest.gltf", 1066, 452},
+    {"draco/citroen-old-van.gltf", 8388, 4649},
+    {"plain/ExplodingBarrel.glb", 4925, 8150},
+    {"plain/TeapotsGalore/TeapotsGalore.gltf", 4185400, 7656770},
+    {"plain/TextureTransform/TextureTransformTest.gltf", 48, 24},
+    {"plain/cornellBox.glb", 2281, 4006},
+    {"plain/runeSword.glb", 4295, 4296},
+    {"plain/shaderBall.glb", 3074, 3392},
+    {"plain/vintageDeskFan/vintageFan_animated.gltf", 15601, 21080},
+    {"plain/webp/webp.gltf", 10584, 5292},
+};
+
 class RealDataTest : public testing::Test {
 protected:
     void SetUp() override {
@@ -80,6 +105,20 @@ TEST_F(RealDataTest, EveryMeshHasItsCounts) {
         EXPECT_EQ(mesh.num_vertices(), expected.num_vertices);
         EXPECT_EQ(mesh.num_triangles(), expected.num_triangles);
         EXPECT_EQ(defect(mesh), "");
+    }
+}
+
+TEST(RealGltfTest, EveryAssetHasTheCountsOfItsAccessors) {
+    const std::filesystem::path folder = real_data("gltf");
+    if (folder.empty())
+        GTEST_SKIP() << absent_data("gltf");
+    for (const RealMesh& expected : RealGltf) {
+        SCOPED_TRACE(expected.path);
+        const TriangleMesh mesh = load(folder / expected.path);
+        EXPECT_EQ(mesh.num_vertices(), expected.num_vertices);
+        EXPECT_EQ(mesh.num_triangles(), expected.num_triangles);
+        EXPECT_EQ(defect(mesh), "");
+        EXPECT_THAT(mesh.missing, testing::IsEmpty());
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <numeric>
 #include <set>
@@ -50,6 +51,74 @@ TEST(Exact, EqualsALoopOverTexelsWithSingleRays) {
             EXPECT_LT(glm::length(radiance[i] - expected), 1e-6 * (1.0 + glm::length(expected)));
         }
     }
+}
+
+/// An image of one radiance.
+cubemap::EnvironmentImage flat_image(cubemap::Layout layout, std::uint32_t face_resolution) {
+    const cubemap::ImageSize size = cubemap::natural_size(layout, face_resolution);
+    cubemap::EnvironmentImage image;
+    image.layout = layout;
+    image.width = size.width;
+    image.height = size.height;
+    image.pixels.assign(std::size_t{size.width} * size.height, glm::vec3(1.0f));
+    return image;
+}
+
+TEST(ExactOfFile, EveryLayoutIsAWhiteFurnace) {
+    const prt::Receivers receivers{.positions = std::vector<glm::vec3>(3, glm::vec3(0.0f)),
+                                   .normals = {{0, 1, 0}, {0.6f, -0.8f, 0.0f}, {0, 0, -1}}};
+    const std::vector<std::uint32_t> all = {0, 1, 2};
+    for (const cubemap::Layout layout : cubemap::AllLayouts)
+        for (const std::uint32_t r : {8u, 64u, 400u}) { // pixels cut, as they are, and in groups
+            const auto image =
+                std::make_shared<const cubemap::EnvironmentImage>(flat_image(layout, r));
+            for (const glm::dvec3& b : exact_radiance(receivers, all, scenes::no_blockers(),
+                                                      EnvironmentFile{.image = image}))
+                EXPECT_NEAR(b.g, 1.0, 3e-3) << cubemap::name(layout) << " " << r;
+        }
+}
+
+TEST(ExactOfFile, ABrightPixelIsASmallAreaWhereItIs) {
+    // One pixel of a lat-long over a half-plane's edge: the part of its area that the receiver
+    // sees.
+    cubemap::EnvironmentImage image = flat_image(cubemap::Layout::LatLong, 16);
+    std::fill(image.pixels.begin(), image.pixels.end(), glm::vec3(0.0f));
+    constexpr std::uint32_t X = 20, Y = 5; // of 64 x 32
+    image.pixels[Y * image.width + X] = glm::vec3(1000.0f);
+    const auto shared = std::make_shared<const cubemap::EnvironmentImage>(image);
+    const prt::Receivers receivers{.positions = {glm::vec3(0.0f)}, .normals = {{0, 1, 0}}};
+    const std::vector<std::uint32_t> one = {0};
+    const double top = std::numbers::pi * Y / 32.0, bottom = std::numbers::pi * (Y + 1) / 32.0;
+    // The integral of the cosine over the pixel: half of its longitudes times the squared sines.
+    const double expected = 1000.0 / std::numbers::pi * (2.0 * std::numbers::pi / 64.0) * 0.5 *
+                            (std::sin(bottom) * std::sin(bottom) - std::sin(top) * std::sin(top));
+    for (const double degrees : {0.0, 77.0}) {
+        const EnvironmentFile file{.image = shared, .turn = cubemap::turn_about_y(degrees)};
+        EXPECT_NEAR(exact_radiance(receivers, one, scenes::no_blockers(), file)[0].r, expected,
+                    1e-4 * expected);
+    }
+    // A blocker of one side of the world cuts it in two where its edge is.
+    const double longitude = (0.5 - (X + 0.25) / 64.0) * 2.0 * std::numbers::pi;
+    class Wedge final : public prt::Blockers {
+    public:
+        explicit Wedge(double longitude) : longitude_(longitude) {}
+        [[nodiscard]] std::uint32_t occluded(const glm::vec3&, const prt::DirectionPacket& w,
+                                             std::uint32_t active) const override {
+            std::uint32_t blocked = 0;
+            for (std::uint32_t i = 0; i < prt::PacketSize; ++i)
+                blocked |=
+                    static_cast<std::uint32_t>(std::atan2(static_cast<double>(w.x[i]),
+                                                          static_cast<double>(w.z[i])) < longitude_)
+                    << i;
+            return blocked & active;
+        }
+
+    private:
+        double longitude_;
+    };
+    EXPECT_NEAR(
+        exact_radiance(receivers, one, Wedge(longitude), EnvironmentFile{.image = shared})[0].r,
+        0.25 * expected, 0.01 * expected);
 }
 
 TEST(Exact, WhiteFurnaceOfAFloor) {

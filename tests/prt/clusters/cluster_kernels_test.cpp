@@ -1,9 +1,11 @@
 #include "prt/clusters/cluster_kernels.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <glm/geometric.hpp>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "prt/clusters/lattice.h"
@@ -48,6 +50,9 @@ struct RandomCell {
         }
     }
 
+    [[nodiscard]] bool is_above(std::size_t sample, std::size_t receiver) const {
+        return glm::dot(normals[receiver], samples.directions[sample]) > 0.0f;
+    }
     [[nodiscard]] bool lit(std::size_t sample, std::size_t receiver) const {
         return (planes[sample][receiver / WordSize] >> (receiver % WordSize) & 1u) != 0;
     }
@@ -126,20 +131,26 @@ int count_in(const LeafColumn& column, std::size_t receiver) {
     return column.counts[before * BlockSize + receiver % BlockSize];
 }
 
-TEST(ClusterKernels, LeafColumnHoldsTheWeightedCounts) {
+TEST(ClusterKernels, LeafColumnHoldsTheVisiblePartOfWhatIsAboveTheHorizon) {
     std::mt19937 random(3);
-    constexpr std::array<std::uint8_t, SamplesPerCell> CentreOnly = {0, 0, 0, 0, 16, 0, 0, 0, 0};
-    for (const auto& weights : {SampleWeights, CentreOnly})
+    for (const auto& weights : {SampleWeights, CentreWeights})
         for (const std::size_t num_receivers : {1u, 15u, 16u, 17u, 64u, 70u, 1024u, 1030u, 3000u}) {
             const RandomCell cell(random, num_receivers);
-            const LeafColumn column = leaf_column(cell.samples, weights, num_receivers);
+            const LeafColumn column =
+                leaf_column(NormalArrays(cell.normals), cell.samples, weights, num_receivers);
             std::size_t num_mixed = 0;
             for (std::size_t i = 0; i < num_receivers; ++i) {
-                int expected = 0;
-                for (std::size_t l = 0; l < SamplesPerCell; ++l)
-                    expected += cell.lit(l, i) ? weights[l] : 0;
-                ASSERT_EQ(count_in(column, i), expected)
-                    << "receiver " << i << " of " << num_receivers;
+                int lit = 0, above = 0;
+                for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+                    lit += cell.lit(l, i) ? weights[l] : 0;
+                    above += cell.is_above(l, i) ? weights[l] : 0;
+                }
+                if (above != 0) {
+                    ASSERT_EQ(count_in(column, i), std::lround(16.0 * lit / above))
+                        << "receiver " << i << " of " << num_receivers;
+                } else { // takes what the others of its block have
+                    ASSERT_THAT(count_in(column, i), testing::AnyOf(0, 16));
+                }
             }
             for (const std::uint64_t word : column.mixed)
                 num_mixed += static_cast<std::size_t>(std::popcount(word));
@@ -153,10 +164,54 @@ TEST(ClusterKernels, ABlockThatEndsEarlyCanBeAllVisible) {
     std::vector<std::uint64_t> plane = {(std::uint64_t{1} << 20) - 1};
     CellSamples samples;
     samples.lit.fill(plane.data());
-    const LeafColumn column = leaf_column(samples, SampleWeights, 20);
+    samples.directions.fill(glm::vec3(0.0f, 1.0f, 0.0f));
+    const NormalArrays normals(std::vector<glm::vec3>(20, glm::vec3(0.0f, 1.0f, 0.0f)));
+    const LeafColumn column = leaf_column(normals, samples, SampleWeights, 20);
     EXPECT_EQ(column.visible, std::vector<std::uint64_t>{0b11});
     EXPECT_EQ(column.mixed, std::vector<std::uint64_t>{0});
     EXPECT_TRUE(column.counts.empty());
+}
+
+TEST(ClusterKernels, HorizonsAloneNeverMixABlock) {
+    std::mt19937 random(4);
+    constexpr std::size_t NumReceivers = 500;
+    const RandomCell random_cell(random, NumReceivers);
+    // Every sample above the horizon is lit.
+    std::array<std::vector<std::uint64_t>, SamplesPerCell> planes;
+    CellSamples samples = random_cell.samples;
+    for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+        planes[l].resize((NumReceivers + WordSize - 1) / WordSize);
+        for (std::size_t i = 0; i < NumReceivers; ++i)
+            if (random_cell.is_above(l, i))
+                planes[l][i / WordSize] |= std::uint64_t{1} << (i % WordSize);
+        samples.lit[l] = planes[l].data();
+    }
+    const LeafColumn column =
+        leaf_column(NormalArrays(random_cell.normals), samples, SampleWeights, NumReceivers);
+    EXPECT_TRUE(column.counts.empty());
+    // One receiver that sees nothing of what it has above its horizon mixes its block. The others
+    // of the block keep all or, without anything above their horizons, count nothing.
+    const auto sees_all = [&](std::size_t i) {
+        for (std::size_t l = 0; l < SamplesPerCell; ++l)
+            if (!random_cell.is_above(l, i))
+                return false;
+        return true;
+    };
+    std::size_t first = 0;
+    while (!sees_all(first) || !sees_all(first + 1) || first / BlockSize != (first + 1) / BlockSize)
+        ++first;
+    for (std::vector<std::uint64_t>& plane : planes)
+        plane[first / WordSize] &= ~(std::uint64_t{1} << (first % WordSize));
+    const LeafColumn mixed =
+        leaf_column(NormalArrays(random_cell.normals), samples, SampleWeights, NumReceivers);
+    ASSERT_EQ(mixed.counts.size(), BlockSize);
+    for (std::size_t i = first / BlockSize * BlockSize; i < (first / BlockSize + 1) * BlockSize;
+         ++i) {
+        bool any = false;
+        for (std::size_t l = 0; l < SamplesPerCell; ++l)
+            any = any || random_cell.is_above(l, i);
+        EXPECT_EQ(mixed.counts[i % BlockSize], any && i != first ? 16 : 0);
+    }
 }
 
 } // namespace

@@ -21,7 +21,11 @@ protected:
         scene_.mesh = glossy.diffuse.mesh;
         scene_.receivers = glossy.receivers;
         scene_.transfer = glossy.transfer;
-        scene_.settings.glossy_tolerance = 0.05f;
+        scene_.settings = {.tolerance = glossy.diffuse.options.tolerance,
+                           .min_level = glossy.diffuse.options.min_level,
+                           .face_resolution = glossy.diffuse.options.face_resolution,
+                           .bias = glossy.diffuse.options.bias,
+                           .glossy_tolerance = 0.05f};
         scene_.settings.view =
             Camera{.eye = {1.5f, 2.5f, 3.0f}, .target = {0.0f, 0.5f, 0.0f}, .fov_degrees = 30.0f};
         path_ = std::filesystem::path(testing::TempDir()) /
@@ -78,10 +82,13 @@ TEST_F(GlossySections, DamageIsFound) {
     refused("g_specular_v", [](std::vector<std::byte>& bytes) { bytes.pop_back(); });
     refused("g_specular_s", [](std::vector<std::byte>& bytes) { bytes.resize(bytes.size() - 4); });
     // The highest plane of all scales' bytes: exponents that make NaN or infinity.
-    refused("g_specular_s", [](std::vector<std::byte>& bytes) {
-        std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.end(),
-                  std::byte{0xff});
-    });
+    refused(
+        "g_specular_s",
+        [](std::vector<std::byte>& bytes) {
+            std::fill(bytes.begin() + static_cast<std::ptrdiff_t>(bytes.size() / 2), bytes.end(),
+                      std::byte{0xff});
+        },
+        "highlights of a transfer within");
     refused("g_diff_grazing_c", [](std::vector<std::byte>& bytes) { bytes.pop_back(); });
     // All differences zero: the same cell again and again; all ones: cells beyond the deepest
     // level.

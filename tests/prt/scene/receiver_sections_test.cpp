@@ -23,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 void precompute(Scene& scene) {
+    scene.settings = {.tolerance = 0.1f, .min_level = 1, .face_resolution = 8, .bias = 1e-3f};
     scene.transfer =
         prt::precompute(scene.receivers, RayScene(scene.mesh),
                         {.tolerance = 0.1f, .min_level = 1, .face_resolution = 8, .bias = 1e-3f});
@@ -206,12 +207,16 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     save_scene(file_, scene);
     const Sections good = read_sections(file_);
     const float nan = std::numeric_limits<float>::quiet_NaN();
-    for (const char* name : {"r_positions", "r_normals", "r_to_eye", "r_albedo", "r_specular",
-                             "r_shape", "r_barycentric"}) {
-        refused(good, name, 5, nan);
-        refused(good, name, 4, std::numeric_limits<float>::infinity());
-    }
-    refused(good, "r_shape", 3, -1.0f);
+    const std::vector<std::pair<const char*, const char*>> floats = {
+        {"r_positions", "coordinates"},           {"r_normals", "normals of length 1 or 0"},
+        {"r_to_eye", "to the eye of length 1"},   {"r_albedo", "albedo 0 to 1"},
+        {"r_specular", "specular colour 0 to 1"}, {"r_shape", "roughness of 0 to 1"},
+        {"r_barycentric", "'r_barycentric'"}};
+    for (const auto& [name, reason] : floats)
+        for (const float value : {nan, std::numeric_limits<float>::infinity(), 3e38f, -1e20f})
+            refused(good, reason, [&, n = name](Sections& sections) {
+                std::memcpy(sections.at(n).data() + 5 * sizeof value, &value, sizeof value);
+            });
     refused(good, "r_barycentric", 3, -0.1f);
     refused(good, "r_barycentric", 3, 1.5f);
     refused(good, "r_triangles", 3, static_cast<std::uint32_t>(scene.mesh.num_triangles()));

@@ -1,6 +1,8 @@
 #include "prt/scene/scene_file.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -16,8 +18,10 @@
 #include <xxhash.h>
 
 #include "files/output_file.h"
+#include "prt/clusters/lattice.h"
+#include "prt/clusters/visibility_planes.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
-#include "prt/scene/scene_check.h"
 #include "prt/scene/section_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/damaged_file.h"
@@ -36,7 +40,7 @@ Scene scene_of(const mesh::TriangleMesh& mesh, const PrecomputeOptions& options)
                          .min_level = options.min_level,
                          .face_resolution = options.face_resolution,
                          .bias = options.bias,
-                         .floor_vertices = 11,
+                         .floor_vertices = 2,
                          .source = "bunny \"quoted\" \xc3\xa9.ply",
                          .source_hash = 0xfedcba9876543210}};
 }
@@ -230,9 +234,9 @@ TEST_F(ForgedSceneTest, IndicesAndNumbersOutOfRange) {
                                [&](auto& t) { t[t.size() / 2] = index; });
     for (const float value :
          {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-        refused<glm::vec3>("'positions'", "positions", [&](auto& p) { p[7].y = value; });
-        refused<glm::vec3>("'normals'", "normals", [&](auto& n) { n[7].z = -value; });
-        refused<glm::vec3>("'colors'", "colors", [&](auto& c) { c[7].z = value; });
+        refused<glm::vec3>("coordinates", "positions", [&](auto& p) { p[7].y = value; });
+        refused<glm::vec3>("normals", "normals", [&](auto& n) { n[7].z = -value; });
+        refused<glm::vec3>("colours", "colors", [&](auto& c) { c[7].z = value; });
     }
     refused<std::uint32_t>("'order'", "order", [&](auto& o) { o[3] = num_vertices; });
     refused<std::uint32_t>("'order'", "order", [](auto& o) { o[3] = o[4]; });
@@ -260,7 +264,8 @@ TEST_F(ForgedSceneTest, BrokenTrees) {
     flags([](auto& b) { b[b.size() / 2] ^= 0x10u; }); // a leaf more or less
     flags([](auto& b) { std::fill(b.begin() + 4, b.end(), std::uint8_t{0xff}); });
     flags([](auto& b) { std::fill(b.begin() + 4, b.end(), std::uint8_t{0}); });
-    flags([](auto& b) { b[0] ^= 1u; }); // number of flags
+    flags([](auto& b) { b[0] ^= 1u; });        // number of flags
+    flags([](auto& b) { b.back() |= 0x80u; }); // behind the last flag
     flags([](auto& b) { std::fill(b.begin(), b.begin() + 4, std::uint8_t{0xff}); });
     // A good tree that is not this scene's.
     flags([](auto& b) { b = {6, 0, 0, 0, 0}; });
@@ -276,6 +281,8 @@ TEST_F(ForgedSceneTest, SettingsThatAreNone) {
     };
     settings("");
     settings("{}");
+    const std::vector<std::byte>& bytes = good_.at("settings");
+    settings(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()) + '\0');
     settings("[1, 2]");
     settings("null");
     settings("{\"tolerance\": 1");
@@ -314,49 +321,170 @@ TEST_F(SceneFileTest, RefusesToSaveWhatItCouldNotLoad) {
     EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(SceneFileTest, TheCheckAcceptsWhatAPrecomputeWrites) {
-    Scene tiny = tiny_scene();
-    tiny.settings.floor_vertices = 0;
-    for (const Scene& scene : {rich_scene(), tiny}) {
-        save_scene(file_, scene);
-        EXPECT_NO_THROW(check_scene(load_scene(file_), file_));
-    }
+/// A scene with surfaces, highlights and an eye.
+Scene glossy_scene() {
+    Scene scene = tiny_scene();
+    scene.receivers = vertex_receivers(scene.mesh);
+    look_from(scene.receivers, {0.0f, 1.0f, 4.0f});
+    Surface shiny{.albedo = glm::vec3(0.5f),
+                  .specular = glm::vec3(0.04f),
+                  .highlight = Highlight::Ggx,
+                  .roughness_or_exponent = 0.4f};
+    scene.receivers.surfaces.assign(scene.receivers.size(), shiny);
+    set_surfaces(scene.transfer, scene.receivers);
+    scene.transfer.glossy = precompute_glossy(scene.receivers, RayScene(scene.mesh), scene.transfer,
+                                              {.tolerance = 0.3f, .face_resolution = 4});
+    set_surfaces(scene.transfer, scene.receivers);
+    scene.settings.glossy_tolerance = 0.3f;
+    scene.settings.view = Camera{.eye = {0.0f, 1.0f, 4.0f}};
+    return scene;
 }
 
-TEST_F(SceneFileTest, TheCheckNamesWhatIsUnsound) {
-    const auto unsound = [&](const std::string& reason, const std::function<void(Scene&)>& how) {
-        Scene scene = rich_scene();
-        scene.receivers = vertex_receivers(scene.mesh);
+TEST_F(SceneFileTest, RefusesValuesThatCannotBeLitOrDrawn) {
+    constexpr float NaN = std::numeric_limits<float>::quiet_NaN();
+    constexpr float Infinity = std::numeric_limits<float>::infinity();
+    const Scene good = glossy_scene();
+    EXPECT_NO_THROW(save_scene(file_, good));
+    EXPECT_NO_THROW(static_cast<void>(load_scene(file_)));
+    const auto refused = [&](const std::string& reason, const std::function<void(Scene&)>& how) {
+        Scene scene = good;
         how(scene);
-        scenes::expect_refused(file_, reason, [&] { check_scene(scene, file_); });
+        fs::remove(file_);
+        scenes::expect_refused(file_, reason, [&] { save_scene(file_, scene); });
+        EXPECT_TRUE(fs::is_empty(folder_));
     };
-    unsound("normals of length 1 or 0, got element 7",
-            [](Scene& s) { s.mesh.normals[7] *= 1.01f; });
-    unsound("colours >= 0, got element 3", [](Scene& s) {
-        std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
+    for (const float value : {NaN, Infinity, -1.0f, 3e38f, 1.5f}) {
+        refused("surfaces of albedo 0 to 1, got element 7",
+                [&](Scene& s) { s.receivers.surfaces[7].albedo.g = value; });
+        refused("surfaces of specular colour 0 to 1, got element 3",
+                [&](Scene& s) { s.receivers.surfaces[3].specular.b = value; });
+        refused("roughness of 0 to 1",
+                [&](Scene& s) { s.receivers.surfaces[0].roughness_or_exponent = value; });
+        refused("directions to the eye of length 1",
+                [&](Scene& s) { s.receivers.to_eye[2] *= value * 1.01f; });
+        refused("normals of length 1 or 0", [&](Scene& s) { s.mesh.normals[5] *= value * 1.01f; });
+    }
+    refused("exponents of 0 to 1000000", [](Scene& s) {
+        s.receivers.surfaces[1].highlight = Highlight::BlinnPhong;
+        s.receivers.surfaces[1].roughness_or_exponent = 1e30f;
+    });
+    refused("directions to the eye of length 1",
+            [](Scene& s) { s.receivers.to_eye[2] = glm::vec3(0.0f); });
+    for (const float value : {NaN, Infinity, -1.0f, 3e38f})
+        refused("highlights of a transfer within",
+                [&](Scene& s) { s.transfer.glossy->lobes[0].scales.back() = value; });
+    // Embree aborts for rays from beyond 1.8e18.
+    for (const float value : {NaN, Infinity, 1e19f, -1.9e18f}) {
+        refused("coordinates", [&](Scene& s) { s.mesh.positions[7].z = value; });
+        refused("coordinates within", [&](Scene& s) { s.settings.view->eye.x = value; });
+    }
+    refused("coordinates within", [](Scene& s) { s.settings.bias = 1e19f; });
+    refused("a bias >= 0", [](Scene& s) { s.settings.bias = -1.0f; });
+    refused("a tolerance >= 0", [](Scene& s) { s.settings.tolerance = -1.0f; });
+    refused("a face resolution from 1", [](Scene& s) { s.settings.face_resolution = 0; });
+    refused("a floor among", [](Scene& s) { s.settings.floor_vertices = 1000; });
+    refused("clusters of levels", [](Scene& s) { s.settings.face_resolution = 1; });
+    refused("clusters of levels", [](Scene& s) { s.settings.min_level = 5; });
+    refused("tolerance of the highlights, got none",
+            [](Scene& s) { s.settings.glossy_tolerance.reset(); });
+    refused("highlights, got none", [](Scene& s) { s.transfer.glossy.reset(); });
+    refused("expected triangles, got none", [](Scene& s) { s.mesh.triangles.clear(); });
+    refused("colours of 0 to", [](Scene& s) {
+        s.mesh.colors.assign(s.mesh.num_vertices(), glm::vec3(1.0f));
         s.mesh.colors[3].g = -1.0f;
     });
-    const auto with_colours = [](Scene& s) {
-        std::fill(s.mesh.colors.begin(), s.mesh.colors.end(), glm::vec3(1.0f));
-    };
-    const auto setting = [&](const std::string& reason,
-                             const std::function<void(SceneSettings&)>& how) {
-        unsound(reason, [&](Scene& s) {
-            with_colours(s);
-            how(s.settings);
-        });
-    };
-    setting("a tolerance >= 0", [](SceneSettings& s) { s.tolerance = -1.0f; });
-    setting("a bias >= 0", [](SceneSettings& s) { s.bias = -1.0f; });
-    setting("a face resolution from 1", [](SceneSettings& s) { s.face_resolution = 0; });
-    setting("a floor among", [](SceneSettings& s) { s.floor_vertices = 1000; });
-    setting("clusters of levels", [](SceneSettings& s) { s.face_resolution = 2; });
-    setting("clusters of levels", [](SceneSettings& s) { s.min_level = 5; });
-    setting("highlights, got none", [](SceneSettings& s) { s.glossy_tolerance = 0.1f; });
-    unsound("finite uvs", [&](Scene& s) {
-        with_colours(s);
-        s.mesh.uvs[2].x = std::numeric_limits<float>::infinity();
+    refused("finite uvs", [](Scene& s) {
+        s.mesh.uvs.assign(s.mesh.num_vertices(), glm::vec2(0.0f));
+        s.mesh.uvs[2].x = Infinity;
     });
+}
+
+/// Counts as versions 1 and 2 have them: the weight of the samples that reach the receiver, with
+/// samples below its horizon among those that do not. In tiles.
+VisibleCounts counts_of_all_samples(const Scene& scene, const Blockers& blockers) {
+    const Transfer& transfer = scene.transfer;
+    std::vector<glm::vec3> origins;
+    for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
+        origins.push_back(ray_origin(scene.mesh.positions[transfer.order[place]],
+                                     transfer.normals[place], scene.settings.bias));
+    const NormalArrays normals(transfer.normals);
+    VisibilityPlanes planes(origins, normals, blockers);
+    std::vector<LatticePoint> points;
+    for (const Cell& cell : transfer.quadtree.leaves())
+        for (const LatticePoint point : lattice_points(cell))
+            points.push_back(point);
+    planes.trace(points, 0.1, [](double) {});
+    std::vector<LeafColumn> columns;
+    for (const Cell& cell : transfer.quadtree.leaves()) {
+        const bool is_texel = cell.level == texel_level(scene.settings.face_resolution);
+        const auto& weights = is_texel ? CentreWeights : SampleWeights;
+        LeafColumn& column = columns.emplace_back();
+        const std::size_t num_blocks = transfer.counts.num_blocks();
+        column.visible.resize((num_blocks + 63) / 64);
+        column.mixed.resize((num_blocks + 63) / 64);
+        for (std::size_t block = 0; block < num_blocks; ++block) {
+            std::array<std::uint8_t, BlockSize> counts{};
+            bool any = false, all = true;
+            for (std::size_t i = 0; i < BlockSize; ++i) {
+                const std::size_t place = block * BlockSize + i;
+                if (place >= origins.size())
+                    break;
+                for (std::size_t l = 0; l < SamplesPerCell; ++l)
+                    if ((planes.plane(lattice_points(cell)[l])[place / 64] >> (place % 64) & 1u) !=
+                        0)
+                        counts[i] = static_cast<std::uint8_t>(counts[i] + weights[l]);
+                any = any || counts[i] != 0;
+                all = all && counts[i] == FullCount;
+            }
+            const std::uint64_t bit = std::uint64_t{1} << (block % 64);
+            if (all)
+                column.visible[block / 64] |= bit;
+            else if (any)
+                column.mixed[block / 64] |= bit;
+            if (any && !all)
+                column.counts.insert(column.counts.end(), counts.begin(), counts.end());
+        }
+    }
+    return counts_from_columns(std::move(columns), origins.size());
+}
+
+/// Puts the words of a block side by side, as version 1 has them.
+VisibleCounts block_by_block(const VisibleCounts& tiles) {
+    VisibleCounts result{.num_receivers = tiles.num_receivers, .num_leaves = tiles.num_leaves};
+    for (std::size_t block = 0; block < tiles.num_blocks(); ++block)
+        for (std::size_t w = 0; w < tiles.words_per_block(); ++w) {
+            const std::size_t word = tiles.word(block, w);
+            result.visible.push_back(tiles.visible[word]);
+            result.mixed.push_back(tiles.mixed[word]);
+            const std::uint8_t* counts = tiles.mixed_counts(word, 0);
+            const auto size = static_cast<std::ptrdiff_t>(
+                static_cast<std::size_t>(std::popcount(tiles.mixed[word])) * BlockSize);
+            result.counts.insert(result.counts.end(), counts, counts + size);
+        }
+    return result;
+}
+
+TEST_F(SceneFileTest, OlderVersionsBecomeWhatAPrecomputeFindsNow) {
+    // More than a tile of blocks; cells of one texel and larger ones.
+    mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(33, 4.0f),
+                                             scenes::icosphere(2, 0.7f, glm::dvec3(0.0, 0.9, 0.1)));
+    const RayScene rays(mesh);
+    Scene scene = scene_of(mesh, {.tolerance = 0.03f, .face_resolution = 32, .bias = 1e-3f});
+    scene.receivers = vertex_receivers(scene.mesh);
+    ASSERT_GT(scene.transfer.counts.num_tiles(), 1u);
+    const VisibleCounts as_in_2 = counts_of_all_samples(scene, rays);
+    ASSERT_GT(as_in_2.num_mixed(), scene.transfer.counts.num_mixed() * 5 / 4);
+    for (const std::uint32_t version : {1u, 2u}) {
+        Scene old = scene;
+        old.transfer.counts = version == 1 ? block_by_block(as_in_2) : as_in_2;
+        save_scene(file_, old);
+        scenes::sign_as_version(file_, version);
+        EXPECT_TRUE(same(load_scene(file_), scene)) << "version " << version;
+    }
+    scenes::sign_as_version(file_, 0);
+    expect_refused("version 0");
+    scenes::sign_as_version(file_, 4);
+    expect_refused("made by a newer relumine");
 }
 
 TEST_F(SceneFileTest, UnwritablePlacesLeaveNothing) {

@@ -60,8 +60,8 @@ Sections examples() {
 
 // Where the format has its fields: header of 40 bytes, entries of 48.
 constexpr std::size_t ByteOrderAt = 8, VersionAt = 12, FileSizeAt = 16, NumSectionsAt = 24,
-                      HeaderChecksumAt = 32, HeaderSize = 40, EntrySize = 48, OffsetAt = 16,
-                      StoredSizeAt = 24, SizeAt = 32, ChecksumAt = 40;
+                      ReservedAt = 28, HeaderChecksumAt = 32, HeaderSize = 40, EntrySize = 48,
+                      OffsetAt = 16, StoredSizeAt = 24, SizeAt = 32, ChecksumAt = 40;
 
 template<typename Value>
 Value value_at(const std::vector<std::byte>& bytes, std::size_t at) {
@@ -107,7 +107,7 @@ TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
     const std::vector<std::byte> little_endian(bytes.begin() + ByteOrderAt,
                                                bytes.begin() + VersionAt);
     EXPECT_EQ(little_endian, (std::vector{std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}}));
-    EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), 2u);
+    EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), 3u);
     EXPECT_EQ(value_at<std::uint64_t>(bytes, FileSizeAt), bytes.size());
     EXPECT_EQ(value_at<std::uint32_t>(bytes, NumSectionsAt), 1u);
     EXPECT_STREQ(reinterpret_cast<const char*>(bytes.data() + HeaderSize), "abc");
@@ -121,6 +121,16 @@ TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
     std::vector<std::byte> signed_again = bytes;
     sign(signed_again);
     EXPECT_EQ(signed_again, bytes);
+}
+
+TEST_F(SectionFileTest, EveryVersionIsReadAndNamed) {
+    write_sections(file_, examples());
+    for (std::uint32_t version = 1; version <= SceneFileVersion; ++version) {
+        scenes::sign_as_version(file_, version);
+        std::uint32_t got = 0;
+        EXPECT_EQ(read_sections(file_, &got), examples());
+        EXPECT_EQ(got, version);
+    }
 }
 
 TEST_F(SectionFileTest, RefusesBadNames) {
@@ -170,8 +180,10 @@ TEST_F(SectionFileTest, SaysWhatIsWrong) {
         change(bad);
         write(bad);
     };
-    changed([](auto& b) { put(b, VersionAt, std::uint32_t{1}); });
-    expect_refused("expected .prt version 2, got version 1");
+    changed([](auto& b) { put(b, VersionAt, std::uint32_t{0}); });
+    expect_refused("expected .prt version 1 to 3, got version 0");
+    changed([](auto& b) { put(b, VersionAt, std::uint32_t{4}); });
+    expect_refused("expected .prt version 3, got version 4, made by a newer relumine");
     changed([](auto& b) { std::reverse(b.begin() + ByteOrderAt, b.begin() + VersionAt); });
     expect_refused("expected a little-endian .prt scene, got a big-endian one");
     changed([](auto& b) { b.resize(b.size() - 3); });
@@ -223,6 +235,12 @@ TEST_F(SectionFileTest, RefusesForgedTables) {
     forged([](auto& b) {
         std::copy_n(b.begin() + HeaderSize, EntrySize, b.begin() + HeaderSize + EntrySize);
     });
+    // Names that descend.
+    forged([](auto& b) { b[HeaderSize] = std::byte{'x'}; });
+    // Something behind a name.
+    forged([](auto& b) { b[HeaderSize + 4] = std::byte{'x'}; });
+    // A word that must be 0.
+    forged([](auto& b) { put(b, ReservedAt, std::uint32_t{1}); });
     // Content that is not zstd, rightly signed.
     forged([](auto& b) {
         const auto offset = value_at<std::uint64_t>(b, HeaderSize + OffsetAt);

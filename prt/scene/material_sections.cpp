@@ -1,0 +1,187 @@
+#include "prt/scene/material_sections.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include <nlohmann/json.hpp>
+
+namespace relumine::prt {
+
+namespace {
+
+using Json = nlohmann::json;
+using mesh::Material;
+using mesh::TextureSlot;
+
+/// So many texels need no bytes of a file to prove them.
+constexpr std::size_t MaxCheapTexels = std::size_t{1} << 26;
+
+/// The textures that are stored, by their index in the mesh.
+using Stored = std::map<std::uint32_t, std::size_t>;
+
+Json json_of(const std::optional<TextureSlot>& slot, const Stored& stored) {
+    if (!slot)
+        return nullptr;
+    const glm::mat2& m = slot->uv_from_mesh_uv;
+    return {{"image", stored.at(slot->texture)},
+            {"srgb", slot->is_srgb},
+            {"wrap", {static_cast<int>(slot->wrap[0]), static_cast<int>(slot->wrap[1])}},
+            {"uv", {m[0][0], m[0][1], m[1][0], m[1][1], slot->uv_offset.x, slot->uv_offset.y}}};
+}
+
+/// The textures of a material that its albedo depends on.
+std::vector<std::optional<TextureSlot> Material::*> color_slots(mesh::MaterialModel model) {
+    switch (model) {
+    case mesh::MaterialModel::MetallicRoughness:
+        return {&Material::base_color_texture, &Material::metallic_roughness_texture};
+    case mesh::MaterialModel::SpecularGlossiness:
+        return {&Material::base_color_texture, &Material::specular_texture};
+    default:
+        return {&Material::base_color_texture};
+    }
+}
+
+const char* name_of(std::optional<TextureSlot> Material::*slot) {
+    return slot == &Material::base_color_texture           ? "base_texture"
+           : slot == &Material::metallic_roughness_texture ? "metallic_texture"
+                                                           : "specular_texture";
+}
+
+/// Returns a whole number below a limit.
+std::uint32_t below(const Json& json, std::uint32_t limit) {
+    const std::uint32_t number = natural(json);
+    if (number >= limit)
+        throw std::out_of_range("expected a smaller number");
+    return number;
+}
+
+float finite(const Json& json) {
+    const float number = real(json);
+    if (!std::isfinite(number))
+        throw std::out_of_range("expected a finite number");
+    return number;
+}
+
+/// Returns a number in [0, 1].
+float fraction(const Json& json) {
+    const float number = real(json);
+    if (!(number >= 0.0f && number <= 1.0f))
+        throw std::out_of_range("expected 0 to 1");
+    return number;
+}
+
+glm::vec3 color(const Json& json) {
+    return {fraction(json.at(0)), fraction(json.at(1)), fraction(json.at(2))};
+}
+
+std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
+    if (json.is_null())
+        return std::nullopt;
+    const Json& uv = json.at("uv");
+    const auto wrap = [&](std::size_t axis) {
+        return static_cast<mesh::Wrap>(below(json.at("wrap").at(axis), 3));
+    };
+    return TextureSlot{.texture = below(json.at("image"), static_cast<std::uint32_t>(num_textures)),
+                       .is_srgb = json.at("srgb").get<bool>(),
+                       .wrap = {wrap(0), wrap(1)},
+                       .uv_from_mesh_uv = glm::mat2(finite(uv.at(0)), finite(uv.at(1)),
+                                                    finite(uv.at(2)), finite(uv.at(3))),
+                       .uv_offset = glm::vec2(finite(uv.at(4)), finite(uv.at(5)))};
+}
+
+Material material_of(const Json& json, std::size_t num_textures) {
+    Material material;
+    material.model = static_cast<mesh::MaterialModel>(below(json.at("model"), 3));
+    material.base_color = color(json.at("base"));
+    material.metallic = fraction(json.at("metallic"));
+    material.specular = color(json.at("specular"));
+    material.times_vertex_color = json.at("times_vertex_color").get<bool>();
+    for (const auto slot : color_slots(material.model))
+        material.*slot = slot_of(json.at(name_of(slot)), num_textures);
+    return material;
+}
+
+mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
+                         std::size_t& offset) {
+    const std::size_t size = natural(json.at("bytes"));
+    if (size > images.size() - offset)
+        throw std::out_of_range("expected an image in the section");
+    mesh::Texture texture = mesh::decode_texture(
+        std::span(images).subspan(offset, size),
+        json.at("v_from_top").get<bool>() ? mesh::VOrigin::Top : mesh::VOrigin::Bottom);
+    offset += size;
+    return texture;
+}
+
+} // namespace
+
+void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh) {
+    const auto has_texture = [](const Material& material) {
+        return material.base_color_texture.has_value();
+    };
+    if (mesh.triangle_materials.empty() ||
+        std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
+        return;
+    Json textures = Json::array(), materials = Json::array();
+    std::vector<std::byte> images;
+    Stored stored;
+    for (const Material& material : mesh.materials) {
+        Json json = {
+            {"model", static_cast<int>(material.model)},
+            {"base", {material.base_color.r, material.base_color.g, material.base_color.b}},
+            {"metallic", material.metallic},
+            {"specular", {material.specular.r, material.specular.g, material.specular.b}},
+            {"times_vertex_color", material.times_vertex_color}};
+        for (const auto slot : color_slots(material.model)) {
+            if (const auto& used = material.*slot; used && !stored.contains(used->texture)) {
+                const mesh::Texture& texture = mesh.textures[used->texture];
+                stored.emplace(used->texture, textures.size());
+                textures.push_back({{"bytes", texture.file.size()},
+                                    {"v_from_top", texture.origin == mesh::VOrigin::Top}});
+                images.insert(images.end(), texture.file.begin(), texture.file.end());
+            }
+            json[name_of(slot)] = json_of(material.*slot, stored);
+        }
+        materials.push_back(json);
+    }
+    const std::string text = Json({{"images", textures}, {"materials", materials}}).dump(2);
+    sections["materials"] = bytes_of(std::vector<char>(text.begin(), text.end()));
+    sections["images"] = std::move(images);
+    sections["t_materials"] = bytes_of(mesh.triangle_materials);
+    if (!mesh.corner_uvs.empty())
+        sections["corner_uvs"] = bytes_of(mesh.corner_uvs);
+}
+
+void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mesh) {
+    if (!reader.has("materials"))
+        return;
+    const std::vector<char> text = reader.elements<char>("materials");
+    const std::vector<std::byte>& images = reader.bytes("images");
+    try {
+        const Json json = Json::parse(text.begin(), text.end());
+        std::size_t offset = 0, num_texels = 0;
+        for (const Json& texture : json.at("images")) {
+            mesh.textures.push_back(texture_of(texture, images, offset));
+            num_texels += mesh.textures.back().texels.size();
+            // As for one image of a mesh file: a byte for 128 texels where there are many.
+            if (num_texels > std::max(MaxCheapTexels, 128 * images.size()))
+                throw std::out_of_range("expected images that fit their bytes");
+        }
+        if (offset != images.size())
+            throw std::out_of_range("expected as many bytes as images have");
+        for (const Json& material : json.at("materials"))
+            mesh.materials.push_back(material_of(material, mesh.textures.size()));
+    } catch (const std::exception&) {
+        reader.fail("materials", "JSON with materials and their images");
+    }
+    mesh.triangle_materials = reader.elements<std::uint32_t>("t_materials", mesh.num_triangles());
+    if (std::any_of(mesh.triangle_materials.begin(), mesh.triangle_materials.end(),
+                    [&](auto i) { return i >= mesh.materials.size(); }))
+        reader.fail("t_materials", "indices of materials");
+    mesh.corner_uvs =
+        reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,44 @@
+#include "relight/pictures/surface_colors.h"
+
+#include <algorithm>
+#include <array>
+
+#include "prt/glossy/surface_sampling.h"
+
+namespace relumine::relight {
+
+SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces)
+    : mesh_(&mesh) {
+    const auto has_texture = [](const mesh::Material& material) {
+        return material.base_color_texture.has_value();
+    };
+    if (mesh.triangle_materials.empty() || surfaces.size() != mesh.num_vertices() ||
+        std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
+        return;
+    for (const std::uint32_t material : mesh.triangle_materials)
+        is_textured_.push_back(has_texture(mesh.materials[material]));
+    for (const prt::Surface& surface : surfaces) {
+        glm::vec3& factor = light_of_radiance_.emplace_back(0.0f);
+        for (int channel = 0; channel < 3; ++channel)
+            if (surface.albedo[channel] > 0.0f)
+                factor[channel] = 1.0f / surface.albedo[channel];
+    }
+}
+
+glm::vec3 SurfaceColors::albedo(const prt::MeshPoint& point) const {
+    return prt::surface_at(*mesh_, point.triangle, point.barycentric).albedo;
+}
+
+glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,
+                                  const prt::MeshPoint& point) const {
+    const mesh::Triangle& triangle = mesh_->triangles[point.triangle];
+    const std::array<float, 3> weights = {1.0f - point.barycentric.x - point.barycentric.y,
+                                          point.barycentric.x, point.barycentric.y};
+    glm::vec3 light(0.0f);
+    for (std::size_t corner = 0; corner < 3; ++corner)
+        light += weights[corner] * vertex_radiance[triangle[corner]] *
+                 light_of_radiance_[triangle[corner]];
+    return light * albedo(point);
+}
+
+} // namespace relumine::relight

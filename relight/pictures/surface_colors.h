@@ -1,0 +1,44 @@
+// Colours between the vertices: from the textures, at the point that is seen.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/glossy/surface.h"
+#include "prt/receivers/mesh_point.h"
+
+namespace relumine::relight {
+
+/// Takes the light from the vertices and the albedo from the textures, so that a picture shows what
+/// is finer than the mesh.
+class SurfaceColors {
+public:
+    /// Nothing has a texture.
+    SurfaceColors() = default;
+    /// `surfaces` are the vertices', [num_vertices] or empty, without highlights. The mesh must
+    /// outlive this object.
+    SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt::Surface> surfaces);
+
+    /// Whether a triangle has a texture of its albedo.
+    [[nodiscard]] bool has(std::uint32_t triangle) const {
+        return !is_textured_.empty() && is_textured_[triangle];
+    }
+    /// Returns the albedo at a point of such a triangle.
+    [[nodiscard]] glm::vec3 albedo(const prt::MeshPoint& point) const;
+    /// Returns the radiance at a point of such a triangle, under the light of its vertices.
+    [[nodiscard]] glm::vec3 radiance(std::span<const glm::vec3> vertex_radiance,
+                                     const prt::MeshPoint& point) const;
+
+private:
+    const mesh::TriangleMesh* mesh_ = nullptr;
+    /// [num_triangles], or empty.
+    std::vector<bool> is_textured_;
+    /// [num_vertices], 1 / albedo; 0 where that is 0.
+    std::vector<glm::vec3> light_of_radiance_;
+};
+
+} // namespace relumine::relight

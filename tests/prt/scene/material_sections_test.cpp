@@ -1,0 +1,104 @@
+#include "prt/scene/material_sections.h"
+
+#include <gtest/gtest.h>
+
+#include "prt/glossy/surface_sampling.h"
+#include "tests/prt/textured_square.h"
+
+namespace relumine::prt {
+namespace {
+
+/// A mesh of the same triangles, read from the sections.
+mesh::TriangleMesh read(Sections sections, const mesh::TriangleMesh& from) {
+    mesh::TriangleMesh result;
+    result.positions = from.positions;
+    result.normals = from.normals;
+    result.triangles = from.triangles;
+    result.uvs = from.uvs;
+    read_material_sections({"scene.prt", std::move(sections)}, result);
+    return result;
+}
+
+Sections written(const mesh::TriangleMesh& mesh) {
+    Sections sections;
+    add_material_sections(sections, mesh);
+    return sections;
+}
+
+void expect_same_colors(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {
+    for (std::uint32_t triangle = 0; triangle < a.num_triangles(); ++triangle)
+        for (int i = 0; i <= 20; ++i) {
+            const glm::vec2 point(0.02f * static_cast<float>(i), 0.3f);
+            EXPECT_EQ(surface_at(a, triangle, point).albedo, surface_at(b, triangle, point).albedo);
+        }
+}
+
+TEST(MaterialSections, KeepTheColoursOfEveryPoint) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    mesh.triangle_materials = {1, 0};
+    const mesh::TriangleMesh same = read(written(mesh), mesh);
+    EXPECT_EQ(same.textures[0].texels, mesh.textures[0].texels);
+    EXPECT_EQ(same.textures[0].file, mesh.textures[0].file) << "the image as it was";
+    EXPECT_EQ(same.triangle_materials, mesh.triangle_materials);
+    expect_same_colors(same, mesh);
+
+    // Metal takes its part of the colour; uvs of corners.
+    mesh.corner_uvs = {{{{0, 0}, {0.5f, 0}, {0.5f, 1}}}, {{{0.5f, 0}, {1, 1}, {0.5f, 1}}}};
+    mesh.triangle_materials = {1, 1};
+    mesh.materials[1].model = mesh::MaterialModel::MetallicRoughness;
+    mesh.materials[1].metallic = 0.75f;
+    mesh.materials[1].metallic_roughness_texture = mesh.materials[1].base_color_texture;
+    expect_same_colors(read(written(mesh), mesh), mesh);
+    mesh.materials[1].model = mesh::MaterialModel::SpecularGlossiness;
+    mesh.materials[1].specular = glm::vec3(0.5f, 0.25f, 0.125f);
+    mesh.materials[1].specular_texture = mesh.materials[1].base_color_texture;
+    mesh.materials[1].specular_texture->uv_from_mesh_uv = glm::mat2(0, 1, 2, 0);
+    mesh.materials[1].specular_texture->uv_offset = glm::vec2(0.25f, 0.5f);
+    expect_same_colors(read(written(mesh), mesh), mesh);
+}
+
+TEST(MaterialSections, AreOnlyForTextures) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    mesh.materials[1].base_color_texture.reset();
+    EXPECT_TRUE(written(mesh).empty());
+    EXPECT_TRUE(read({}, mesh).materials.empty()) << "files without them are good";
+}
+
+TEST(MaterialSections, BrokenOnesAreRefused) {
+    const mesh::TriangleMesh mesh = scenes::textured_square();
+    const Sections good = written(mesh);
+    const auto refused = [&](const auto& change) {
+        Sections bad = good;
+        change(bad);
+        EXPECT_THROW(static_cast<void>(read(std::move(bad), mesh)), std::runtime_error);
+    };
+    for (const char* name : {"images", "t_materials"})
+        refused([&](Sections& s) { s.erase(name); });
+    refused([](Sections& s) { s["images"].pop_back(); });
+    refused([](Sections& s) { s["images"].push_back(std::byte{0}); });
+    refused([](Sections& s) { s["images"][2] = std::byte{99}; });
+    refused([](Sections& s) { s["t_materials"][0] = std::byte{2}; });
+    refused([](Sections& s) { s["t_materials"].pop_back(); });
+    refused([](Sections& s) { s["corner_uvs"] = std::vector<std::byte>(8); });
+    const auto replaced = [&](const std::string& from, const std::string& to) {
+        refused([&](Sections& s) {
+            const auto& bytes = s["materials"];
+            std::string text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+            ASSERT_NE(text.find(from), std::string::npos) << from;
+            text.replace(text.find(from), from.size(), to);
+            s["materials"] = bytes_of(std::vector<char>(text.begin(), text.end()));
+        });
+    };
+    replaced("\"image\": 0", "\"image\": 1");
+    replaced("\"image\": 0", "\"image\": -1");
+    replaced("\"bytes\": 30", "\"bytes\": 4000000000");
+    replaced("\"bytes\": 30", "\"bytes\": \"30\"");
+    replaced("\"model\": 0", "\"model\": 3");
+    replaced("\"metallic\": 0.0", "\"metallic\": 1.5");
+    replaced("0.25", "1e30");
+    replaced("\"srgb\": true", "\"srgb\": 1");
+    replaced("{", "[");
+}
+
+} // namespace
+} // namespace relumine::prt

@@ -1,0 +1,39 @@
+// A mesh whose texture is finer than its vertices.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "mesh/texture.h"
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::scenes {
+
+/// An uncompressed TGA file of 4 x 1 pixels: black, red, green, blue.
+inline std::string four_colors_tga() {
+    std::string file("\0\0\2\0\0\0\0\0\0\0\0\0\4\0\1\0\x18\x20", 18);
+    file += std::string("\0\0\0\0\0\xff\0\xff\0\xff\0\0", 12); // blue, green, red
+    return file;
+}
+
+/// A square [-1, 1] x [-1, 1] in the plane z = 0 that faces +Z, two triangles. The texture runs
+/// from left to right.
+inline mesh::TriangleMesh textured_square() {
+    mesh::TriangleMesh mesh;
+    mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {-1, 1, 0}, {1, 1, 0}};
+    mesh.normals.assign(4, glm::vec3(0, 0, 1));
+    mesh.triangles = {{0, 1, 3}, {0, 3, 2}};
+    mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {1, 1}};
+    const std::string file = four_colors_tga();
+    mesh.textures.push_back(
+        mesh::decode_texture(std::as_bytes(std::span(file)), mesh::VOrigin::Bottom));
+    mesh.materials = {{.name = "plain", .base_color = {0.5f, 0.25f, 1.0f}},
+                      {.name = "textured",
+                       .base_color = {1.0f, 1.0f, 0.5f},
+                       .base_color_texture = mesh::TextureSlot{
+                           .texture = 0, .is_srgb = true, .wrap = {mesh::Wrap::Clamp, {}}}}};
+    mesh.triangle_materials = {1, 1};
+    return mesh;
+}
+
+} // namespace relumine::scenes

@@ -1,0 +1,85 @@
+#include "relight/pictures/surface_colors.h"
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+
+#include "prt/glossy/surface_sampling.h"
+#include "relight/pictures/picture.h"
+#include "tests/prt/textured_square.h"
+
+namespace relumine::relight {
+namespace {
+
+/// The light of the vertices, linear over the square.
+std::vector<glm::vec3> light(const mesh::TriangleMesh& mesh) {
+    std::vector<glm::vec3> result;
+    for (const glm::vec3& p : mesh.positions)
+        result.emplace_back(2.0f + p.x, 3.0f + p.y, 1.0f);
+    return result;
+}
+
+TEST(SurfaceColors, LightOfTheVerticesTimesTheTexture) {
+    const mesh::TriangleMesh mesh = scenes::textured_square();
+    std::vector<prt::Surface> surfaces = prt::vertex_surfaces(mesh);
+    for (prt::Surface& surface : surfaces) // black keeps a trace
+        surface.albedo = glm::max(surface.albedo, 1e-4f);
+    std::vector<glm::vec3> radiance = light(mesh);
+    for (std::size_t i = 0; i < radiance.size(); ++i)
+        radiance[i] *= surfaces[i].albedo;
+    const SurfaceColors colors(mesh, surfaces);
+    for (std::uint32_t triangle = 0; triangle < 2; ++triangle)
+        for (int i = 0; i <= 10; ++i) {
+            const prt::MeshPoint point{.triangle = triangle,
+                                       .barycentric = {0.05f * static_cast<float>(i), 0.4f}};
+            ASSERT_TRUE(colors.has(triangle));
+            const glm::vec3 p = prt::value_at(mesh, mesh.positions, point);
+            const glm::vec3 expected =
+                glm::vec3(2.0f + p.x, 3.0f + p.y, 1.0f) * colors.albedo(point);
+            EXPECT_LT(glm::distance(colors.radiance(radiance, point), expected), 1e-5f);
+        }
+    // The second and third texel are on no vertex.
+    EXPECT_EQ(colors.albedo({.triangle = 0, .barycentric = {0.375f, 0.0f}}), glm::vec3(1, 0, 0));
+    EXPECT_EQ(colors.albedo({.triangle = 0, .barycentric = {0.625f, 0.0f}}), glm::vec3(0, 1, 0));
+}
+
+TEST(SurfaceColors, PicturesShowWhatIsFinerThanTheMesh) {
+    const mesh::TriangleMesh mesh = scenes::textured_square();
+    const prt::RayScene rays(mesh);
+    const std::vector<prt::Surface> white(4);
+    const std::vector<glm::vec3> radiance(4, glm::vec3(1.0f));
+    const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f};
+    const PictureOptions options{.width = 8, .height = 8, .samples_per_axis = 1};
+    const cubemap::CubeMap black(1);
+    const Picture picture =
+        draw(mesh, rays, radiance, black, camera, options, SurfaceColors(mesh, white));
+    const PictureView view(mesh, rays, camera, options);
+    EXPECT_EQ(view.draw(radiance, black, SurfaceColors(mesh, white)).pixels, picture.pixels);
+    // The square fills the picture; two pixels a texel. Between its neighbours' centres a texel
+    // is mixed with them: a quarter.
+    for (std::size_t y = 1; y < 7; ++y) {
+        const glm::vec3* row = picture.pixels.data() + 8 * y;
+        EXPECT_GT(row[2].r, 0.7f);
+        EXPECT_LT(row[2].g, 0.01f);
+        EXPECT_GT(row[4].g, 0.7f);
+        EXPECT_LT(row[4].b, 0.01f);
+    }
+    const Picture plain = draw(mesh, rays, radiance, black, camera, options);
+    EXPECT_EQ(plain.pixels[8 * 4 + 2], glm::vec3(1.0f)) << "without colours, the vertices'";
+}
+
+TEST(SurfaceColors, NothingWithoutTexturesOrSurfaces) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    EXPECT_FALSE(SurfaceColors().has(0));
+    EXPECT_FALSE(SurfaceColors(mesh, {}).has(0));
+    mesh.triangle_materials = {0, 1};
+    const std::vector<prt::Surface> white(4);
+    const SurfaceColors half(mesh, white);
+    EXPECT_FALSE(half.has(0));
+    EXPECT_TRUE(half.has(1));
+    mesh.triangle_materials.clear();
+    EXPECT_FALSE(SurfaceColors(mesh, white).has(1));
+}
+
+} // namespace
+} // namespace relumine::relight
