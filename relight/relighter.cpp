@@ -88,6 +88,9 @@ public:
     void resum();
 
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
+        return diffuse_.empty() ? radiance() : diffuse_;
+    }
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
     [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
@@ -133,6 +136,8 @@ private:
     std::shared_ptr<const LightBinning> binning_;
     cubemap::CubeMap environment_;
     std::vector<glm::vec3> radiance_;
+    /// For albedo 1; empty without surfaces.
+    std::vector<glm::vec3> diffuse_;
     /// Scratch: clusters whose light changes.
     std::vector<std::uint32_t> changed_;
     /// Scratch: changed_ as the kernels read it.
@@ -145,7 +150,7 @@ Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
       normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
       light_(transfer.counts.num_blocks()), lights_(transfer.num_clusters()),
       lit_by_(lights_.vectors), binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
-      radiance_(transfer.num_receivers()) {
+      radiance_(transfer.num_receivers()), diffuse_(transfer.surfaces.size()) {
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())
         throw std::invalid_argument(
@@ -455,9 +460,14 @@ void Relighter::Impl::write_radiance(std::size_t block) {
     block_radiance(normals_[block], light_[block], traced_.diffuse(block), sums);
     const std::size_t begin = block * prt::BlockSize;
     const std::size_t size = std::min(prt::BlockSize, radiance_.size() - begin);
-    for (std::size_t i = 0; i < size; ++i)
-        radiance_[transfer_.order[begin + i]] =
-            transfer_.surfaces.empty() ? sums.of(i) : through_surface(begin + i, sums.of(i));
+    for (std::size_t i = 0; i < size; ++i) {
+        const std::uint32_t receiver = transfer_.order[begin + i];
+        radiance_[receiver] = sums.of(i);
+        if (!diffuse_.empty()) {
+            diffuse_[receiver] = sums.of(i);
+            radiance_[receiver] = through_surface(begin + i, sums.of(i));
+        }
+    }
 }
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
@@ -494,6 +504,9 @@ void Relighter::resum() {
 
 std::span<const glm::vec3> Relighter::radiance() const {
     return impl_->radiance();
+}
+std::span<const glm::vec3> Relighter::diffuse_radiance() const {
+    return impl_->diffuse_radiance();
 }
 const cubemap::CubeMap& Relighter::environment() const {
     return impl_->environment();
