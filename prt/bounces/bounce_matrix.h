@@ -18,7 +18,7 @@ struct BounceMatrix {
     /// [num_rows + 1] the row's first column in `columns`.
     std::vector<std::uint64_t> row_begin = {0};
     /// Places of emitters, ascending within a row.
-    std::vector<std::uint32_t> columns;
+    std::vector<std::uint32_t> columns = {};
     /// The largest eigenvalue: how much of the light a further bounce keeps at albedo 1. Light
     /// grows for ever at albedos of 1/spectral_radius and more.
     float spectral_radius = 0.0f;

@@ -174,10 +174,7 @@ private:
         const mesh::Triangle& corners = mesh_.triangles[hit.triangle];
         const float u = hit.barycentric.x;
         const float v = hit.barycentric.y;
-        const glm::vec3 normal = (1.0f - u - v) * receivers_.normals[corners[0]] +
-                                 u * receivers_.normals[corners[1]] +
-                                 v * receivers_.normals[corners[2]];
-        if (!options_.two_sided && glm::dot(normal, direction) >= 0.0f)
+        if (!options_.two_sided && !meets_front(mesh_, {hit.triangle, hit.barycentric}, direction))
             return NoEmitter;
         const std::size_t corner = choice < static_cast<double>(u)       ? 1
                                    : choice < static_cast<double>(u + v) ? 2

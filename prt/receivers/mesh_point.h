@@ -32,4 +32,9 @@ struct MeshPoint {
 /// normals cancel.
 [[nodiscard]] glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
+/// Whether a ray meets the front of a surface: the side of the triangle that its vertex normals
+/// stand on. Interpolated normals alone would show some fronts to rays from behind.
+[[nodiscard]] bool meets_front(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                               const glm::vec3& direction);
+
 } // namespace relumine::prt

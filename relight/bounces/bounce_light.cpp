@@ -115,7 +115,7 @@ public:
         set_direct(direct);
         std::fill(indirect_.begin(), indirect_.end(), PaddedRgb{});
         BounceReport report;
-        history_size_ = 0;
+        forget_steps();
         const std::uint32_t last = limits.num_bounces.value_or(MaxBounces);
         while (report.num_bounces < last && contraction_ > 0.0) {
             report.error = bounce();
@@ -138,6 +138,7 @@ public:
         const auto start = std::chrono::steady_clock::now();
         set_direct(direct);
         BounceReport report;
+        forget_steps();
         if (contraction_ > 0.0) {
             report.error = bounce();
             report.num_bounces = 1;
@@ -153,6 +154,12 @@ public:
     [[nodiscard]] std::span<const glm::vec3> indirect() const { return published_; }
 
 private:
+    void forget_steps() {
+        history_size_ = 0;
+        last_residual_ = 0.0;
+        largest_ratio_ = 0.0;
+    }
+
     static double seconds_since(std::chrono::steady_clock::time_point start) {
         return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }
@@ -221,11 +228,17 @@ private:
             residuals += part[0];
             all += part[1];
         }
-        if (all == 0.0)
-            return 0.0;
-        // What further bounces of the residual add up to.
-        return std::sqrt(residuals / all) * contraction_ /
-               (1.0 - std::min(contraction_, MaxContraction));
+        const double residual = all > 0.0 ? std::sqrt(residuals / all) : 0.0;
+        // What further bounces of the residual add up to. The largest ratio seen is a lower bound
+        // of the factor from bounce to bounce, the eigenvalue of the darkest pocket an upper one.
+        double factor = contraction_;
+        if (last_residual_ > 0.0) {
+            largest_ratio_ = std::max(largest_ratio_, residual / last_residual_);
+            factor = std::sqrt(std::min(largest_ratio_, contraction_) * contraction_);
+        }
+        last_residual_ = residual;
+        factor = std::min(factor, MaxContraction);
+        return residual * factor / (1.0 - factor);
     }
 
     /// Takes the next iterate: next_, corrected by the least squares of the last residuals
@@ -335,6 +348,9 @@ private:
     std::array<Step, AndersonDepth + 1> history_;
     std::size_t newest_ = 0;
     std::size_t history_size_ = 0;
+    /// Relative to all light; of this iteration.
+    double last_residual_ = 0.0;
+    double largest_ratio_ = 0.0;
     /// [num_receivers] in the receivers' order.
     std::vector<glm::vec3> published_;
 };

@@ -136,7 +136,7 @@ public:
                 return sum;
             const prt::MeshPoint at{.triangle = hit->triangle, .barycentric = hit->barycentric};
             glm::dvec3 normal(prt::shading_normal(mesh_, at));
-            if (glm::dot(normal, direction) >= 0.0) {
+            if (!prt::meets_front(mesh_, at, glm::vec3(direction))) {
                 if (!options_.two_sided)
                     return sum;
                 normal = -normal;
