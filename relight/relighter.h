@@ -139,6 +139,12 @@ public:
     /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
 
+    /// Radiance as if every receiver were Lambert of albedo 1: irradiance over pi. Without surfaces
+    /// the same as radiance().
+    ///
+    /// Shape:   [num_receivers] in the receivers' own order.
+    [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;
+
     [[nodiscard]] const cubemap::CubeMap& environment() const;
 
     [[nodiscard]] const prt::Transfer& transfer() const;

@@ -61,4 +61,12 @@ glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point
     return flat + moved;
 }
 
+bool meets_front(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                 const glm::vec3& direction) {
+    const glm::vec3 face = face_normal(mesh, point.triangle);
+    const float side = glm::dot(face, value_at(mesh, mesh.normals, point));
+    const float towards = glm::dot(face, direction);
+    return side < 0.0f ? towards > 0.0f : towards < 0.0f;
+}
+
 } // namespace relumine::prt

@@ -39,4 +39,9 @@ struct MeshPoint {
 /// Based on: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
 [[nodiscard]] glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
+/// Whether a ray meets the front of a surface: the side of the triangle that its vertex normals
+/// stand on. Interpolated normals alone would show some fronts to rays from behind.
+[[nodiscard]] bool meets_front(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                               const glm::vec3& direction);
+
 } // namespace relumine::prt
