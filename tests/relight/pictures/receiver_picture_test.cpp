@@ -102,10 +102,11 @@ TEST(ReceiverPicture, APixelIsTheMeanOfItsSamples) {
     EXPECT_THROW(static_cast<void>(compose_cut_out(layout, {})), std::invalid_argument);
 }
 
-/// A floor of 9 x 9 vertices a unit apart, with a wall beside it.
+/// A floor of 9 x 9 vertices a unit apart, with a wall beside it. No texel's centre lies behind the
+/// wall's very edge, as seen from a vertex.
 mesh::TriangleMesh floor_and_wall() {
     mesh::TriangleMesh wall;
-    wall.positions = {{5, 0, -4}, {5, 0, 4}, {5, 4, -4}, {5, 4, 4}};
+    wall.positions = {{5, 0, -4.13f}, {5, 0, 4.17f}, {5, 3.91f, -4.13f}, {5, 3.91f, 4.17f}};
     wall.normals.assign(4, glm::vec3(-1, 0, 0));
     wall.triangles = {{0, 1, 3}, {0, 3, 2}};
     return scenes::joined(scenes::floor_grid(9, 8.0f), wall);
