@@ -28,7 +28,7 @@ struct Texture {
     /// [height x width], rows along u, from v = 0 on.
     std::vector<std::array<std::uint8_t, 3>> texels;
     /// The image file that was decoded, and its end at v = 0. Empty for a texture that was computed.
-    std::vector<std::byte> file;
+    std::vector<std::byte> file = {};
     VOrigin origin = VOrigin::Top;
 
     bool operator==(const Texture&) const = default;
