@@ -37,6 +37,7 @@ struct PreparedFrame {
     relight::BinnedEnvironment binned = {};
     /// The others, where pictures are drawn
     cubemap::CubeMap background = {};
+    relight::Backdrop sharp = {};
     std::vector<lights::DistantLight> lights = {};
     double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0;
 };
@@ -68,6 +69,7 @@ public:
         choose_frames();
         if (options_.method == "clusters" && !todo_.empty())
             cluster_frames();
+        meter_frames();
         std::optional<relight::NpyFrames> vertices;
         if (!options_.vertices.empty())
             vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().receivers.size());
@@ -79,11 +81,12 @@ public:
             Stopwatch watch;
             PreparedFrame frame = ahead.get(i);
             totals_.seconds_wait += watch.lap();
+            const relight::Backdrop sharp = std::move(frame.sharp);
             const cubemap::CubeMap background = light(std::move(frame));
             const double seconds_relight = watch.lap();
             totals_.seconds_relight += seconds_relight;
             seconds_relight_frames_.push_back(seconds_relight);
-            write(todo_[i], background);
+            write(todo_[i], background, sharp);
             if (vertices)
                 vertices->append(writer_.values(relighter_.radiance()));
             totals_.seconds_write += watch.lap();
@@ -139,6 +142,32 @@ private:
         if (options_.resume)
             session_.say(
                 fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
+    }
+
+    /// Chooses one exposure for all frames from up to nine of them, or keeps to that of the frames
+    /// that are there.
+    void meter_frames() {
+        if (!pattern_ || todo_.empty() || !writer_.needs_light_for(options_.output.path))
+            return;
+        if (const std::optional<double> before = record_->exposure_ev()) {
+            writer_.set_exposure_ev(*before);
+            return;
+        }
+        constexpr std::size_t MostFrames = 9;
+        const std::size_t last = sequence_.size() - 1;
+        const std::size_t num_gaps = std::min(MostFrames - 1, last);
+        // A light of its own: the frames' differences must not depend on the exposure.
+        relight::Relighter relighter(lit_.scene().transfer, lit_.shadow_rays());
+        for (std::size_t i = 0; i <= num_gaps; ++i) {
+            session_.poll();
+            PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
+            if (options_.method == "prt")
+                relighter.set_frame(std::move(frame.binned));
+            else
+                relighter.set_lights(frame.lights);
+            writer_.meter(lighting_of(relighter));
+        }
+        record_->set_exposure_ev(writer_.choose_exposure_ev(lighting_of(relighter)));
     }
 
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
@@ -209,16 +238,18 @@ private:
     PreparedFrame prepare(std::size_t frame) {
         PreparedFrame result;
         Stopwatch watch;
-        const cubemap::EnvironmentImage image = sequence_.read(frame);
+        auto image = std::make_shared<const cubemap::EnvironmentImage>(sequence_.read(frame));
         result.seconds_load = watch.lap();
-        cubemap::CubeMap map = cube_map_of(image, options_.environment);
+        cubemap::CubeMap map = cube_map_of(*image, options_.environment);
+        if (pattern_)
+            result.sharp = backdrop_of(image, options_.environment);
         result.seconds_resample = watch.lap();
         // One warning is enough for all frames.
         if (!has_warned_) {
             EnvironmentOptions frame_options = options_.environment;
             frame_options.path = sequence_.path(frame).string();
             has_warned_ =
-                warn_about(frame_options, image, cubemap::light_from_below(map), session_);
+                warn_about(frame_options, *image, cubemap::light_from_below(map), session_);
         }
         try {
             if (options_.method == "prt") {
@@ -257,12 +288,16 @@ private:
         return {};
     }
 
-    void write(std::size_t frame, const cubemap::CubeMap& background) {
+    void write(std::size_t frame, const cubemap::CubeMap& background,
+               const relight::Backdrop& sharp) {
         if (!pattern_ || is_there_[frame])
             return;
         const std::string path = output_path(frame);
-        writer_.save(path, relighter_.radiance(),
-                     background.resolution != 0 ? background : relighter_.environment());
+        Lighting lighting = lighting_of(relighter_);
+        if (background.resolution != 0)
+            lighting.environment = &background;
+        lighting.sharp = sharp;
+        writer_.save(path, lighting);
         record_->add(sequence_.number(frame), sequence_.path(frame), path);
         ++num_written_;
     }
@@ -274,7 +309,7 @@ private:
         session_.say(fmt::format(
             "{}: {} frames by {}, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that "
             "load {:.0f}, "
-            "resample {:.0f}, bin {:.1f} ms; {:.1f} frames/s in all",
+            "resample {:.0f}, bin {:.1f} ms; {:.1f} frames/s in all{}",
             options_.output.path.empty() ? options_.vertices : options_.output.path,
             totals_.num_lit, options_.method, relight_ms,
             totals_.seconds_trace > 0.0
@@ -282,8 +317,10 @@ private:
                 : "",
             per_frame * totals_.seconds_write, per_frame * totals_.seconds_load,
             per_frame * totals_.seconds_resample, per_frame * totals_.seconds_bin,
-            seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0));
+            seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0,
+            num_written_ == 0 ? "" : options_.output.exposure_text(writer_)));
         Report result = {{"frames", sequence_.size()},
+                         {"exposure", writer_.exposure_ev(options_.output.path)},
                          {"frames_lit", totals_.num_lit},
                          {"frames_kept", num_kept_},
                          {"frames_resummed", totals_.num_resummed},

@@ -136,11 +136,10 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all = fmt::format(
-        "{} {} {}\n{}\n{} {} {} {}\n{} {} {} {} {} {} {} {} {}", RELUMINE_VERSION,
-        FrameRecord::stamp(scene.path), scene.clusters_only, environment.settings(), method, bound,
-        num_lights, seed, output.path, output.albedo, output.exposure_ev, output.eye, output.target,
-        output.fov_degrees, output.size, output.transparent, output.gutter);
+    std::string all =
+        fmt::format("{} {} {}\n{}\n{} {} {} {}\n{}\n{}", RELUMINE_VERSION,
+                    FrameRecord::stamp(scene.path), scene.clusters_only, environment.settings(),
+                    method, bound, num_lights, seed, output.path, output.settings());
     if (method == "clusters") { // every frame depends on all
         all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
         for (const cubemap::FrameFile& frame : sequence.files())

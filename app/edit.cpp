@@ -116,7 +116,7 @@ public:
     void run() {
         check_receivers();
         Environment environment = load_environment(options_.environment, session_);
-        RelightTimes full = editor_.set_base(std::move(environment.map));
+        RelightTimes full = lit_.light(std::move(environment));
         if (layers_.rotate_degrees)
             full = editor_.set_rotation(*layers_.rotate_degrees);
         seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
@@ -133,13 +133,16 @@ public:
                          {"edits", edits_}};
         if (!options_.lit_by.empty())
             result.set("lit_by_share", lit_by_share_);
+        if (painter_)
+            result.set("exposure", painter_->exposure_ev(options_.output.path));
         session_.report(result);
     }
 
 private:
-    void check_receivers() const {
+    void check_receivers() {
         if (!options_.who.empty()) // a map, whatever the receivers are
             return;
+        painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
         OutputOptions output = options_.output;
         if (options_.lit_by.empty() && !layers_.frames.empty())
             output.path = numbered(output.path, 0);
@@ -154,7 +157,7 @@ private:
         else if (!layers_.frames.empty())
             save_frames();
         else
-            save(options_.output.path, editor_.radiance(), editor_.environment());
+            painter_->save(options_.output.path, lit_.lighting());
     }
 
     void record(const std::string& name, const relight::UpdateReport& report) {
@@ -180,20 +183,13 @@ private:
         }
     }
 
-    void save(const std::string& path, std::span<const glm::vec3> radiance,
-              const cubemap::CubeMap& environment) const {
-        OutputOptions output = options_.output;
-        output.path = path;
-        output.save(lit_, radiance, environment);
-    }
-
     void save_frames() {
         const int first = static_cast<int>(std::ceil(layers_.frames.front().frame));
         const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
         for (int frame = first; frame <= last; ++frame) {
             record(fmt::format("frame {}", frame),
                    editor_.set_layers(cubemap::layers_at(layers_, frame)));
-            save(numbered(options_.output.path, frame), editor_.radiance(), editor_.environment());
+            painter_->save(numbered(options_.output.path, frame), lit_.lighting());
             session_.poll();
         }
     }
@@ -204,7 +200,7 @@ private:
         const std::uint32_t receiver = nearest_receiver(lit_.scene(), position);
         const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
         const cubemap::CubeMap map = lit_.contribution_map({&receiver, 1});
-        save_map(options_.output.path, map, options_.output.exposure_ev);
+        save_map(options_.output.path, map, options_.output.exposure_ev().value_or(0.0));
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
                                  prt::receiver_name(lit_.scene().layout), receiver, nearest.x,
                                  nearest.y, nearest.z));
@@ -213,7 +209,8 @@ private:
     /// The scene as a region of the environment lights it, with that region behind it.
     void save_lit_by() {
         const Share part = lit_.lit_by(lit_by_region(options_.lit_by, editor_.layers()));
-        save(options_.output.path, part.radiance, part.environment);
+        painter_->save(options_.output.path,
+                       {.radiance = part.radiance, .environment = &part.environment});
         lit_by_share_ = part.share;
         session_.say(
             fmt::format("{}: what '{}' lights, {:.1f} % of the light that the scene reflects",
@@ -229,8 +226,7 @@ private:
             try {
                 Environment environment = load_environment(options_.environment, session_);
                 const double seconds_load = environment.seconds_load + environment.seconds_resample;
-                const relight::UpdateReport report =
-                    editor_.update_base(std::move(environment.map));
+                const relight::UpdateReport report = lit_.update(std::move(environment));
                 const double since_saved =
                     std::chrono::duration<double>(Clock::now() - *saved).count();
                 Stopwatch output;
@@ -259,6 +255,8 @@ private:
     cubemap::LightLayers layers_;
     LitScene lit_;
     relight::LightEditor& editor_;
+    /// Not for --who.
+    std::optional<Painter> painter_;
     double seconds_full_ = 0.0;
     double seconds_edit_ = 0.0;
     double lit_by_share_ = 0.0;

@@ -1,7 +1,9 @@
 #include "app/environment_options.h"
 
 #include <array>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -130,6 +132,11 @@ bool warn_about(const EnvironmentOptions& options, const cubemap::EnvironmentIma
     for (const std::string& warning : warnings)
         session.warn(fmt::format("{}: {}", options.path, warning));
     return !warnings.empty();
+}
+
+relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                              const EnvironmentOptions& options) {
+    return relumine::backdrop_of(std::move(image), options.for_library());
 }
 
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,10 @@ bool warn_about(const EnvironmentOptions& options, const cubemap::EnvironmentIma
 /// An image resampled to a cube map and rotated.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options);
+
+/// The image as it is seen behind the mesh.
+[[nodiscard]] relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                            const EnvironmentOptions& options);
 
 /// Loads, resamples and turns. Says on -v what was assumed, always what --fix-env replaced, and
 /// warns of what is odd.

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "app/command_line.h"
 #include "cubemap/image/environment.h"
 #include "files/output_file.h"
 
@@ -18,6 +19,7 @@ namespace relumine::app {
 namespace {
 
 constexpr std::string_view Title = "relumine animate 1";
+constexpr std::string_view Exposure = "exposure ";
 
 /// FNV-1a, 64 bits.
 template<typename Bytes>
@@ -52,9 +54,13 @@ FrameRecord::FrameRecord(std::filesystem::path path, const std::string& settings
              std::getline(lines, line) && !lines.eof();) { // a line cut short does not count
             std::int64_t number = 0;
             std::istringstream words(line);
-            if (std::string rest; words >> number && std::getline(words >> std::ws, rest))
+            if (line.starts_with(Exposure))
+                exposure_ev_ = parse_number(line.substr(Exposure.size()));
+            else if (std::string rest; words >> number && std::getline(words >> std::ws, rest))
                 done_[number] = rest;
         }
+        if (exposure_ev_)
+            kept << Exposure << fmt::format("{}\n", *exposure_ev_);
         for (const auto& [number, rest] : done_)
             kept << number << ' ' << rest << '\n';
     }
@@ -74,6 +80,11 @@ void FrameRecord::add(std::int64_t number, const std::filesystem::path& input,
     const std::string line = line_of(input, output);
     files::append_text(path_, fmt::format("{} {}\n", number, line));
     done_[number] = line;
+}
+
+void FrameRecord::set_exposure_ev(double ev) {
+    files::append_text(path_, fmt::format("{}{}\n", Exposure, ev));
+    exposure_ev_ = ev;
 }
 
 std::string FrameRecord::stamp(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 namespace relumine::app {
@@ -23,12 +24,17 @@ public:
     void add(std::int64_t number, const std::filesystem::path& input,
              const std::filesystem::path& output);
 
+    /// The exposure that was chosen for all frames; empty: none yet.
+    [[nodiscard]] std::optional<double> exposure_ev() const { return exposure_ev_; }
+    void set_exposure_ev(double ev);
+
     /// Name, size and time of change of a file, or of the six that hold a frame's faces; a missing
     /// file is different from every other.
     [[nodiscard]] static std::string stamp(const std::filesystem::path& path);
 
 private:
     std::filesystem::path path_;
+    std::optional<double> exposure_ev_;
     /// Input and output of each finished frame, by its number.
     std::map<std::int64_t, std::string> done_;
 };

@@ -2,11 +2,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
+#include <optional>
 #include <string>
 #include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "app/command_line.h"
 #include "app/lit_scene.h"
@@ -14,21 +12,27 @@
 
 namespace relumine::app {
 
-class Session;
-
-/// -o and everything that shapes the output: camera, size, exposure, albedo.
+/// -o and everything that shapes the output: camera, size, exposure, albedo, background.
 struct OutputOptions {
     std::string path;
-    std::string albedo = "1";
-    double exposure_ev = 0.0;
+    std::string albedo = "auto";
+    std::string floor_albedo;
+    float floor_fade = relumine::OutputOptions{}.floor_fade;
+    std::string exposure = "auto";
+    std::string tone_map = "neutral";
+    /// AZIMUTH,ELEVATION[,DISTANCE][,FOV]. Empty: automatic.
+    std::string camera;
+    std::string front = "+z";
     /// Camera position X,Y,Z. Empty: automatic.
     std::string eye;
     /// Point X,Y,Z that the camera looks at. Empty: automatic.
     std::string target;
-    float fov_degrees = 35.0f;
+    std::optional<float> fov_degrees;
     std::string size = "1024x768";
-    /// Pictures of pixel receivers have alpha and no environment behind them.
+    std::string background = "sharp";
+    /// The same as the background `none`.
     bool transparent = false;
+    std::string sun = "pixel";
     /// Texel receivers: texels around the charts
     std::uint32_t gutter = 16;
 
@@ -46,21 +50,28 @@ struct OutputOptions {
     /// std::runtime_error for colours that its mesh does not have.
     [[nodiscard]] relumine::OutputOptions for_scene(const Scene& scene) const;
 
-    /// Writes by extension: .png .exr pictures (of texel receivers: their lightmap), .ply .glb
-    /// meshes with vertex colours, .npy numbers.
-    void save(const LitScene& lit, std::span<const glm::vec3> radiance,
-              const cubemap::CubeMap& environment) const;
+    /// All of them in one text, to tell whether files were made with the same.
+    [[nodiscard]] std::string settings() const;
 
-    /// What to tell the user where a .png comes out far too bright or too dark and no exposure was
-    /// chosen: "; --exposure -3 suits it better", else nothing, as where the session is silent.
-    [[nodiscard]] std::string exposure_hint(const Scene& scene, std::span<const glm::vec3> radiance,
-                                            const Session& session) const;
+    /// Stops of --exposure; empty for auto.
+    [[nodiscard]] std::optional<double> exposure_ev() const;
+
+    /// What to tell the user of the exposure of a picture or of colours: "; exposure -1.37 (auto)";
+    /// nothing for numbers.
+    [[nodiscard]] std::string exposure_text(const Painter& painter) const;
 
 private:
-    Option exposure_option_;
-    /// --eye, --target, --fov, --size
+    /// --camera, --front, --eye, --target, --fov, --size
     std::vector<Option> camera_options_;
+    /// --background, --transparent
+    std::vector<Option> background_options_;
 };
+
+/// Adds --exposure and --tone-map.
+void add_exposure_options(Command& command, std::string& exposure, std::string& tone_map);
+
+/// Stops of --exposure; empty for auto. Throws UsageError.
+[[nodiscard]] std::optional<double> parse_exposure(const std::string& text);
 
 /// A path's extension in small letters, with the dot.
 [[nodiscard]] std::string extension_of(const std::string& path);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "app/surface_options.h"
+#include "mesh/floor.h"
 
 namespace relumine::app {
 
@@ -25,6 +27,8 @@ struct Options {
     std::string mesh;
     std::string output;
     std::string normals = "file";
+    /// Of the mesh; empty: as is the custom of its format
+    std::string up;
     std::string engine = "beam";
     MeshOptions mesh_options;
     ReceiverOptions receivers;
@@ -42,6 +46,7 @@ PrecomputeOptions precompute_options(const Options& options, const mesh::Triangl
     result.receivers = options.receivers.receivers();
     result.view = options.receivers.view();
     result.surface = options.surfaces.surface(mesh);
+    result.floor_surface = options.surfaces.floor_surface();
     result.glossy_tolerance = options.surfaces.glossy_tolerance();
     result.max_memory = options.memory.max_bytes();
     result.output = options.output;
@@ -147,6 +152,22 @@ Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts
     return report;
 }
 
+/// How fine the floor's shadows are: what one of its vertices spans.
+Report floor_report(const Scene& scene, const Session& session) {
+    const std::size_t n = scene.settings.floor_vertices;
+    const auto positions = std::span(scene.mesh.positions);
+    const mesh::FloorPlace place =
+        mesh::floor_place(positions.last(n * n), scene.settings.floor_vertices);
+    session.say(fmt::format(
+        "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
+        "{3:.3g} at the edge",
+        n, 2.0f * place.half_side, place.spacing_inside, place.spacing_outside));
+    return {{"vertices", n},
+            {"side", 2.0f * place.half_side},
+            {"spacing_inside", place.spacing_inside},
+            {"spacing_outside", place.spacing_outside}};
+}
+
 /// The parts of the seconds from start to finish: "clusters 8.1, highlights 3.0, the rest 0.4".
 std::string where_time_went(const PrecomputeReport& facts, double seconds) {
     const double highlights = facts.highlights ? facts.highlights->seconds : 0.0;
@@ -166,7 +187,16 @@ void run(const Options& options, Session& session) {
     MeshOptions mesh_options = options.mesh_options;
     mesh_options.normals =
         options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
+    if (!options.up.empty())
+        mesh_options.up = options.up == "x"   ? mesh::UpAxis::X
+                          : options.up == "z" ? mesh::UpAxis::Z
+                                              : mesh::UpAxis::Y;
     Mesh mesh = load_mesh(options.mesh, mesh_options);
+    const bool turns_by_custom =
+        options.up.empty() && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
+    if (turns_by_custom)
+        session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
+                                options.mesh));
     for (const std::string& warning : mesh.geometry.warnings)
         session.warn(fmt::format("{}: {}", options.mesh, warning));
     for (const std::string& name : mesh.geometry.missing)
@@ -195,6 +225,9 @@ void run(const Options& options, Session& session) {
                             clusters.num_clusters, seconds, where_time_went(facts, seconds),
                             static_cast<double>(clusters.num_rays) / clusters.seconds * 1e-6,
                             static_cast<double>(facts.file_bytes) * 1e-6));
+    if (scene.settings.floor_vertices != 0)
+        report.set("floor", floor_report(scene, session));
+    report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
     report.set("seconds", seconds);
     session.report(report);
 }
@@ -237,6 +270,10 @@ void add_precompute(Command& program, Session& session) {
         .needs("--floor")
         .between(1e-6, 1e6)
         .show_default();
+    command
+        .add_option("--up", options->up,
+                    "the mesh's axis that points up (y; z for .stl, which comes from CAD)")
+        .one_of({"x", "y", "z"});
     command
         .add_option("--normals", options->normals,
                     "vertex normals: the file's where it has them, or always smooth")

@@ -2,8 +2,11 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,6 +29,20 @@ struct Options {
     OutputOptions output;
 };
 
+/// Adds the light of a list. `radiance` is the list's, and becomes the sum.
+void add(Lighting& lighting, Lighting list, std::vector<glm::vec3>& radiance) {
+    const auto sum = [](std::span<const glm::vec3> a, std::vector<glm::vec3>& b) {
+        std::transform(a.begin(), a.end(), b.begin(), b.begin(), std::plus<>());
+    };
+    std::vector<glm::vec3> soft = list.lights.empty() ? radiance : std::move(list.soft);
+    sum(lighting.lights.empty() ? lighting.radiance : std::span<const glm::vec3>(lighting.soft),
+        soft);
+    lighting.soft = std::move(soft);
+    lighting.lights.insert(lighting.lights.end(), list.lights.begin(), list.lights.end());
+    sum(lighting.radiance, radiance);
+    lighting.radiance = radiance;
+}
+
 void light_with_environment(const Options& options, Session& session) {
     Stopwatch watch;
     LitScene lit = lit_scene(options.scene);
@@ -38,25 +55,28 @@ void light_with_environment(const Options& options, Session& session) {
     const double seconds_load_scene = watch.lap();
     session.poll();
 
+    // Of the sum, where there is a list, too.
     std::vector<glm::vec3> radiance;
+    std::optional<Lighting> from_list;
     std::size_t num_lights = 0;
     if (!options.lights.empty()) {
         const lights::LightList list = lights::load_lights(options.lights);
         num_lights = list.lights.size();
         lit.light(list.lights);
         radiance.assign(lit.radiance().begin(), lit.radiance().end());
+        from_list = lit.lighting();
     }
     const double seconds_list = watch.lap();
     Environment environment = load_environment(options.environment, session);
-    const RelightTimes times = lit.light(std::move(environment.map));
+    const RelightTimes times = lit.light(std::move(environment));
     const std::uint32_t resolution = lit.environment().resolution;
     session.poll();
-    radiance.resize(lit.radiance().size(), glm::vec3(0.0f));
-    std::transform(radiance.begin(), radiance.end(), lit.radiance().begin(), radiance.begin(),
-                   std::plus<>());
-
     watch.lap();
-    options.output.save(lit, radiance, lit.environment());
+    Lighting lighting = lit.lighting();
+    if (from_list)
+        add(lighting, std::move(*from_list), radiance);
+    Painter painter(lit, options.output.for_scene(lit.scene()));
+    painter.save(options.output.path, lighting);
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
@@ -70,7 +90,7 @@ void light_with_environment(const Options& options, Session& session) {
         watch.total(), 1e3 * seconds_load_scene, 1e3 * environment.seconds_load,
         1e3 * environment.seconds_resample, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
         times.num_sharp_lights, 1e3 * times.seconds_relight, 1e3 * seconds_output,
-        options.output.exposure_hint(scene, radiance, session)));
+        options.output.exposure_text(painter)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
                     {"face_resolution", resolution},
@@ -82,6 +102,7 @@ void light_with_environment(const Options& options, Session& session) {
                     {"seconds_trace", times.seconds_trace},
                     {"seconds_relight", times.seconds_relight},
                     {"sharp_lights", times.num_sharp_lights},
+                    {"exposure", painter.exposure_ev(options.output.path)},
                     {"lights", num_lights},
                     {"seconds_list", seconds_list},
                     {"seconds_output", seconds_output},
@@ -98,7 +119,8 @@ void light_with_list(const Options& options, Session& session) {
     lit.light(list.lights);
     const double seconds_light = watch.lap();
     session.poll();
-    options.output.save(lit, lit.radiance(), lit.environment());
+    Painter painter(lit, options.output.for_scene(lit.scene()));
+    painter.save(options.output.path, lit.lighting());
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
@@ -107,12 +129,13 @@ void light_with_list(const Options& options, Session& session) {
         options.output.path, lit.radiance().size(), list.lights.size(), options.lights,
         watch.total(), 1e3 * seconds_load_scene, 1e3 * seconds_light, 1e3 * seconds_output,
         options.scene.clusters_only ? "through the clusters" : "each with its shadow rays",
-        options.output.exposure_hint(lit.scene(), lit.radiance(), session)));
+        options.output.exposure_text(painter)));
     session.report({{"receivers", lit.radiance().size()},
                     {"lights", list.lights.size()},
                     {"traced", !options.scene.clusters_only},
                     {"seconds_load_scene", seconds_load_scene},
                     {"seconds_light", seconds_light},
+                    {"exposure", painter.exposure_ev(options.output.path)},
                     {"seconds_output", seconds_output},
                     {"seconds", watch.total()}});
 }

@@ -16,6 +16,9 @@ namespace {
 void run(const std::string& place, Session& session) {
     // A reader that has gone is told by the call that writes.
     std::signal(SIGPIPE, SIG_IGN);
+    // The socket is removed and the exit code is 0, even if a long request ends first. Never given
+    // back, since the process ends soon after.
+    [[maybe_unused]] static const auto& patience = *new Patience;
     Service service(session);
     const LineService lines{.answer = [&](std::string_view line) { return service.answer(line); },
                             .refuse = Service::refusal};

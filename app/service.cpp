@@ -147,6 +147,7 @@ struct Service::Impl {
     struct Binned {
         std::string key;
         BinnedEnvironment environment;
+        relight::EnvironmentFile file;
     };
     std::list<Binned> binned;
 
@@ -205,15 +206,16 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
         binned.splice(binned.begin(), binned, found);
     } else {
         Environment environment = load_environment(options, session);
-        binned.push_front({key, target.bin(std::move(environment.map))});
+        binned.push_front({key, target.bin(std::move(environment.map)), environment.file});
         std::size_t bytes = 0;
         for (auto each = binned.begin(); each != binned.end();) {
-            bytes += each->environment.map.texels.size() * sizeof(glm::vec3);
+            bytes += (each->environment.map.texels.size() + each->file.image->pixels.size()) *
+                     sizeof(glm::vec3);
             each =
                 bytes > MaxBytes && each != binned.begin() ? binned.erase(each) : std::next(each);
         }
     }
-    target.light(binned.front().environment);
+    target.light(binned.front().environment, binned.front().file);
     report = {{"face_resolution", target.environment().resolution}, {"was_kept", is_kept}};
 }
 
@@ -246,8 +248,9 @@ void Service::Impl::declare_picture(Command& command) {
         const LitScene& source = lit_by_environment();
         options->check({scene_path});
         options->check_fits(source.scene());
-        options->save(source, source.radiance(), source.environment());
-        report = {{"output", options->path}};
+        Painter painter(source, options->for_scene(source.scene()));
+        painter.save(options->path, source.lighting());
+        report = {{"output", options->path}, {"exposure", painter.exposure_ev(options->path)}};
     });
 }
 

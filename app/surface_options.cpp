@@ -9,7 +9,7 @@ void SurfaceOptions::add_to(Command& command) {
         "--material", materials_,
         "surface in place of the file's: ggx:roughness=0.3,albedo=0.5,f0=0.04, "
         "blinn:exponent=50,kd=0.3,ks=0.2 or lambert:albedo=0.8; GROUP=... for one object; "
-        "highlights need --view");
+        "the floor of --floor is `floor`, and Lambert unless named; highlights need --view");
     command
         .add_option("--glossy-tolerance", glossy_tolerance_,
                     "relative error of a highlight under a small light anywhere")
@@ -29,6 +29,14 @@ prt::SurfaceOverride SurfaceOptions::surface(const mesh::TriangleMesh& mesh) con
     for (const std::string& material : materials_)
         options.push_back(parse_material(material));
     return surface_override(options, mesh);
+}
+
+prt::Surface SurfaceOptions::floor_surface() const {
+    prt::Surface surface;
+    for (const std::string& text : materials_)
+        if (const MaterialOption material = parse_material(text); material.group == "floor")
+            surface = material.applied_to({});
+    return surface;
 }
 
 } // namespace relumine::app

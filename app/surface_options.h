@@ -22,6 +22,10 @@ public:
     /// a group that the mesh does not have.
     [[nodiscard]] prt::SurfaceOverride surface(const mesh::TriangleMesh& mesh) const;
 
+    /// What the options make of the added floor: the last one whose group is `floor`, else white
+    /// Lambert.
+    [[nodiscard]] prt::Surface floor_surface() const;
+
     [[nodiscard]] float glossy_tolerance() const { return glossy_tolerance_; }
 
 private:

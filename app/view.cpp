@@ -4,6 +4,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -16,7 +17,6 @@
 #include "app/size_text.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
-#include "relight/pictures/exposure.h"
 #include "viewer/view.h"
 #endif
 
@@ -31,7 +31,8 @@ struct Options {
     std::string script;
     std::string screenshot;
     std::string size = "1440x860";
-    std::optional<double> exposure_ev;
+    std::string exposure = "auto";
+    std::string tone_map = "neutral";
 };
 
 #ifdef RELUMINE_VIEWER_MISSING
@@ -58,6 +59,17 @@ void set_size(const std::string& text, viewer::ViewOptions& view) {
 cubemap::CubeMap plain_grey() {
     constexpr std::uint32_t Resolution = 256;
     return cubemap::CubeMap(Resolution, glm::vec3(0.25f));
+}
+
+viewer::Shading shading_of(const Scene& scene) {
+    return {.albedo = picture_albedo(scene),
+            .floor = picture_floor(scene),
+            .surfaces = scene.receivers.surfaces,
+            .textures = scene.transfer.glossy
+                            ? relight::SurfaceColors()
+                            : relight::SurfaceColors(scene.mesh, scene.receivers.surfaces),
+            .eye = scene.settings.view ? std::optional(scene.settings.view->eye) : std::nullopt,
+            .bias = scene.settings.bias};
 }
 
 void report(const viewer::ViewReport& result, const relight::LightEditor& editor,
@@ -90,6 +102,7 @@ void report(const viewer::ViewReport& result, const relight::LightEditor& editor
 void run(const Options& options, Session& session) {
     viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
     set_size(options.size, view);
+    const std::optional<double> exposure_ev = parse_exposure(options.exposure);
     if (!options.screenshot.empty())
         check_output(options.screenshot,
                      {options.scene.path, options.environment.path, options.script});
@@ -106,21 +119,31 @@ void run(const Options& options, Session& session) {
         EnvironmentOptions environment = options.environment;
         environment.path = path.string();
         environment.rotate_degrees = 0.0; // the window turns it itself
-        return load_environment(environment, session).map;
+        Environment loaded = load_environment(environment, session);
+        return viewer::LoadedEnvironment{.map = std::move(loaded.map),
+                                         .sharp = relight::backdrop_of(loaded.file)};
     };
     relight::LightEditor& editor = lit.editor();
     const std::string& path = options.environment.path;
     editor.set_rotation(options.environment.rotate_degrees);
-    editor.set_base(path.empty() ? plain_grey() : load(path));
+    viewer::LoadedEnvironment first =
+        path.empty() ? viewer::LoadedEnvironment{.map = plain_grey(), .sharp = {}} : load(path);
+    editor.set_base(std::move(first.map));
     viewer::LightDesk desk(editor, path);
-    viewer::ViewState state{
-        .mesh = lit.scene().mesh, .rays = lit.rays(), .desk = desk, .load_environment = load};
+    viewer::ViewState state{.mesh = lit.scene().mesh,
+                            .rays = lit.rays(),
+                            .desk = desk,
+                            .shading = shading_of(lit.scene()),
+                            .load_environment = load};
+    if (first.sharp)
+        state.sharp.emplace_back(editor.base(), std::move(first.sharp));
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
-    state.scene_look.exposure_ev = options.exposure_ev
-                                       ? static_cast<float>(*options.exposure_ev)
-                                       : relight::suitable_exposure_ev(editor.radiance());
+    state.scene_look.exposure_ev = static_cast<float>(
+        exposure_ev ? *exposure_ev : Painter(lit, {}).choose_exposure_ev(lit.lighting()));
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
+    state.scene_look.tone = relight::tone_curve(options.tone_map).value_or(ToneCurve::Neutral);
+    state.environment_look.tone = state.scene_look.tone;
     report(viewer::view(state, view), editor, session);
     session.poll();
 }
@@ -135,8 +158,7 @@ void add_view(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
     command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
-    command.add_option("--exposure", options->exposure_ev, "stops; without it what suits the scene")
-        .between(-100.0, 100.0);
+    add_exposure_options(command, options->exposure, options->tone_map);
     command.add_option("--size", options->size, "the window's size").show_default();
     command
         .add_option("--script", options->script,

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "cubemap/resample/resample.h"
+#include "cubemap/split_mix64.h"
 #include "lights/importance_sampling.h"
 #include "lights/lat_long_grid.h"
 #include "lights/place_lights.h"
-#include "lights/split_mix64.h"
 
 namespace relumine::lights {
 
@@ -22,9 +22,9 @@ void add_frame(const cubemap::EnvironmentImage& image, std::uint32_t frame,
             fmt::format("expected at most {} samples for {} x {} pixels, got {}", grid.num_pixels(),
                         grid.width(), grid.height(), options.samples_per_frame));
     // Seeds with such large steps make the samples of neighbouring frames independent.
-    const std::uint64_t seed = options.seed_per_frame
-                                   ? options.seed + (std::uint64_t{frame} + 1) * SplitMix64::Step
-                                   : options.seed;
+    const std::uint64_t seed = options.seed_per_frame ? options.seed + (std::uint64_t{frame} + 1) *
+                                                                           cubemap::SplitMix64::Step
+                                                      : options.seed;
     for (const ImportanceSample& sample :
          options.stratified ? importance_samples(grid, options.samples_per_frame, seed)
                             : independent_samples(grid, options.samples_per_frame, seed))

@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "lights/split_mix64.h"
+#include "cubemap/split_mix64.h"
 
 namespace relumine::lights {
 
@@ -16,8 +16,9 @@ namespace {
 /// machine. Mixing twice keeps the neighbouring indices of one seed apart from the indices of the
 /// next.
 double random(std::uint64_t seed, std::uint64_t index) {
-    const std::uint64_t mixed = SplitMix64(seed * SplitMix64::Step + index).next();
-    return static_cast<double>(SplitMix64(mixed).next() >> 11) * 0x1p-53;
+    const std::uint64_t mixed =
+        cubemap::SplitMix64(seed * cubemap::SplitMix64::Step + index).next();
+    return static_cast<double>(cubemap::SplitMix64(mixed).next() >> 11) * 0x1p-53;
 }
 
 /// The distribution of the directions: by energy, or by solid angle for a map without light.

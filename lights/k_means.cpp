@@ -11,7 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "lights/nearest_centre.h"
-#include "lights/split_mix64.h"
+#include "cubemap/split_mix64.h"
 
 namespace relumine::lights {
 
@@ -21,7 +21,7 @@ namespace {
 constexpr std::size_t PointsPerTask = 512;
 
 std::vector<ClusterPoint> forgy(std::span<const ClusterPoint> points, std::size_t num_clusters,
-                                SplitMix64& random) {
+                                cubemap::SplitMix64& random) {
     std::vector<std::uint32_t> order(points.size());
     std::iota(order.begin(), order.end(), 0u);
     std::vector<ClusterPoint> centres;
@@ -216,7 +216,7 @@ KMeans k_means(std::span<const ClusterPoint> points, const KMeansOptions& option
         result.converged = true;
         return result;
     }
-    SplitMix64 random(options.seed);
+    cubemap::SplitMix64 random(options.seed);
     const std::size_t num_clusters = std::min(options.num_clusters, points.size());
     Iteration iteration(points, forgy(points, num_clusters, random), options.weights, result);
     iteration.assign();

@@ -18,6 +18,24 @@ void extend(std::vector<Value>& attribute, std::size_t num_vertices, const Value
         attribute.resize(num_vertices, value);
 }
 
+/// Returns where row i of n lies between -1 and 1, ever sparser from the middle to the edge.
+double row_place(std::uint32_t i, std::uint32_t n) {
+    constexpr double SpacingInside = 0.4; // of an even grid's
+    const double even = 2.0 * static_cast<double>(i) / (n - 1) - 1.0;
+    return even * (SpacingInside + (1.0 - SpacingInside) * even * even);
+}
+
+/// Returns the height of the floor under a mesh.
+double height_below(const Bounds& box, const glm::dvec3& center, double side) {
+    constexpr double Hair = 2e-4;
+    const double depth = double{box.max.y} - double{box.min.y};
+    const double diagonal = std::sqrt(2.0 * side * side + depth * depth);
+    double largest = std::max(std::abs(center.x), std::abs(center.z)) + 0.5 * side;
+    largest = std::max({largest, std::abs(double{box.min.y}), std::abs(double{box.max.y})});
+    const double spacing = double{std::numeric_limits<float>::epsilon()} * largest;
+    return double{box.min.y} - std::max(Hair * diagonal, 8.0 * spacing);
+}
+
 } // namespace
 
 void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
@@ -42,14 +60,13 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
         throw std::invalid_argument(fmt::format(
             "floor: expected a positive, finite side, got {} times the mesh's size", scale));
 
+    const auto height = static_cast<float>(height_below(box, center, side));
     mesh.positions.reserve(first + num_vertices);
     for (std::uint32_t row = 0; row < n; ++row)
-        for (std::uint32_t column = 0; column < n; ++column) {
-            const double u = static_cast<double>(column) / (n - 1) - 0.5;
-            const double v = static_cast<double>(row) / (n - 1) - 0.5;
-            mesh.positions.emplace_back(static_cast<float>(center.x + side * u), box.min.y,
-                                        static_cast<float>(center.z + side * v));
-        }
+        for (std::uint32_t column = 0; column < n; ++column)
+            mesh.positions.emplace_back(
+                static_cast<float>(center.x + 0.5 * side * row_place(column, n)), height,
+                static_cast<float>(center.z + 0.5 * side * row_place(row, n)));
     extend(mesh.normals, mesh.num_vertices(), glm::vec3(0.0f, 1.0f, 0.0f));
     extend(mesh.colors, mesh.num_vertices(), glm::vec3(1.0f));
     extend(mesh.uvs, mesh.num_vertices(), glm::vec2(0.0f));
@@ -80,6 +97,17 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     if (static_cast<std::size_t>(group) == mesh.groups.size())
         mesh.groups.emplace_back("floor");
     mesh.triangle_groups.resize(mesh.num_triangles(), static_cast<std::uint32_t>(group));
+}
+
+FloorPlace floor_place(std::span<const glm::vec3> positions, std::uint32_t n) {
+    const glm::vec3 first = positions.front(), last = positions[std::size_t{n} * n - 1];
+    const auto gap_after = [&](std::uint32_t column) {
+        return positions[column + 1].x - positions[column].x;
+    };
+    return {.center = 0.5f * (glm::vec2(first.x, first.z) + glm::vec2(last.x, last.z)),
+            .half_side = 0.5f * (last.x - first.x),
+            .spacing_inside = gap_after((n - 1) / 2),
+            .spacing_outside = gap_after(0)};
 }
 
 } // namespace relumine::mesh

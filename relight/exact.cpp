@@ -16,7 +16,7 @@
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
 #include "cubemap/resample/pixel_parts.h"
-#include "lights/split_mix64.h"
+#include "cubemap/split_mix64.h"
 #include "prt/glossy/brdf.h"
 #include "prt/precompute.h"
 
@@ -361,7 +361,7 @@ std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::
     std::vector<std::uint32_t> places(num_receivers);
     std::iota(places.begin(), places.end(), 0u);
     // Fisher and Yates' shuffle of the first `count` places.
-    lights::SplitMix64 random(seed);
+    cubemap::SplitMix64 random(seed);
     for (std::size_t i = 0; i < count; ++i)
         std::swap(places[i], places[i + random.below(num_receivers - i)]);
     places.resize(count);

@@ -43,8 +43,8 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
 }
 
 /// Returns the lanes whose light reaches the receiver.
-std::uint32_t LightPackets::visible(const Packet& packet, const glm::vec3& position,
-                                    const glm::vec3& normal, const ShadowRays& rays) {
+std::uint32_t LightPackets::visible_of(const Packet& packet, const glm::vec3& position,
+                                       const glm::vec3& normal, const ShadowRays& rays) {
     const std::uint32_t used = (1u << packet.directions.num_directions) - 1;
     return prt::lit_lanes(*rays.blockers, prt::ray_origin(position, normal, rays.bias), normal,
                           packet.directions, used);
@@ -54,10 +54,27 @@ glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& no
                                   const ShadowRays& rays) const {
     glm::dvec3 irradiance(0.0);
     for (const Packet& packet : packets_)
-        for (std::uint32_t lights = visible(packet, position, normal, rays); lights != 0;
+        for (std::uint32_t lights = visible_of(packet, position, normal, rays); lights != 0;
              lights &= lights - 1)
             irradiance +=
                 packet.irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(normal);
+    return irradiance / std::numbers::pi;
+}
+
+void LightPackets::visible(const glm::vec3& position, const glm::vec3& normal,
+                           const ShadowRays& rays, std::span<std::uint16_t> lanes) const {
+    for (std::size_t p = 0; p < packets_.size(); ++p)
+        lanes[p] = static_cast<std::uint16_t>(visible_of(packets_[p], position, normal, rays));
+}
+
+glm::dvec3 LightPackets::radiance(const glm::vec3& normal,
+                                  std::span<const std::uint16_t> lanes) const {
+    glm::dvec3 irradiance(0.0);
+    for (std::size_t p = 0; p < packets_.size(); ++p)
+        for (std::uint32_t lights = lanes[p]; lights != 0; lights &= lights - 1)
+            irradiance +=
+                packets_[p].irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(
+                    normal);
     return irradiance / std::numbers::pi;
 }
 
@@ -65,13 +82,25 @@ void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
                                std::span<const glm::vec3> positions,
                                std::span<const glm::vec3> normals, const ShadowRays& rays,
                                std::span<prt::Lobes<glm::dvec3>> sums) const {
+    std::vector<std::uint16_t> lanes(sums.size() * packets_.size());
+    for (std::size_t i = 0; i < sums.size(); ++i)
+        visible(positions[i], normals[i], rays,
+                std::span(lanes).subspan(i * packets_.size(), packets_.size()));
+    light_block(surfaces, normals, lanes, sums);
+}
+
+void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
+                               std::span<const glm::vec3> normals,
+                               std::span<const std::uint16_t> lanes,
+                               std::span<prt::Lobes<glm::dvec3>> sums) const {
     std::fill(sums.begin(), sums.end(), prt::Lobes<glm::dvec3>());
-    for (const Packet& packet : packets_) {
+    for (std::size_t p = 0; p < packets_.size(); ++p) {
+        const Packet& packet = packets_[p];
         // Transposed to lights, as the lobes are evaluated for a block at a time.
         std::array<std::uint32_t, prt::PacketSize> reached{};
         for (std::size_t i = 0; i < sums.size(); ++i)
-            for (std::uint32_t lights = visible(packet, positions[i], normals[i], rays);
-                 lights != 0; lights &= lights - 1)
+            for (std::uint32_t lights = lanes[i * packets_.size() + p]; lights != 0;
+                 lights &= lights - 1)
                 reached[static_cast<std::size_t>(std::countr_zero(lights))] |= 1u << i;
         for (std::size_t light = 0; light < packet.directions.num_directions; ++light) {
             if (reached[light] == 0)

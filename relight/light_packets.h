@@ -29,12 +29,31 @@ public:
     [[nodiscard]] glm::dvec3 radiance(const glm::vec3& position, const glm::vec3& normal,
                                       const ShadowRays& rays) const;
 
+    [[nodiscard]] std::size_t num_packets() const { return packets_.size(); }
+
+    /// Finds the lights that reach a point: bit i of lanes[p] is set for light 16 p + i.
+    ///
+    /// Shape:   lanes is [num_packets()].
+    void visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
+                 std::span<std::uint16_t> lanes) const;
+
+    /// Returns the radiance (albedo 1) that these lights give to a surface.
+    [[nodiscard]] glm::dvec3 radiance(const glm::vec3& normal,
+                                      std::span<const std::uint16_t> lanes) const;
+
     /// Computes the radiance through each lobe, without colours, of a block of up to 16 receivers
     /// with highlights. A light is a point.
     ///
     /// Shape:   positions, normals and sums have one element per receiver.
     void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
                      std::span<const glm::vec3> normals, const ShadowRays& rays,
+                     std::span<prt::Lobes<glm::dvec3>> sums) const;
+
+    /// The same for lights that are known to reach the receivers.
+    ///
+    /// Shape:   lanes is [receivers x num_packets()], as visible() gives them.
+    void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> normals,
+                     std::span<const std::uint16_t> lanes,
                      std::span<prt::Lobes<glm::dvec3>> sums) const;
 
 private:
@@ -46,8 +65,8 @@ private:
         /// Length of each channel's vector.
         std::array<glm::dvec3, prt::PacketSize> strength{};
     };
-    static std::uint32_t visible(const Packet& packet, const glm::vec3& position,
-                                 const glm::vec3& normal, const ShadowRays& rays);
+    static std::uint32_t visible_of(const Packet& packet, const glm::vec3& position,
+                                    const glm::vec3& normal, const ShadowRays& rays);
     std::vector<Packet> packets_;
 };
 

@@ -88,6 +88,10 @@ public:
     void resum();
 
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
+    [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
+        return diffuse_.empty() ? radiance() : diffuse_;
+    }
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
     [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
@@ -104,7 +108,11 @@ private:
     void set_pyramid();
     void light_glossy(std::size_t block);
     void write_radiance(std::size_t block);
-    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse) const;
+    /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
+    void write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
+                        std::span<glm::vec3> diffuse) const;
+    [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse,
+                                            bool with_sharp_lights) const;
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
@@ -133,6 +141,8 @@ private:
     std::shared_ptr<const LightBinning> binning_;
     cubemap::CubeMap environment_;
     std::vector<glm::vec3> radiance_;
+    /// For albedo 1; empty without surfaces.
+    std::vector<glm::vec3> diffuse_;
     /// Scratch: clusters whose light changes.
     std::vector<std::uint32_t> changed_;
     /// Scratch: changed_ as the kernels read it.
@@ -145,7 +155,7 @@ Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
       normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
       light_(transfer.counts.num_blocks()), lights_(transfer.num_clusters()),
       lit_by_(lights_.vectors), binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
-      radiance_(transfer.num_receivers()) {
+      radiance_(transfer.num_receivers()), diffuse_(transfer.surfaces.size()) {
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())
         throw std::invalid_argument(
@@ -435,8 +445,10 @@ void Relighter::Impl::light_glossy(std::size_t block) {
 
 /// Returns the radiance that a receiver with a surface sends on. `diffuse` is its radiance for
 /// albedo 1.
-glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& diffuse) const {
-    prt::Lobes<glm::vec3> lobes = traced_.highlights(place);
+glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& diffuse,
+                                           bool with_sharp_lights) const {
+    prt::Lobes<glm::vec3> lobes =
+        with_sharp_lights ? traced_.highlights(place) : prt::Lobes<glm::vec3>();
     lobes.diffuse = diffuse;
     if (!glossy_.empty()) {
         const GlossyLight& light = glossy_[place / prt::BlockSize];
@@ -451,13 +463,32 @@ glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& d
 }
 
 void Relighter::Impl::write_radiance(std::size_t block) {
+    write_radiance(block, true, radiance_, diffuse_);
+}
+
+void Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
+                                     std::span<glm::vec3> radiance,
+                                     std::span<glm::vec3> diffuse) const {
     BlockRadiance sums;
-    block_radiance(normals_[block], light_[block], traced_.diffuse(block), sums);
+    block_radiance(normals_[block], light_[block],
+                   with_sharp_lights ? traced_.diffuse(block) : nullptr, sums);
     const std::size_t begin = block * prt::BlockSize;
-    const std::size_t size = std::min(prt::BlockSize, radiance_.size() - begin);
-    for (std::size_t i = 0; i < size; ++i)
-        radiance_[transfer_.order[begin + i]] =
-            transfer_.surfaces.empty() ? sums.of(i) : through_surface(begin + i, sums.of(i));
+    const std::size_t size = std::min(prt::BlockSize, radiance.size() - begin);
+    for (std::size_t i = 0; i < size; ++i) {
+        const std::uint32_t receiver = transfer_.order[begin + i];
+        if (!diffuse.empty())
+            diffuse[receiver] = sums.of(i);
+        radiance[receiver] = transfer_.surfaces.empty()
+                                 ? sums.of(i)
+                                 : through_surface(begin + i, sums.of(i), with_sharp_lights);
+    }
+}
+
+std::vector<glm::vec3> Relighter::Impl::soft_radiance() const {
+    std::vector<glm::vec3> radiance(radiance_.size());
+    tbb::parallel_for(std::size_t{0}, light_.size(),
+                      [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
+    return radiance;
 }
 
 Relighter::Relighter(const prt::Transfer& transfer, const ShadowRays& rays)
@@ -494,6 +525,12 @@ void Relighter::resum() {
 
 std::span<const glm::vec3> Relighter::radiance() const {
     return impl_->radiance();
+}
+std::vector<glm::vec3> Relighter::soft_radiance() const {
+    return impl_->soft_radiance();
+}
+std::span<const glm::vec3> Relighter::diffuse_radiance() const {
+    return impl_->diffuse_radiance();
 }
 const cubemap::CubeMap& Relighter::environment() const {
     return impl_->environment();

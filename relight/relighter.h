@@ -132,6 +132,19 @@ public:
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> radiance() const;
 
+    /// Returns the radiance without what the sharp lights give, for pictures that trace them
+    /// themselves. Black under set_lights() with shadow rays.
+    ///
+    /// Shape:   [num_receivers], as radiance().
+    /// Cost:    O(receivers).
+    [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
+
+    /// Radiance as if every receiver were Lambert of albedo 1: irradiance over pi. Without surfaces
+    /// the same as radiance().
+    ///
+    /// Shape:   [num_receivers] in the receivers' own order.
+    [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;
+
     [[nodiscard]] const cubemap::CubeMap& environment() const;
 
     [[nodiscard]] const prt::Transfer& transfer() const;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -88,6 +89,12 @@ std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
     if (const auto doubt = cubemap::upside_down(light_from_below))
         result.push_back(*doubt);
     return result;
+}
+
+relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                              const EnvironmentOptions& options) {
+    const glm::dmat3 turn = world_from_image(image->layout, options);
+    return relight::image_backdrop(std::move(image), turn);
 }
 
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {

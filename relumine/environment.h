@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -13,6 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
 #include "relight/exact.h"
+#include "relight/pictures/backdrop.h"
 
 namespace relumine {
 
@@ -67,6 +69,10 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
 /// Resamples an image to a cube map and turns it. Keeps the energy of every pixel.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options = {});
+
+/// Returns the image, turned, as what is seen behind a mesh: as sharp as its own pixels.
+[[nodiscard]] relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                            const EnvironmentOptions& options = {});
 
 /// Returns Environment::warnings of an image; `light_from_below` as in cubemap::upside_down().
 [[nodiscard]] std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,

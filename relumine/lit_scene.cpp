@@ -89,8 +89,12 @@ struct LitScene::Impl {
     cubemap::CubeMap black{1};
     cubemap::CubeMap nothing;
     bool is_lit_by_list = false;
+    /// The pixels of the environment that was given to light(). Empty: there are none, or the
+    /// environment has changed without a layer.
+    relight::Backdrop sharp;
     /// Of a scene without clusters
     std::vector<glm::vec3> radiance;
+    std::vector<lights::DistantLight> list;
 };
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
@@ -129,15 +133,23 @@ RelightTimes LitScene::light(cubemap::CubeMap environment) {
         impl_->editor ? impl_->editor->set_base(std::move(environment))
                       : impl_->plain_relighter().set_environment(std::move(environment));
     impl_->is_lit_by_list = false;
+    impl_->sharp = {};
     impl_->file = {};
     return times;
 }
 
 RelightTimes LitScene::light(Environment environment) {
     const RelightTimes times = light(std::move(environment.map));
+    impl_->sharp = relight::backdrop_of(environment.file);
     if (!impl_->editor)
         impl_->file = std::move(environment.file);
     return times;
+}
+
+UpdateReport LitScene::update(Environment environment) {
+    const UpdateReport report = impl_->edited().update_base(std::move(environment.map));
+    impl_->sharp = relight::backdrop_of(environment.file);
+    return report;
 }
 
 BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
@@ -146,12 +158,13 @@ BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
         .bin(std::move(environment));
 }
 
-void LitScene::light(BinnedEnvironment environment) {
+void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFile& file) {
     if (impl_->editor)
         impl_->editor->set_base(std::move(environment.map));
     else
         impl_->plain_relighter().set_frame(std::move(environment));
     impl_->is_lit_by_list = false;
+    impl_->sharp = relight::backdrop_of(file);
 }
 
 RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
@@ -159,6 +172,7 @@ RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
     if (!has_clusters()) {
         impl_->radiance =
             relight::radiance_under(lights, impl_->scene.receivers.normals, shadow_rays());
+        impl_->list.assign(lights.begin(), lights.end());
     } else {
         times = impl_->plain_relighter().set_lights(lights);
         impl_->editor.reset();
@@ -170,6 +184,7 @@ RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
 
 UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
                                      std::span<const glm::vec3> radiance) {
+    impl_->sharp = {};
     if (!impl_->editor) {
         const UpdateReport report = impl_->plain_relighter().update_region(rectangle, radiance);
         impl_->file = {};
@@ -272,16 +287,39 @@ Share LitScene::lit_by(const cubemap::Region& region) const {
     return result;
 }
 
-Picture LitScene::draw(const OutputOptions& options) const {
+Lighting LitScene::lighting() const {
     if (radiance().empty())
         throw std::logic_error("expected a scene that is lit");
-    return Painter(*this, options).draw(radiance(), environment());
+    Lighting result;
+    if (const relight::Relighter* relighter = impl_->present_relighter()) {
+        result = lighting_of(*relighter);
+    } else {
+        for (const lights::DistantLight& light : impl_->list)
+            result.lights.push_back({.cluster = 0,
+                                     .cell = {},
+                                     .direction = light.direction,
+                                     .irradiance = {.red = light.irradiance.r * light.direction,
+                                                    .green = light.irradiance.g * light.direction,
+                                                    .blue = light.irradiance.b * light.direction}});
+        result.soft.resize(impl_->radiance.size());
+    }
+    result.radiance = radiance();
+    if (result.environment == nullptr || !impl_->sharp)
+        return result;
+    if (!impl_->editor)
+        result.sharp = impl_->sharp;
+    else if (impl_->editor->rotation() == 0.0)
+        result.sharp =
+            relight::edited_backdrop(impl_->sharp, *impl_->editor->base(), *result.environment);
+    return result;
+}
+
+Picture LitScene::draw(const OutputOptions& options) const {
+    return Painter(*this, options).draw(lighting());
 }
 
 void LitScene::save(const std::filesystem::path& path, const OutputOptions& options) const {
-    if (radiance().empty())
-        throw std::logic_error("expected a scene that is lit");
-    Painter(*this, options).save(path, radiance(), environment());
+    Painter(*this, options).save(path, lighting());
 }
 
 } // namespace relumine

@@ -103,6 +103,12 @@ public:
     RelightTimes light(cubemap::CubeMap environment);
     RelightTimes light(Environment environment);
 
+    /// Replaces the environment under the layers by another of the same resolution, and updates
+    /// only what differs.
+    ///
+    /// Throws:  as light().
+    UpdateReport update(Environment environment);
+
     /// Sums an environment into the scene's clusters, for light(). An environment that comes again
     /// need not be summed again.
     ///
@@ -111,10 +117,11 @@ public:
     [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap environment) const;
 
     /// Lights the scene with an environment that bin() of this scene has summed. Clusters whose
-    /// light stays are not summed again, so the last bits may differ from light() of the map.
+    /// light stays are not summed again, so the last bits may differ from light() of the map. The
+    /// file's pixels are what pictures show behind the mesh.
     ///
     /// Throws:  std::invalid_argument for an environment of another scene.
-    void light(BinnedEnvironment environment);
+    void light(BinnedEnvironment environment, const relight::EnvironmentFile& file = {});
 
     /// Lights the scene with distant lights alone, each with shadow rays of its own or, with
     /// clusters_only, through its cluster. The environment and its layers go; the background is
@@ -186,6 +193,12 @@ public:
     ///
     /// Throws:  std::invalid_argument for a region that is not valid; std::logic_error as above.
     [[nodiscard]] Share lit_by(const cubemap::Region& region) const;
+
+    /// Returns what a picture is drawn of. It points into this object, and is good until the light
+    /// changes.
+    ///
+    /// Throws:  std::logic_error before the first light().
+    [[nodiscard]] Lighting lighting() const;
 
     /// The scene in its light. For many pictures of one view see Painter.
     ///

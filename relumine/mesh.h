@@ -9,6 +9,7 @@
 
 #include "mesh/load.h"
 #include "mesh/triangle_mesh.h"
+#include "mesh/up_axis.h"
 
 namespace relumine {
 
@@ -29,6 +30,8 @@ struct Mesh {
 };
 
 struct MeshOptions {
+    /// The file's axis that points up. Empty: Z for .stl, Y for all others.
+    std::optional<mesh::UpAxis> up = {};
     /// Where normals come from: the file if it has them, or always the faces.
     mesh::NormalSource normals = mesh::NormalSource::File;
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN]
@@ -37,7 +40,7 @@ struct MeshOptions {
     float floor_scale = 4.0f;
 };
 
-/// Reads an .obj, .gltf, .glb, .ply, .off or .stl file and adds the floor.
+/// Reads an .obj, .gltf, .glb, .ply, .off or .stl file, turns it upright and adds the floor.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;
 ///          std::invalid_argument for a floor that does not fit (mesh::append_floor()).

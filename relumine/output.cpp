@@ -11,9 +11,13 @@
 #include <fmt/format.h>
 
 #include "cubemap/resample/resample.h"
+#include "mesh/floor.h"
 #include "mesh/save.h"
+#include "prt/receivers/mesh_point.h"
 #include "relight/pictures/array_file.h"
+#include "relight/pictures/exposure.h"
 #include "relight/pictures/receiver_picture.h"
+#include "relight/relighter.h"
 #include "relumine/lit_scene.h"
 
 namespace relumine {
@@ -31,6 +35,11 @@ bool is_picture(const std::string& extension) {
     return extension == ".png" || extension == ".exr";
 }
 
+/// Files whose values are computed with.
+bool is_linear_data(const std::string& extension) {
+    return extension == ".exr" || extension == ".npy";
+}
+
 void require_fit(const Scene& scene, std::span<const glm::vec3> radiance) {
     if (radiance.size() != scene.receivers.size())
         throw std::invalid_argument(fmt::format("expected the radiance of {} receivers, got {}",
@@ -39,18 +48,40 @@ void require_fit(const Scene& scene, std::span<const glm::vec3> radiance) {
 
 } // namespace
 
-std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> radiance,
-                                 const Albedo& albedo) {
-    require_fit(scene, radiance);
-    std::vector<glm::vec3> result(radiance.begin(), radiance.end());
-    if (const auto* factor = std::get_if<glm::vec3>(&albedo)) {
-        for (glm::vec3& value : result)
-            value *= *factor;
-        return result;
+namespace {
+
+/// Whether the colours are looked at or computed with.
+enum class Purpose { Show, Compute };
+
+constexpr float PlasterAlbedo = 0.5f, FloorAlbedo = 0.3f;
+
+/// Returns what each receiver's radiance is multiplied with, [num_receivers].
+std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
+    if (const auto* factor = std::get_if<glm::vec3>(&albedo))
+        return std::vector(scene.receivers.size(), *factor);
+    return prt::colors_at(scene.mesh, scene.receivers);
+}
+
+/// The same with what the options leave open.
+std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
+    const bool is_shown =
+        purpose == Purpose::Show && !std::holds_alternative<prt::TexelLayout>(scene.layout);
+    Albedo albedo = options.albedo;
+    if (std::holds_alternative<AutomaticAlbedo>(albedo)) {
+        if (!is_shown || !scene.receivers.surfaces.empty())
+            albedo = glm::vec3(1.0f);
+        else if (!scene.mesh.colors.empty())
+            albedo = MeshColors{};
+        else
+            albedo = glm::vec3(PlasterAlbedo);
     }
-    const std::vector<glm::vec3> colors = prt::colors_at(scene.mesh, scene.receivers);
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] *= colors[i];
+    std::vector<glm::vec3> result = factors(scene, albedo);
+    const std::vector<bool> is_floor = floor_receivers(scene);
+    const glm::vec3 floor = options.floor_albedo.value_or(glm::vec3(is_shown ? FloorAlbedo : 1.0f));
+    for (std::size_t i = 0; i < is_floor.size(); ++i)
+        if (is_floor[i] &&
+            (scene.receivers.surfaces.empty() || scene.receivers.surfaces[i] == prt::Surface()))
+            result[i] = floor;
     return result;
 }
 
@@ -69,64 +100,286 @@ void require_finite(const std::filesystem::path& path, std::span<const glm::vec3
 
 } // namespace
 
-Painter::Painter(const LitScene& lit, const OutputOptions& options)
-    : scene_(lit.scene()), rays_(lit.rays()), options_(options) {
-    if (std::holds_alternative<prt::VertexLayout>(scene_.layout) && !scene_.transfer.glossy)
-        surface_colors_ = {scene_.mesh, scene_.receivers.surfaces};
+std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
+    std::vector<glm::vec3> result(a.begin(), a.end());
+    for (std::size_t i = 0; i < result.size(); ++i)
+        result[i] *= b[i];
+    return result;
 }
 
-Picture Painter::draw(std::span<const glm::vec3> radiance, const cubemap::CubeMap& environment) {
-    const std::vector<glm::vec3> colors = colors_of(scene_, radiance, options_.albedo);
-    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene_.layout))
-        return options_.transparent ? relight::compose_cut_out(*pixels, colors)
-                                    : relight::compose(*pixels, colors, environment);
-    if (const auto* texels = std::get_if<prt::TexelLayout>(&scene_.layout))
-        return relight::compose(*texels, colors, options_.gutter);
-    const relight::PictureOptions size{.width = options_.width,
-                                       .height = options_.height,
-                                       .samples_per_axis = options_.samples_per_axis};
-    const Camera camera =
-        options_.camera ? *options_.camera : camera_of(scene_, size, options_.fov_degrees);
-    // What one picture's rays hit need not be kept.
-    if (!std::exchange(drew_one_, true))
-        return relight::draw(scene_.mesh, rays_, colors, environment, camera, size,
-                             surface_colors_);
-    if (!view_)
-        view_ = std::make_unique<relight::PictureView>(scene_.mesh, rays_, camera, size);
-    return view_->draw(colors, environment, surface_colors_);
+} // namespace
+
+std::vector<glm::vec3> picture_albedo(const Scene& scene, const OutputOptions& options) {
+    return factors(scene, options, Purpose::Show);
+}
+
+relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& options) {
+    const float fade = options.floor_fade;
+    const std::optional<std::size_t> first = first_floor_vertex(scene);
+    if (!first || !(fade > 0.0f))
+        return {};
+    const mesh::FloorPlace place = mesh::floor_place(
+        std::span(scene.mesh.positions).subspan(*first), scene.settings.floor_vertices);
+    return {.first_vertex = static_cast<std::uint32_t>(*first),
+            .center = place.center,
+            .opaque_radius = (1.0f - std::min(fade, 1.0f)) * place.half_side,
+            .end_radius = place.half_side};
+}
+
+std::vector<glm::vec3> colors_of(const Scene& scene, std::span<const glm::vec3> radiance,
+                                 const Albedo& albedo) {
+    require_fit(scene, radiance);
+    return product(radiance, std::holds_alternative<AutomaticAlbedo>(albedo)
+                                 ? factors(scene, OutputOptions{}, Purpose::Compute)
+                                 : factors(scene, albedo));
+}
+
+Lighting lighting_of(const relight::Relighter& relighter) {
+    Lighting lighting{.radiance = relighter.radiance()};
+    if (relighter.environment().resolution != 0)
+        lighting.environment = &relighter.environment();
+    if (relighter.shadow_rays().blockers != nullptr && !relighter.sharp_lights().empty()) {
+        lighting.lights.assign(relighter.sharp_lights().begin(), relighter.sharp_lights().end());
+        lighting.soft = relighter.soft_radiance();
+    }
+    return lighting;
+}
+
+struct Painter::Impl {
+    Impl(const LitScene& lit, const OutputOptions& given)
+        : scene(lit.scene()), rays(lit.rays()), options(given),
+          floor(picture_floor(scene, options)) {
+        if (is_on_vertices() && !scene.transfer.glossy)
+            textures = {scene.mesh, scene.receivers.surfaces};
+    }
+
+    [[nodiscard]] bool is_on_vertices() const {
+        return std::holds_alternative<prt::VertexLayout>(scene.layout);
+    }
+
+    [[nodiscard]] relight::PictureOptions size() const {
+        return {.width = options.width,
+                .height = options.height,
+                .samples_per_axis = options.samples_per_axis};
+    }
+    [[nodiscard]] Camera camera() const {
+        return options.camera ? *options.camera : camera_of(scene, size().aspect());
+    }
+
+    const std::vector<glm::vec3>& shown_factors() {
+        if (shown.empty())
+            shown = factors(scene, options, Purpose::Show);
+        return shown;
+    }
+
+    /// The mesh alone, of a scene of vertices.
+    [[nodiscard]] Picture cut_out(const relight::PictureView& from, const Lighting& lighting) {
+        const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
+        const std::vector<glm::vec3> colors =
+            product(traces ? lighting.soft : lighting.radiance, shown_factors());
+        relight::MeshLight light{.radiance = colors, .textures = &textures};
+        if (traces) {
+            light.lights = lighting.lights;
+            light.albedo = shown_factors();
+            light.surfaces = scene.receivers.surfaces;
+            if (scene.settings.view)
+                light.eye = scene.settings.view->eye;
+            light.bias = scene.settings.bias;
+        }
+        return from.cut_out(light);
+    }
+
+    [[nodiscard]] relight::Backdrop backdrop(const Lighting& lighting) const {
+        if (const auto* color = std::get_if<glm::vec3>(&options.background))
+            return relight::plain_backdrop(*color);
+        if (lighting.environment == nullptr)
+            return relight::plain_backdrop(glm::vec3(0.0f));
+        if (const double blur = std::get<EnvironmentBehind>(options.background).blur_degrees;
+            blur > 0.0)
+            return relight::blurred_backdrop(*lighting.environment, blur);
+        return lighting.sharp ? lighting.sharp : relight::map_backdrop(*lighting.environment);
+    }
+
+    /// [num_receivers] of pixels; empty where all are opaque.
+    [[nodiscard]] std::vector<float> opacity() const {
+        std::vector<float> result;
+        if (!(options.floor_fade > 0.0f) || !first_floor_vertex(scene))
+            return result;
+        const prt::Receivers& receivers = scene.receivers;
+        result.assign(receivers.size(), 1.0f);
+        for (std::size_t i = 0; i < result.size(); ++i)
+            if (floor.has(scene.mesh.triangles[receivers.points[i].triangle]))
+                result[i] = floor.opacity(receivers.positions[i]);
+        return result;
+    }
+
+    Picture draw(const Lighting& lighting) {
+        require_fit(scene, lighting.radiance);
+        const bool is_transparent = std::holds_alternative<NothingBehind>(options.background);
+        if (is_on_vertices()) {
+            // What one picture's rays hit need not be kept.
+            const bool is_first = !std::exchange(drew_one, true);
+            std::optional<relight::PictureView> once;
+            if (is_first)
+                once.emplace(scene.mesh, rays, camera(), size(), floor, 0);
+            else if (!view)
+                view.emplace(scene.mesh, rays, camera(), size(), floor);
+            const relight::PictureView& used = is_first ? *once : *view;
+            Picture picture = cut_out(used, lighting);
+            if (!is_transparent)
+                used.put_behind(picture, backdrop(lighting));
+            return picture;
+        }
+        const std::vector<glm::vec3> colors = product(lighting.radiance, shown_factors());
+        if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
+            return relight::compose(*texels, colors, options.gutter);
+        const auto& pixels = std::get<prt::PixelLayout>(scene.layout);
+        return is_transparent ? relight::compose_cut_out(pixels, colors, opacity())
+                              : relight::compose(pixels, colors, backdrop(lighting), opacity());
+    }
+
+    /// Adds what is seen to the light meter.
+    void meter(const Lighting& lighting) {
+        require_fit(scene, lighting.radiance);
+        if (!is_on_vertices()) {
+            const std::vector<glm::vec3> colors = product(lighting.radiance, shown_factors());
+            metered_colors.insert(metered_colors.end(), colors.begin(), colors.end());
+            std::vector<float> weights(colors.size(), 1.0f);
+            if (std::holds_alternative<prt::PixelLayout>(scene.layout))
+                if (std::vector<float> seen = opacity(); !seen.empty())
+                    weights = std::move(seen);
+            metered_weights.insert(metered_weights.end(), weights.begin(), weights.end());
+            return;
+        }
+        if (!small) {
+            constexpr float Pixels = 256.0f * 192.0f;
+            const float width = std::sqrt(Pixels * size().aspect());
+            const auto side = [](float length) {
+                return static_cast<std::uint32_t>(std::clamp(length, 1.0f, 4096.0f));
+            };
+            small.emplace(scene.mesh, rays, camera(),
+                          relight::PictureOptions{.width = side(width),
+                                                  .height = side(width / size().aspect()),
+                                                  .samples_per_axis = 1},
+                          floor);
+        }
+        const Picture seen = cut_out(*small, lighting);
+        for (std::size_t i = 0; i < seen.pixels.size(); ++i)
+            if (seen.alpha[i] > 0.0f) {
+                metered_colors.push_back(seen.pixels[i] / seen.alpha[i]);
+                metered_weights.push_back(seen.alpha[i]);
+            }
+    }
+
+    double exposure(const Lighting& lighting) {
+        if (options.exposure_ev)
+            return *options.exposure_ev;
+        if (!chosen_ev) {
+            if (metered_colors.empty())
+                meter(lighting);
+            chosen_ev =
+                static_cast<double>(relight::suitable_exposure_ev(metered_colors, metered_weights));
+            metered_colors = {};
+            metered_weights = {};
+            small.reset();
+        }
+        return *chosen_ev;
+    }
+
+    std::vector<glm::vec3> exposed(std::span<const glm::vec3> radiance,
+                                   std::span<const glm::vec3> albedo, double ev) const {
+        require_fit(scene, radiance);
+        std::vector<glm::vec3> values = product(radiance, albedo);
+        const auto scale = static_cast<float>(std::exp2(ev));
+        for (glm::vec3& value : values)
+            value *= scale;
+        return values;
+    }
+
+    const Scene& scene;
+    const prt::RayScene& rays;
+    OutputOptions options;
+    relight::FadingFloor floor;
+    /// Of vertices without highlights.
+    relight::SurfaceColors textures;
+    std::vector<glm::vec3> shown;
+    /// Made when a second picture is drawn
+    std::optional<relight::PictureView> view;
+    bool drew_one = false;
+    /// The light meter's.
+    std::optional<relight::PictureView> small;
+    std::vector<glm::vec3> metered_colors;
+    std::vector<float> metered_weights;
+    std::optional<double> chosen_ev;
+};
+
+Painter::Painter(const LitScene& lit, const OutputOptions& options)
+    : impl_(std::make_unique<Impl>(lit, options)) {}
+Painter::~Painter() = default;
+Painter::Painter(Painter&&) noexcept = default;
+
+Picture Painter::draw(const Lighting& lighting) {
+    return impl_->draw(lighting);
 }
 
 std::vector<glm::vec3> Painter::values(std::span<const glm::vec3> radiance) const {
-    std::vector<glm::vec3> values = colors_of(scene_, radiance, options_.albedo);
-    const auto scale = static_cast<float>(std::exp2(options_.exposure_ev));
-    for (glm::vec3& value : values)
-        value *= scale;
-    return values;
+    return impl_->exposed(radiance, factors(impl_->scene, impl_->options, Purpose::Compute),
+                          impl_->options.exposure_ev.value_or(0.0));
 }
 
-void Painter::save(const std::filesystem::path& path, std::span<const glm::vec3> radiance,
-                   const cubemap::CubeMap& environment) {
+void Painter::save(const std::filesystem::path& path, const Lighting& lighting) {
+    const Scene& scene = impl_->scene;
     const std::string extension = extension_of(path);
-    if (!is_output_of(path, scene_))
+    if (!is_output_of(path, scene))
         throw std::invalid_argument(fmt::format(
             "{}: expected .png, .exr{} or .npy for a scene whose receivers are {}, got "
             "'{}'",
             path.string(),
-            std::holds_alternative<prt::VertexLayout>(scene_.layout) ? ", .ply, .glb" : "",
-            prt::description(scene_.layout), extension));
+            std::holds_alternative<prt::VertexLayout>(scene.layout) ? ", .ply, .glb" : "",
+            prt::description(scene.layout), extension));
     if (is_picture(extension)) {
-        const Picture picture = draw(radiance, environment);
+        const Picture picture = draw(lighting);
+        relight::Development development{.exposure_ev = impl_->options.exposure_ev.value_or(0.0),
+                                         .tone = impl_->options.tone};
         if (extension == ".exr")
-            require_finite(path, picture.pixels, options_.exposure_ev);
-        relight::save_picture(path, picture, options_.exposure_ev);
+            require_finite(path, picture.pixels, development.exposure_ev);
+        else
+            development.exposure_ev = impl_->exposure(lighting);
+        relight::save_picture(path, picture, development);
         return;
     }
-    const std::vector<glm::vec3> numbers = values(radiance);
+    const std::vector<glm::vec3> numbers =
+        extension == ".npy"
+            ? values(lighting.radiance)
+            : impl_->exposed(lighting.radiance, impl_->shown_factors(), impl_->exposure(lighting));
     require_finite(path, numbers);
     if (extension == ".npy")
         relight::save_npy(path, numbers);
     else
-        mesh::save(path, scene_.mesh, numbers);
+        mesh::save(path, scene.mesh, numbers);
+}
+
+void Painter::meter(const Lighting& lighting) {
+    if (!impl_->options.exposure_ev && !impl_->chosen_ev)
+        impl_->meter(lighting);
+}
+
+double Painter::choose_exposure_ev(const Lighting& lighting) {
+    return impl_->exposure(lighting);
+}
+
+void Painter::set_exposure_ev(double ev) {
+    impl_->options.exposure_ev = ev;
+}
+
+bool Painter::needs_light_for(const std::filesystem::path& path) const {
+    return !is_linear_data(extension_of(path)) && !impl_->options.exposure_ev && !impl_->chosen_ev;
+}
+
+double Painter::exposure_ev(const std::filesystem::path& path) const {
+    if (impl_->options.exposure_ev)
+        return *impl_->options.exposure_ev;
+    return is_linear_data(extension_of(path)) ? 0.0 : impl_->chosen_ev.value_or(0.0);
 }
 
 bool is_output_of(const std::filesystem::path& path, const Scene& scene) {
@@ -153,7 +406,7 @@ void save_map(const std::filesystem::path& path, const cubemap::CubeMap& map, do
     }
     relight::save_picture(path,
                           {.width = image.width, .height = image.height, .pixels = image.pixels},
-                          exposure_ev + white_ev);
+                          {.exposure_ev = exposure_ev + white_ev});
 }
 
 } // namespace relumine

@@ -14,7 +14,7 @@
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/pictures/picture.h"
+#include "relight/pictures/framing.h"
 #include "relumine/memory_limit.h"
 
 namespace relumine {
@@ -150,7 +150,7 @@ private:
             // Receivers that are no pixels of the view but seen from it.
             if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
                 const std::optional<prt::Camera>& own = options_.view->camera;
-                scene_.settings.view = own ? *own : relight::automatic_camera(scene_.mesh);
+                scene_.settings.view = own ? *own : relight::framed(scene_.mesh);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
             }
         } catch (const std::invalid_argument& error) {
@@ -162,8 +162,8 @@ private:
         const bool has_camera = options_.view && options_.view->camera;
         const prt::Camera camera =
             has_camera ? *options_.view->camera
-                       : relight::automatic_camera(scene_.mesh,
-                                                   {.width = size.width, .height = size.height});
+                       : relight::framed(scene_.mesh, {.aspect = static_cast<float>(size.width) /
+                                                                 static_cast<float>(size.height)});
         prt::PixelReceivers pixels =
             prt::pixel_receivers(scene_.mesh, rays,
                                  {.camera = camera,
@@ -197,22 +197,30 @@ private:
         scene_.layout = std::move(texels.layout);
     }
 
-    /// The mesh's materials, changed by the option; none where there are neither.
+    /// The mesh's materials, changed by the option; none where there are neither. The floor keeps
+    /// its own.
     void set_surfaces() {
         const mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.materials.empty() && !options_.surface)
+        if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
+        const std::size_t n = scene_.settings.floor_vertices;
+        const std::size_t first_of_floor = mesh.num_vertices() - n * n;
+        const prt::SurfaceOverride surface_of =
+            [&](const mesh::TriangleMesh& of, std::uint32_t triangle, const prt::Surface& own) {
+                if (n != 0 && of.triangles[triangle][0] >= first_of_floor)
+                    return options_.floor_surface;
+                return options_.surface ? options_.surface(of, triangle, own) : own;
+            };
         prt::Receivers& receivers = scene_.receivers;
         if (receivers.points.empty()) {
-            receivers.surfaces = prt::vertex_surfaces(mesh, options_.surface);
+            receivers.surfaces = prt::vertex_surfaces(mesh, surface_of);
             prepare_textures();
         } else {
             receivers.surfaces.clear();
-            for (const prt::MeshPoint& point : receivers.points) {
-                const prt::Surface own = prt::surface_at(mesh, point.triangle, point.barycentric);
+            for (const prt::MeshPoint& point : receivers.points)
                 receivers.surfaces.push_back(
-                    options_.surface ? options_.surface(mesh, point.triangle, own) : own);
-            }
+                    surface_of(mesh, point.triangle,
+                               prt::surface_at(mesh, point.triangle, point.barycentric)));
         }
         if (receivers.to_eye.empty())
             leave_highlights_out();
@@ -223,7 +231,7 @@ private:
     /// the lowest value that an image of 8 bits has.
     void prepare_textures() {
         mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.textures.empty())
+        if (mesh.textures.empty() || mesh.triangle_materials.empty())
             return;
         if (options_.surface) {
             const auto plain = static_cast<std::uint32_t>(mesh.materials.size());

@@ -99,6 +99,9 @@ struct PrecomputeOptions {
     /// Replaces the mesh's materials; everywhere() makes one surface for the whole mesh. Empty: the
     /// materials stay.
     prt::SurfaceOverride surface = {};
+    /// The added floor's own surface; `surface` is not asked for it. A white Lambert one takes its
+    /// albedo from the options of each picture.
+    prt::Surface floor_surface = {};
     /// Relative error of a highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 

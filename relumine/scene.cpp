@@ -24,10 +24,33 @@ float rms_tolerance(const Scene& scene) {
                               scene.transfer.num_receivers());
 }
 
+std::optional<std::size_t> first_floor_vertex(const Scene& scene) {
+    const std::uint64_t n = scene.settings.floor_vertices;
+    if (n < 2 || n * n > scene.mesh.num_vertices())
+        return std::nullopt;
+    return scene.mesh.num_vertices() - static_cast<std::size_t>(n * n);
+}
+
+std::vector<bool> floor_receivers(const Scene& scene) {
+    const std::optional<std::size_t> first = first_floor_vertex(scene);
+    std::vector<bool> result;
+    if (!first)
+        return result;
+    const std::vector<prt::MeshPoint>& points = scene.receivers.points;
+    for (std::size_t i = 0; i < scene.receivers.size(); ++i)
+        result.push_back((points.empty() ? i : scene.mesh.triangles[points[i].triangle][0]) >=
+                         *first);
+    return result;
+}
+
 void set_colors(Scene& scene, const SurfaceColors& colors) {
     if (scene.receivers.surfaces.empty())
         throw std::invalid_argument("expected a scene with materials, got one without");
-    for (prt::Surface& surface : scene.receivers.surfaces) {
+    const std::vector<bool> is_floor = floor_receivers(scene);
+    for (std::size_t i = 0; i < scene.receivers.size(); ++i) {
+        if (!is_floor.empty() && is_floor[i])
+            continue;
+        prt::Surface& surface = scene.receivers.surfaces[i];
         surface.albedo = colors.albedo.value_or(surface.albedo);
         surface.specular = colors.specular.value_or(surface.specular);
     }
@@ -36,9 +59,9 @@ void set_colors(Scene& scene, const SurfaceColors& colors) {
     prt::set_surfaces(scene.transfer, scene.receivers);
 }
 
-Camera camera_of(const Scene& scene, const relight::PictureOptions& size, float fov_degrees) {
+Camera camera_of(const Scene& scene, float aspect) {
     return scene.settings.view ? *scene.settings.view
-                               : relight::automatic_camera(scene.mesh, size, fov_degrees);
+                               : relight::framed(scene.mesh, {.aspect = aspect});
 }
 
 std::uint32_t nearest_receiver(const Scene& scene, const glm::vec3& position) {

@@ -1,14 +1,16 @@
 // Scenes: a mesh with its precomputed light transfer, in memory and as a .prt file.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
 #include "prt/scene/scene_file.h"
 #include "prt/transfer.h"
-#include "relight/pictures/picture.h"
+#include "relight/pictures/framing.h"
 #include "relumine/mesh.h"
 
 namespace relumine {
@@ -32,7 +34,14 @@ using relight::Camera;
 /// Returns the RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
 [[nodiscard]] float rms_tolerance(const Scene& scene);
 
-/// New colours for all surfaces. An empty colour stays as it is.
+/// Returns which receivers lie on the floor that was added to the mesh, [num_receivers]; empty
+/// where there is none.
+[[nodiscard]] std::vector<bool> floor_receivers(const Scene& scene);
+
+/// Returns the first vertex of the added floor, which is n x n; none where there is no floor.
+[[nodiscard]] std::optional<std::size_t> first_floor_vertex(const Scene& scene);
+
+/// New colours for all surfaces but the added floor's. An empty colour stays as it is.
 struct SurfaceColors {
     std::optional<glm::vec3> albedo = {};
     /// F0, or Ks of Blinn-Phong
@@ -45,9 +54,9 @@ struct SurfaceColors {
 void set_colors(Scene& scene, const SurfaceColors& colors);
 
 /// The camera that a picture of the scene's mesh has unless another is given: the eye that its
-/// highlights are for, or one that shows all of the mesh in a picture of this size.
-[[nodiscard]] Camera camera_of(const Scene& scene, const relight::PictureOptions& size = {},
-                               float fov_degrees = 35.0f);
+/// highlights are for, or one that shows all of the mesh in a picture of this shape, width over
+/// height.
+[[nodiscard]] Camera camera_of(const Scene& scene, float aspect = 1024.0f / 768.0f);
 
 /// Returns the receiver nearest to a position. The scene must have a receiver.
 ///

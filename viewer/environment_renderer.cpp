@@ -119,6 +119,7 @@ void EnvironmentRenderer::draw(const LatLongView& view, const PixelRectangle& vi
     program_.set("uv_max", uv_max);
     program_.set("uv_step", (uv_max - uv_min) / glm::vec2(size));
     program_.set("exposure", std::exp2(look.exposure_ev));
+    program_.set("tone", static_cast<int>(look.tone));
     program_.set("use_heat", heat ? 1 : 0);
     program_.set("hottest", hottest_);
     program_.set("environment", 0);

@@ -31,6 +31,14 @@ private:
     GLuint id_ = 0;
 };
 
+struct FramebufferTraits {
+    static GLuint make();
+    static void free(GLuint id);
+};
+struct RenderbufferTraits {
+    static GLuint make();
+    static void free(GLuint id);
+};
 struct BufferTraits {
     static GLuint make();
     static void free(GLuint id);
@@ -44,6 +52,8 @@ struct TextureTraits {
     static void free(GLuint id);
 };
 
+using GlFramebuffer = GlObject<FramebufferTraits>;
+using GlRenderbuffer = GlObject<RenderbufferTraits>;
 using GlBuffer = GlObject<BufferTraits>;
 using GlVertexArray = GlObject<VertexArrayTraits>;
 using GlTexture = GlObject<TextureTraits>;
@@ -71,8 +81,8 @@ private:
     GLuint id_ = 0;
 };
 
-/// Returns GLSL for `vec3 shown(vec3 radiance)`: exposure and the sRGB curve, as
-/// relight::save_picture() writes a PNG. The source declares the uniform `exposure`.
+/// Returns GLSL for `vec3 shown(vec3 radiance)`: exposure, tone curve and the sRGB curve, as
+/// relight::save_picture() writes a PNG. The source declares the uniforms `exposure` and `tone`.
 [[nodiscard]] std::string shown_source();
 
 } // namespace relumine::viewer

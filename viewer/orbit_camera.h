@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "relight/pictures/picture.h"
+#include "relight/pictures/framing.h"
 #include "viewer/panel_layout.h"
 
 namespace relumine::viewer {
@@ -28,6 +28,7 @@ struct OrbitCamera {
     void zoom(float steps);
 
     [[nodiscard]] glm::vec3 eye() const;
+    bool operator==(const OrbitCamera&) const = default;
 };
 
 struct Ray {

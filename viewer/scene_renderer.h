@@ -7,6 +7,7 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
+#include "relight/pictures/picture_view.h"
 #include "viewer/cube_texture.h"
 #include "viewer/gl_objects.h"
 #include "viewer/look.h"
@@ -16,19 +17,26 @@ namespace relumine::viewer {
 
 class SceneRenderer {
 public:
-    explicit SceneRenderer(const mesh::TriangleMesh& mesh);
+    SceneRenderer(const mesh::TriangleMesh& mesh, const relight::FadingFloor& floor);
     /// `radiance` is [num_vertices].
     void upload_radiance(std::span<const glm::vec3> radiance);
     /// Draws into the current viewport, whose shape must be `viewport`. Clears its depth.
     void draw(const OrbitCamera& camera, const PixelRectangle& viewport,
               const CubeTexture& environment, const SceneLook& look) const;
+    /// Takes a picture of the whole viewport that was drawn elsewhere.
+    void upload_picture(const relight::Picture& picture);
+    /// Draws that picture in place of the mesh.
+    void draw_picture(const SceneLook& look) const;
 
 private:
     void draw_background(const OrbitCamera& camera, const PixelRectangle& viewport,
                          const CubeTexture& environment, const SceneLook& look) const;
 
+    relight::FadingFloor floor_;
     GlProgram mesh_program_;
     GlProgram background_program_;
+    GlProgram picture_program_;
+    GlTexture picture_;
     GlVertexArray mesh_array_;
     GlVertexArray no_array_;
     GlBuffer positions_;

@@ -1,14 +1,19 @@
 #include "viewer/view.h"
 
+#include <algorithm>
 #include <chrono>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include <imgui.h>
 
 #include "relight/contribution.h"
 #include "viewer/cube_texture.h"
 #include "viewer/environment_renderer.h"
+#include "viewer/multisample_target.h"
 #include "viewer/panels.h"
+#include "viewer/refiner.h"
 #include "viewer/scene_renderer.h"
 #include "viewer/script_player.h"
 #include "viewer/window.h"
@@ -23,18 +28,49 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+/// What a refined picture depends on.
+struct Scenery {
+    std::uint64_t version = 0;
+    OrbitCamera camera = {};
+    PixelRectangle size = {};
+    bool background = true;
+    bool operator==(const Scenery&) const = default;
+};
+
+Moment moment_of(const ViewState& state, const PixelRectangle& size) {
+    const OrbitCamera& camera = state.camera;
+    const relight::Relighter& relighter = state.desk.editor().relighter();
+    Moment moment{
+        .camera = {.eye = camera.eye(), .target = camera.target, .fov_degrees = camera.fov_degrees},
+        .width = static_cast<std::uint32_t>(std::max(size.width, 1)),
+        .height = static_cast<std::uint32_t>(std::max(size.height, 1)),
+        .radiance = relighter.soft_radiance(),
+        .lights = {},
+        .backdrop = {}};
+    if (relighter.shadow_rays().blockers != nullptr)
+        moment.lights.assign(relighter.sharp_lights().begin(), relighter.sharp_lights().end());
+    if (state.scene_look.background)
+        moment.backdrop = backdrop_of(state);
+    return moment;
+}
+
 /// The OpenGL side of the state.
 class Pictures {
 public:
     explicit Pictures(const ViewState& state)
-        : scene_(state.mesh), environment_(state.desk.editor().relighter().transfer().quadtree) {}
+        : scene_(state.mesh, state.shading.floor),
+          environment_(state.desk.editor().relighter().transfer().quadtree),
+          refiner_(state.mesh, state.rays, state.shading) {}
 
     /// Sends changes by edits to the graphics card.
     void update(ViewState& state) {
         const relight::LightEditor& editor = state.desk.editor();
         if (const auto version = state.desk.version(); version != version_) {
             version_ = version;
-            scene_.upload_radiance(editor.radiance());
+            std::vector<glm::vec3> colors(editor.radiance().begin(), editor.radiance().end());
+            for (std::size_t i = 0; i < colors.size(); ++i)
+                colors[i] *= state.shading.albedo[i];
+            scene_.upload_radiance(colors);
             texture_.upload(editor.environment(), state.desk.take_changed_texels());
         }
         // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.
@@ -46,9 +82,46 @@ public:
         }
     }
 
-    void draw(const ViewState& state, const Window& window, const PanelLayout& layout) const {
-        window.set_viewport(layout.scene);
-        scene_.draw(state.camera, layout.scene, texture_, state.scene_look);
+    /// Draws the scene finely where nothing has moved for a moment, or at once.
+    void refine(const ViewState& state, const PixelRectangle& size, bool at_once) {
+        constexpr double Pause = 0.2; // seconds
+        const Scenery now{.version = version_,
+                          .camera = state.camera,
+                          .size = size,
+                          .background = state.scene_look.background};
+        if (now != seen_) {
+            refiner_.stop();
+            seen_ = now;
+            since_ = Clock::now();
+            is_refined_ = is_refining_ = false;
+        }
+        if (at_once) {
+            scene_.upload_picture(refiner_.draw(moment_of(state, size)));
+            is_refined_ = is_refining_ = true;
+        } else if (!is_refining_ && seconds_since(since_) > Pause && !state.desk.is_dragging() &&
+                   !state.desk.is_painting()) {
+            refiner_.start(moment_of(state, size));
+            is_refining_ = true;
+        }
+        if (const std::optional<relight::Picture> picture = refiner_.take()) {
+            scene_.upload_picture(*picture);
+            is_refined_ = true;
+        }
+    }
+
+    /// Shows what the graphics card draws.
+    void show_live() { is_refined_ = false; }
+
+    void draw(const ViewState& state, const Window& window, const PanelLayout& layout) {
+        const PixelRectangle place = window.in_framebuffer(layout.scene);
+        if (is_refined_ && !state.scene_look.wireframe) {
+            window.set_viewport(layout.scene);
+            scene_.draw_picture(state.scene_look);
+        } else {
+            target_.begin(place.width, place.height);
+            scene_.draw(state.camera, layout.scene, texture_, state.scene_look);
+            target_.show_at(place.x, place.y);
+        }
         window.set_viewport(layout.environment);
         EnvironmentLook look = state.environment_look;
         look.heat = look.heat && state.receiver;
@@ -58,8 +131,13 @@ public:
 private:
     SceneRenderer scene_;
     EnvironmentRenderer environment_;
+    MultisampleTarget target_;
     CubeTexture texture_;
     std::uint64_t version_ = 0;
+    Scenery seen_;
+    Clock::time_point since_ = Clock::now();
+    bool is_refining_ = false, is_refined_ = false;
+    Refiner refiner_;
 };
 
 void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
@@ -138,6 +216,12 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         drop_dialogue(state);
         idleness.count();
         pictures.update(state);
+        const bool is_kept =
+            !scripted.screenshot.empty() || (is_last && !options.screenshot.empty());
+        if (!options.script || is_kept)
+            pictures.refine(state, window.in_framebuffer(layout.scene), is_kept);
+        else
+            pictures.show_live();
         pictures.draw(state, window, layout);
         window.end_frame();
         if (!scripted.screenshot.empty())

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +13,7 @@
 
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/image_pyramid.h"
+#include "relight/pictures/framing.h"
 
 namespace relumine::viewer {
 
@@ -35,7 +37,7 @@ bool is_picture(const std::filesystem::path& path) {
 
 /// Sets the environment; this is not a step of undo yet.
 void set_environment(ViewState& state, const std::filesystem::path& path) {
-    state.desk.set_base(state.load_environment(path), path);
+    set_base(state, state.load_environment(path), path);
     state.heat_is_stale = true;
 }
 
@@ -61,10 +63,43 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
 
 } // namespace
 
+void set_base(ViewState& state, LoadedEnvironment environment, const std::filesystem::path& path) {
+    state.desk.set_base(std::move(environment.map), path);
+    std::erase_if(state.sharp, [](const auto& each) { return each.first.expired(); });
+    if (environment.sharp)
+        state.sharp.emplace_back(state.desk.editor().base(), std::move(environment.sharp));
+}
+
+relight::Backdrop backdrop_of(const ViewState& state) {
+    const relight::LightEditor& editor = state.desk.editor();
+    const double degrees = editor.rotation();
+    const auto known = std::find_if(state.sharp.begin(), state.sharp.end(), [&](const auto& each) {
+        return each.first.lock() == editor.base();
+    });
+    const relight::Backdrop pixels =
+        known == state.sharp.end() ? relight::Backdrop() : known->second;
+    if (pixels && state.desk.layers().empty())
+        return [sharp = pixels,
+                unturned = glm::dmat3(cubemap::turn_about_y(-degrees))](const glm::vec3& w) {
+            return sharp(glm::vec3(unturned * glm::dvec3(w)));
+        };
+    // A copy: the environment may change while the picture is drawn.
+    const auto now = std::make_shared<const cubemap::CubeMap>(editor.environment());
+    if (pixels && degrees == 0.0)
+        return
+            [now, base = editor.base(),
+             edited = relight::edited_backdrop(pixels, *editor.base(), *now)](const glm::vec3& w) {
+                return edited(w);
+            };
+    return [now](const glm::vec3& w) {
+        return cubemap::sample(*now, w);
+    };
+}
+
 OrbitCamera camera_on_all(const mesh::TriangleMesh& mesh, const PixelRectangle& viewport) {
-    return orbit_camera(relight::automatic_camera(
-        mesh, {.width = static_cast<std::uint32_t>(std::max(viewport.width, 1)),
-               .height = static_cast<std::uint32_t>(std::max(viewport.height, 1))}));
+    return orbit_camera(
+        relight::framed(mesh, {.aspect = static_cast<float>(std::max(viewport.width, 1)) /
+                                         static_cast<float>(std::max(viewport.height, 1))}));
 }
 
 void click_mesh(ViewState& state, const PixelRectangle& viewport, const glm::vec2& pixel) {

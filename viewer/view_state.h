@@ -5,28 +5,42 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/layer_file.h"
 #include "mesh/triangle_mesh.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/pictures/picture_view.h"
 #include "viewer/lat_long_view.h"
 #include "viewer/light_desk.h"
 #include "viewer/look.h"
 #include "viewer/orbit_camera.h"
+#include "viewer/refiner.h"
 
 namespace relumine::viewer {
 
 enum class Tool { Move, Paint, Lasso };
 
+/// An environment, and the pixels of its file.
+struct LoadedEnvironment {
+    cubemap::CubeMap map;
+    relight::Backdrop sharp;
+};
+
 struct ViewState {
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
     LightDesk& desk;
+    Shading shading;
     /// Reads an environment file as the command line's options say. Throws std::runtime_error.
-    std::function<cubemap::CubeMap(const std::filesystem::path&)> load_environment;
+    std::function<LoadedEnvironment(const std::filesystem::path&)> load_environment;
+    /// The pixels of the files of bases that are still there, unturned.
+    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, relight::Backdrop>> sharp = {};
 
     OrbitCamera camera = {};
     LatLongView lat_long = {};
@@ -57,6 +71,12 @@ struct ViewState {
     bool message_is_error = false;
     double frame_seconds = 0.0;
 };
+
+/// Sets the base of the desk's editor, and remembers the pixels of its file.
+void set_base(ViewState& state, LoadedEnvironment environment, const std::filesystem::path& path);
+
+/// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.
+[[nodiscard]] relight::Backdrop backdrop_of(const ViewState& state);
 
 /// Returns the camera that shows all of the mesh but the ground, as `relumine relight` takes it for
 /// a picture of this size.

@@ -123,7 +123,6 @@ Window::Window(int width, int height, const std::string& title, bool scripted)
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-    glfwWindowHint(GLFW_SAMPLES, 4);
     glfwWindowHint(GLFW_RESIZABLE, scripted ? GLFW_FALSE : GLFW_TRUE);
     impl_->window = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
     if (!impl_->window) {
@@ -199,7 +198,7 @@ void Window::begin_frame(double wait_seconds, const std::optional<Pointer>& poin
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
-void Window::set_viewport(const PixelRectangle& part) const {
+PixelRectangle Window::in_framebuffer(const PixelRectangle& part) const {
     int width = 0;
     int height = 0;
     int buffer_width = 0;
@@ -207,13 +206,19 @@ void Window::set_viewport(const PixelRectangle& part) const {
     glfwGetWindowSize(impl_->window, &width, &height);
     glfwGetFramebufferSize(impl_->window, &buffer_width, &buffer_height);
     if (width < 1 || height < 1)
-        return;
+        return {};
     const auto scaled = [](int value, int to, int from) {
-        return static_cast<GLint>(std::lround(static_cast<double>(value) * to / from));
+        return static_cast<int>(std::lround(static_cast<double>(value) * to / from));
     };
-    glViewport(scaled(part.x, buffer_width, width),
-               buffer_height - scaled(part.y + part.height, buffer_height, height),
-               scaled(part.width, buffer_width, width), scaled(part.height, buffer_height, height));
+    return {.x = scaled(part.x, buffer_width, width),
+            .y = buffer_height - scaled(part.y + part.height, buffer_height, height),
+            .width = scaled(part.width, buffer_width, width),
+            .height = scaled(part.height, buffer_height, height)};
+}
+
+void Window::set_viewport(const PixelRectangle& part) const {
+    const PixelRectangle place = in_framebuffer(part);
+    glViewport(place.x, place.y, place.width, place.height);
 }
 
 void Window::end_frame() {

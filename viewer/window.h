@@ -40,6 +40,8 @@ public:
     /// Takes events (waits up to `wait_seconds` for one) and begins a frame of Dear ImGui. A
     /// script's pointer replaces the real one.
     void begin_frame(double wait_seconds, const std::optional<Pointer>& pointer);
+    /// Returns a part of the window in pixels of the frame buffer, from the lower left corner.
+    [[nodiscard]] PixelRectangle in_framebuffer(const PixelRectangle& part) const;
     /// Sets the OpenGL viewport to a part of the window.
     void set_viewport(const PixelRectangle& part) const;
     /// Draws Dear ImGui's frame over the pictures.

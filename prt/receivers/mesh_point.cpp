@@ -1,5 +1,8 @@
 #include "prt/receivers/mesh_point.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <glm/geometric.hpp>
 
 namespace relumine::prt {
@@ -35,6 +38,35 @@ glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point)
     constexpr float Shortest = 1e-4f;
     return glm::length(interpolated) > Shortest ? glm::normalize(interpolated)
                                                 : face_normal(mesh, point.triangle);
+}
+
+glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    const mesh::Triangle& triangle = mesh.triangles[point.triangle];
+    const glm::vec3 flat = value_at(mesh, mesh.positions, point);
+    const glm::vec3 weights(1.0f - point.barycentric.x - point.barycentric.y, point.barycentric.x,
+                            point.barycentric.y);
+    const glm::vec3 facing = face_normal(mesh, point.triangle);
+    glm::vec3 moved(0.0f);
+    for (int corner = 0; corner < 3; ++corner) {
+        const std::uint32_t vertex = triangle[static_cast<std::size_t>(corner)];
+        const glm::vec3& normal = mesh.normals[vertex];
+        // A normal so far from the face's is that of an edge, not of a smooth surface.
+        constexpr float Smooth = 0.7f;
+        if (std::abs(glm::dot(normal, facing)) < Smooth)
+            return flat;
+        // Onto the plane through the corner, where the point lies below it.
+        const float below = std::min(0.0f, glm::dot(flat - mesh.positions[vertex], normal));
+        moved -= weights[corner] * below * normal;
+    }
+    return flat + moved;
+}
+
+bool meets_front(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                 const glm::vec3& direction) {
+    const glm::vec3 face = face_normal(mesh, point.triangle);
+    const float side = glm::dot(face, value_at(mesh, mesh.normals, point));
+    const float towards = glm::dot(face, direction);
+    return side < 0.0f ? towards > 0.0f : towards < 0.0f;
 }
 
 } // namespace relumine::prt

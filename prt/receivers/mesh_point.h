@@ -32,4 +32,16 @@ struct MeshPoint {
 /// normals cancel.
 [[nodiscard]] glm::vec3 shading_normal(const mesh::TriangleMesh& mesh, const MeshPoint& point);
 
+/// Returns the point moved outwards to the smooth surface that the vertex normals pretend. Shadow
+/// rays that start there do not see the facets of a convex mesh where the light grazes it. Points
+/// of flat and hollow parts stay where they are, and so do those beside a sharp edge.
+///
+/// Based on: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
+[[nodiscard]] glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Whether a ray meets the front of a surface: the side of the triangle that its vertex normals
+/// stand on. Interpolated normals alone would show some fronts to rays from behind.
+[[nodiscard]] bool meets_front(const mesh::TriangleMesh& mesh, const MeshPoint& point,
+                               const glm::vec3& direction);
+
 } // namespace relumine::prt

@@ -1,14 +1,66 @@
 #include "prt/receivers/receivers.h"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
 
+#include "cubemap/split_mix64.h"
+#include "prt/visibility/ray_scene.h"
+
 namespace relumine::prt {
 
+namespace {
+
+/// How far a vertex may move within its triangles, over the distance to their centres.
+constexpr float LargestPartOfATriangle = 0.25f;
+
+/// Whether each vertex is inside of its surface: its triangles close a ring around it. In a closed
+/// ring every neighbour begins one edge and ends another, so marks of the neighbours cancel.
+std::vector<bool> inner_vertices(const mesh::TriangleMesh& mesh) {
+    std::vector<std::uint64_t> sums(mesh.num_vertices());
+    const auto mark = [](std::uint32_t vertex) {
+        return cubemap::SplitMix64(vertex).next();
+    };
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+            sums[triangle[k]] += mark(triangle[(k + 1) % 3]) - mark(triangle[(k + 2) % 3]);
+    std::vector<bool> result(sums.size());
+    std::transform(sums.begin(), sums.end(), result.begin(),
+                   [](std::uint64_t sum) { return sum == 0; });
+    return result;
+}
+
+} // namespace
+
 Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
-    return {.positions = mesh.positions, .normals = mesh.normals};
+    Receivers receivers{.positions = mesh.positions, .normals = mesh.normals};
+    const std::vector<bool> is_inner = inner_vertices(mesh);
+    if (std::find(is_inner.begin(), is_inner.end(), false) == is_inner.end())
+        return receivers;
+    // Where surfaces meet at an edge without sharing its vertices, a vertex of one lies in the
+    // plane of the other, and would look past it. It looks from a little inside of its own surface.
+    std::vector<glm::vec3> inwards(mesh.num_vertices(), glm::vec3(0.0f));
+    std::vector<float> reach(mesh.num_vertices(), std::numeric_limits<float>::max());
+    for (const mesh::Triangle& triangle : mesh.triangles) {
+        const glm::vec3 centre = (mesh.positions[triangle[0]] + mesh.positions[triangle[1]] +
+                                  mesh.positions[triangle[2]]) /
+                                 3.0f;
+        for (const std::uint32_t vertex : triangle)
+            if (!is_inner[vertex]) {
+                const glm::vec3 to_centre = centre - mesh.positions[vertex];
+                const float distance = glm::length(to_centre);
+                if (distance > 0.0f)
+                    inwards[vertex] += to_centre / distance;
+                reach[vertex] = std::min(reach[vertex], LargestPartOfATriangle * distance);
+            }
+    }
+    const float step = automatic_bias(mesh);
+    for (std::size_t vertex = 0; vertex < is_inner.size(); ++vertex)
+        if (const float length = glm::length(inwards[vertex]); length > 0.0f)
+            receivers.positions[vertex] += std::min(step, reach[vertex]) / length * inwards[vertex];
+    return receivers;
 }
 
 std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers) {

@@ -30,7 +30,8 @@ struct Receivers {
 };
 
 /// Returns one receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section
-/// 3.1].
+/// 3.1]. Vertices on the rim of a surface look from a little inside of it, by automatic_bias(): a
+/// wall that meets the floor at a hard edge must not look out under it.
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
 
 /// Gives every receiver its direction to an eye. A receiver at the eye itself gets +Y.

@@ -145,10 +145,12 @@ RayScene::~RayScene() = default;
 RayScene::RayScene(RayScene&&) noexcept = default;
 RayScene& RayScene::operator=(RayScene&&) noexcept = default;
 
-std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
-                                 std::uint32_t active) const {
-    alignas(64) std::array<int, PacketSize> valid;
-    RTCRay16 rays;
+namespace {
+
+using Valid = std::array<int, PacketSize>;
+
+void fill_rays(const glm::vec3& origin, const DirectionPacket& directions, std::uint32_t active,
+               Valid& valid, RTCRay16& rays) {
     for (std::size_t i = 0; i < PacketSize; ++i) {
         valid[i] = (active >> i & 1u) != 0 ? -1 : 0;
         rays.org_x[i] = origin.x;
@@ -163,7 +165,15 @@ std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket&
     std::memcpy(rays.dir_x, directions.x.data(), sizeof rays.dir_x);
     std::memcpy(rays.dir_y, directions.y.data(), sizeof rays.dir_y);
     std::memcpy(rays.dir_z, directions.z.data(), sizeof rays.dir_z);
+}
 
+} // namespace
+
+std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                 std::uint32_t active) const {
+    alignas(64) Valid valid;
+    RTCRay16 rays;
+    fill_rays(origin, directions, active, valid, rays);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -212,6 +222,28 @@ std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin,
     return Hit{.triangle = query.hit.primID,
                .barycentric = {query.hit.u, query.hit.v},
                .distance = query.ray.tfar};
+}
+
+std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
+                                     std::uint32_t active, std::span<Hit, PacketSize> hits) const {
+    alignas(64) Valid valid;
+    RTCRayHit16 query;
+    fill_rays(origin, directions, active, valid, query.ray);
+    std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), impl_->scene.get(), &context, &query);
+    std::uint32_t found = 0;
+    for (std::size_t i = 0; i < PacketSize; ++i) {
+        if ((active >> i & 1u) == 0 || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+            continue;
+        found |= 1u << i;
+        hits[i] = {.triangle = query.hit.primID[i],
+                   .barycentric = {query.hit.u[i], query.hit.v[i]},
+                   .distance = query.ray.tfar[i]};
+    }
+    return found;
 }
 
 float automatic_bias(const mesh::TriangleMesh& blockers) {

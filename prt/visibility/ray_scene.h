@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -50,6 +51,11 @@ public:
 
     [[nodiscard]] std::optional<Hit> closest_hit(const glm::vec3& origin,
                                                  const glm::vec3& direction) const;
+
+    /// Finds the closest hit of each direction in `active`. Returns the mask of those that hit
+    /// anything; the other hits are left alone. Fastest for directions that lie close together.
+    std::uint32_t closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
+                               std::uint32_t active, std::span<Hit, PacketSize> hits) const;
 
 private:
     struct Impl;

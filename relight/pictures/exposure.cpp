@@ -2,23 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace relumine::relight {
 
-float suitable_exposure_ev(std::span<const glm::vec3> radiance) {
-    std::vector<float> brightness;
-    brightness.reserve(radiance.size());
-    for (const glm::vec3& value : radiance)
-        brightness.push_back(std::max({value.r, value.g, value.b}));
-    if (brightness.empty())
+namespace {
+
+// Chosen by looking at eight meshes under fifteen environments.
+constexpr double BrightShare = 0.05; // of what is lit is brighter than Bright
+constexpr double Bright = 0.8;       // where the neutral tone curve begins to compress
+constexpr double Middle = 0.1;       // the median is lifted to this, but
+constexpr double LargestLift = 1.5;  // by no more than so many stops
+
+/// The brightness of a part of what is lit, and its weight.
+using Sample = std::pair<float, double>;
+
+/// Returns the brightness that a share of the weight exceeds. `samples` ascend.
+double exceeded_by(double share, const std::vector<Sample>& samples, double weight) {
+    double brighter = 0.0;
+    auto sample = samples.rbegin();
+    while (sample + 1 != samples.rend() && brighter + sample->second <= share * weight)
+        brighter += (sample++)->second;
+    return static_cast<double>(sample->first);
+}
+
+} // namespace
+
+float suitable_exposure_ev(std::span<const glm::vec3> colors, std::span<const float> weights) {
+    std::vector<Sample> samples;
+    samples.reserve(colors.size());
+    double weight = 0.0;
+    for (std::size_t i = 0; i < colors.size(); ++i) {
+        const auto own = weights.empty() ? 1.0 : static_cast<double>(weights[i]);
+        if (own <= 0.0)
+            continue;
+        samples.emplace_back(std::max({colors[i].r, colors[i].g, colors[i].b}), own);
+        weight += own;
+    }
+    if (samples.empty())
         return 0.0f;
-    const auto bright =
-        brightness.begin() + static_cast<std::ptrdiff_t>(brightness.size() * 49 / 50);
-    std::nth_element(brightness.begin(), bright, brightness.end());
-    if (!(*bright > 0.0f) || (*bright > 0.4f && *bright < 2.5f))
+    std::sort(samples.begin(), samples.end());
+    const double bright = exceeded_by(BrightShare, samples, weight);
+    if (!(bright > 0.0))
         return 0.0f;
-    return std::clamp(0.5f * std::round(-2.0f * std::log2(*bright)), -20.0f, 20.0f);
+    double ev = std::log2(Bright / bright);
+    if (const double middle = exceeded_by(0.5, samples, weight); middle > 0.0)
+        ev = std::clamp(std::log2(Middle / middle), ev, ev + LargestLift);
+    else
+        ev += LargestLift;
+    return static_cast<float>(std::clamp(std::round(100.0 * ev) / 100.0, -100.0, 100.0));
 }
 
 } // namespace relumine::relight

@@ -17,12 +17,14 @@ void require_one_per_receiver(std::size_t num_receivers, std::span<const glm::ve
                                                 num_receivers, radiance.size()));
 }
 
-/// Averages the samples of each pixel. `behind(x, y, i)` is the radiance of a sample without a
-/// receiver. Coverage goes to the picture's alpha if asked for.
+/// Averages the samples of each pixel. `behind(x, y, i)` is the radiance behind a sample that is
+/// not opaque. The mean opacity goes to the picture's alpha if asked for.
 template<typename Behind>
 Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                 const Behind& behind, bool with_alpha) {
+                 std::span<const float> opacity, const Behind& behind, bool with_alpha) {
     require_one_per_receiver(layout.samples.size(), radiance);
+    if (!opacity.empty() && opacity.size() != radiance.size())
+        throw std::invalid_argument("expected one opacity per receiver");
     const std::size_t num_pixels = std::size_t{layout.width} * layout.height;
     Picture picture{.width = layout.width, .height = layout.height};
     picture.pixels.resize(num_pixels);
@@ -36,19 +38,21 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
         auto receiver = static_cast<std::size_t>(first - layout.samples.begin());
         for (std::uint32_t x = 0; x < layout.width; ++x, ++pixel) {
             glm::vec3 sum(0.0f);
-            std::uint32_t num_hits = 0;
+            float alpha = 0.0f;
             for (std::uint32_t i = 0; i < per_pixel; ++i) {
+                float own = 0.0f;
                 if (receiver < layout.samples.size() &&
                     layout.samples[receiver] == pixel * per_pixel + i) {
-                    sum += radiance[receiver++];
-                    ++num_hits;
-                } else {
-                    sum += behind(x, y, i);
+                    own = opacity.empty() ? 1.0f : opacity[receiver];
+                    sum += own * radiance[receiver++];
                 }
+                if (own < 1.0f)
+                    sum += (1.0f - own) * behind(x, y, i);
+                alpha += own;
             }
             picture.pixels[pixel] = sum / static_cast<float>(per_pixel);
             if (with_alpha)
-                picture.alpha[pixel] = static_cast<float>(num_hits) / static_cast<float>(per_pixel);
+                picture.alpha[pixel] = alpha / static_cast<float>(per_pixel);
         }
     });
     return picture;
@@ -113,23 +117,19 @@ private:
 
 } // namespace
 
+Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
+                        std::span<const float> opacity) {
+    return averaged(
+        layout, radiance, opacity, [](auto, auto, auto) { return glm::vec3(0.0f); }, true);
+}
+
 Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                const cubemap::CubeMap& background) {
-    if (background.resolution == 0)
-        throw std::invalid_argument("expected a background with texels");
+                const Backdrop& backdrop, std::span<const float> opacity) {
     const prt::PictureRays rays(layout.camera, layout.width, layout.height,
                                 layout.samples_per_axis);
     return averaged(
-        layout, radiance,
-        [&](auto x, auto y, auto i) {
-            return cubemap::sample(background, rays.direction(x, y, i));
-        },
-        false);
-}
-
-Picture compose_cut_out(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance) {
-    return averaged(
-        layout, radiance, [](auto, auto, auto) { return glm::vec3(0.0f); }, true);
+        layout, radiance, opacity,
+        [&](auto x, auto y, auto i) { return backdrop(rays.direction(x, y, i)); }, false);
 }
 
 Picture compose(const prt::TexelLayout& layout, std::span<const glm::vec3> radiance,

@@ -6,25 +6,29 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/cube_map.h"
+#include "cubemap/image/picture.h"
 #include "prt/receivers/receiver_layout.h"
-#include "relight/pictures/picture.h"
+#include "relight/pictures/backdrop.h"
 
 namespace relumine::relight {
 
-/// Composes the picture of pixel receivers: each pixel is the mean of its samples. A sample without
-/// a receiver shows the environment in its ray's direction. The picture is opaque.
-///
-/// Shape:   radiance is [num_receivers].
-/// Throws:  std::invalid_argument for another number of values, or a background without texels.
-[[nodiscard]] Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
-                              const cubemap::CubeMap& background);
+using cubemap::Picture;
 
-/// Composes the picture of pixel receivers without a background. Samples without a receiver are
-/// black. Alpha is the share of samples with a receiver (coverage), so the pixels are
-/// premultiplied.
+/// Composes the picture of pixel receivers without a background. Alpha is the mean opacity of a
+/// pixel's samples, which is 0 for a sample without a receiver; the pixels are premultiplied.
+///
+/// Shape:   radiance is [num_receivers], opacity the same, or empty for opaque receivers.
+/// Throws:  std::invalid_argument for another number of values.
 [[nodiscard]] Picture compose_cut_out(const prt::PixelLayout& layout,
-                                      std::span<const glm::vec3> radiance);
+                                      std::span<const glm::vec3> radiance,
+                                      std::span<const float> opacity = {});
+
+/// Composes the picture of pixel receivers before a backdrop: each pixel is the mean of its
+/// samples. The picture is opaque.
+///
+/// Shape:   as compose_cut_out().
+[[nodiscard]] Picture compose(const prt::PixelLayout& layout, std::span<const glm::vec3> radiance,
+                              const Backdrop& backdrop, std::span<const float> opacity = {});
 
 /// Composes the lightmap of texel receivers.
 ///

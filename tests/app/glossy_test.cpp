@@ -34,9 +34,15 @@ TEST_F(Glossy, HighlightsOnVerticesAreVerified) {
     succeed({"relight", "s.prt", "white.hdr", "-o", "lit.npy"});
     make("d.prt", {"--material", "lambert:albedo=0.3"});
     succeed({"relight", "d.prt", "white.hdr", "-o", "dull.npy"});
-    const auto shiny = npy_values(read("lit.npy"));
-    const auto dull = npy_values(read("dull.npy"));
-    ASSERT_EQ(shiny.size(), dull.size());
+    auto shiny = npy_values(read("lit.npy"));
+    auto dull = npy_values(read("dull.npy"));
+    ASSERT_EQ(shiny.size(), 6u + 81u);
+    // The floor is not what the mesh is.
+    for (std::size_t i = 6; i < shiny.size(); ++i)
+        EXPECT_EQ(shiny[i], dull[i]) << i;
+    EXPECT_GT(shiny[6][0], 0.9f);
+    shiny.resize(6);
+    dull.resize(6);
     // Under white light albedo (1 - F0) and most of F0 come back, 0.15 + 0.5, where the eye sees
     // the surface.
     const auto brightest = [](const auto& values) {
@@ -70,7 +76,24 @@ TEST_F(Glossy, AnAlbedoScalesTheLight) {
     const auto plain = npy_values(read("plain.npy"));
     const auto half = npy_values(read("half.npy"));
     for (std::size_t i = 0; i < plain.size(); ++i)
-        EXPECT_NEAR(half[i][1], 0.5f * plain[i][1], 1e-6f);
+        EXPECT_NEAR(half[i][1], (i < 6 ? 0.5f : 1.0f) * plain[i][1], 1e-6f);
+}
+
+TEST_F(Glossy, TheFloorShinesOnlyWhereItIsAskedTo) {
+    const std::string shape = "ggx:roughness=0.5,albedo=0.2,f0=0.5";
+    const auto cells = [&](const std::vector<std::string>& materials) {
+        std::vector<std::string> more = {"--view", "auto"};
+        for (const std::string& material : materials)
+            more.insert(more.end(), {"--material", material});
+        return make("s.prt", more)["glossy"]["cells"].get<int>();
+    };
+    const int mesh_alone = cells({shape});
+    const int both = cells({shape, "floor=" + shape});
+    EXPECT_GT(both, 2 * mesh_alone);
+    // Its own albedo is not replaced by the grey of pictures.
+    succeed({"relight", "s.prt", "white.hdr", "-o", "a.exr", "--floor-albedo", "0.1"});
+    succeed({"relight", "s.prt", "white.hdr", "-o", "b.exr", "--floor-albedo", "0.9"});
+    EXPECT_TRUE(read("a.exr") == read("b.exr"));
 }
 
 TEST_F(Glossy, ColoursMayChangeAfterwards) {

@@ -46,6 +46,15 @@ TEST_F(Precompute, AllKeysOfTheReport) {
 TEST_F(Precompute, TheFloorHasTheVerticesAskedFor) {
     EXPECT_EQ(made({"--floor", "5"})["vertices"], 6 + 25);
     EXPECT_EQ(made({"--floor", "5"})["triangles"], 8 + 32);
+    const nlohmann::json floor = made({"--floor", "5"})["floor"];
+    EXPECT_EQ(floor["vertices"], 5);
+    EXPECT_NEAR(floor["side"].get<double>(), 8.0, 1e-5);
+    EXPECT_NEAR(floor["spacing_inside"].get<double>(), 1.1, 1e-5);
+    EXPECT_NEAR(floor["spacing_outside"].get<double>(), 2.9, 1e-5);
+    EXPECT_NE(succeed(command({"--floor", "5"}))
+                  .out.find("floor: 5 x 5 vertices over 8 x 8; one "
+                            "spans 1.1 under the mesh"),
+              std::string::npos);
     EXPECT_EQ(succeed({"info", "new.prt", "--json"}).json()["floor"], 5);
     // Without a number, last on the line or before another option.
     EXPECT_EQ(made({"--min-depth", "1", "--tolerance", "0.2", "--floor"})["vertices"],
@@ -182,6 +191,28 @@ TEST_F(Precompute, TheSameInputGivesTheSameBytes) {
     const std::string first = read("new.prt");
     succeed(command({"--floor", "9"}));
     EXPECT_TRUE(read("new.prt") == first);
+}
+
+TEST_F(Precompute, StlHasZUpByCustomAndSaysSo) {
+    // A triangle that lies in the plane z = 0, facing +Z.
+    write("flat.stl", "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"
+                      "vertex 0 1 0\nendloop\nendfacet\nendsolid s\n");
+    const auto top_is_lit = [&](const std::vector<std::string>& up) {
+        std::vector<std::string> command = {"precompute", "flat.stl",          "-o",
+                                            "flat.prt",   "--face-resolution", "16"};
+        command.insert(command.end(), up.begin(), up.end());
+        const std::string said = succeed(command).out;
+        write("top.hdr", hdr_file(64, 32, [](std::uint32_t, std::uint32_t y) {
+                  return y < 2 ? Rgb{64.0f, 64.0f, 64.0f} : Rgb{0.0f, 0.0f, 0.0f};
+              }));
+        succeed({"relight", "flat.prt", "top.hdr", "-o", "flat.npy"});
+        EXPECT_EQ(said.find("+Z is up, by the custom of .stl") != std::string::npos, up.empty());
+        return npy_values(read("flat.npy")).at(0)[0] > 1.0f;
+    };
+    EXPECT_TRUE(top_is_lit({}));
+    EXPECT_TRUE(top_is_lit({"--up", "z"}));
+    EXPECT_FALSE(top_is_lit({"--up", "y"}));
+    misuse({"precompute", "flat.stl", "-o", "new.prt", "--up", "w"}, "--up");
 }
 
 } // namespace

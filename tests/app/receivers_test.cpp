@@ -76,9 +76,10 @@ TEST_F(Receivers, AllCommandsTakePixels) {
     make_pixels();
     write("frame.0001.hdr", lamp_hdr(32));
     write("frame.0002.hdr", lamp_hdr(64));
-    succeed({"animate", "px.prt", "frame.%04d.hdr", "-o", "lit.%04d.png", "--vertices", "all.npy"});
+    succeed({"animate", "px.prt", "frame.%04d.hdr", "-o", "lit.%04d.png", "--vertices", "all.npy",
+             "--exposure", "1"});
     EXPECT_EQ(png_size(read("lit.0002.png")), (Size{24, 16}));
-    succeed({"relight", "px.prt", "frame.0002.hdr", "-o", "one.png"});
+    succeed({"relight", "px.prt", "frame.0002.hdr", "-o", "one.png", "--exposure", "1"});
     EXPECT_EQ(read("lit.0002.png"), read("one.png"));
     succeed({"edit", "px.prt", "white.hdr", "-o", "edited.png", "--disc", "0,1,0", "--gain", "3"});
     EXPECT_EQ(png_size(read("edited.png")), (Size{24, 16}));
@@ -153,7 +154,7 @@ TEST_F(Receivers, OutputsThatDoNotFit) {
         fail({"view", scene, "white.hdr", "--screenshot", "new.png"}, {});
     }
     misuse({"relight", "tx.prt", "white.hdr", "-o", "new.png", "--transparent"},
-           "--transparent: expected a scene whose receivers are pixels");
+           "--transparent: expected no background for a scene whose receivers are texels");
     misuse({"relight", "px.prt", "white.hdr", "-o", "new.npy", "--albedo", "mesh"}, "--albedo");
 }
 

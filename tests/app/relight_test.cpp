@@ -126,19 +126,91 @@ TEST_F(Relight, ExposureAndAlbedoAreFactors) {
     }
 }
 
-TEST_F(Relight, SaysWhichExposureSuitsAPicture) {
+TEST_F(Relight, ExposureSuitsThePictureAndIsSaid) {
     const auto out = [&](const std::string& name, const std::vector<std::string>& more) {
         std::vector<std::string> command = {"relight", "scene.prt", "white.hdr", "-o",
                                             name,      "--size",    "32x32"};
         command.insert(command.end(), more.begin(), more.end());
-        return succeed(command).out;
+        return succeed(command);
     };
-    EXPECT_NE(out("new.png", {"--albedo", "8"}).find("; --exposure -3 suits it better\n"),
+    // All of the octahedron shines with 0.5, and 0.8 is what the brightest parts get.
+    const std::string picture = out("auto.png", {}).out;
+    EXPECT_NE(picture.find("; exposure 0.68 (auto)\n"), std::string::npos) << picture;
+    out("given.png", {"--exposure", "0.68"});
+    EXPECT_TRUE(read("auto.png") == read("given.png"));
+    EXPECT_NE(out("new.png", {"--albedo", "8"}).out.find("; exposure -3.32 (auto)\n"),
               std::string::npos);
-    EXPECT_EQ(out("new.png", {"--albedo", "8", "--exposure", "-3"}).find("suits"),
+    EXPECT_NE(out("new.png", {"--exposure", "-3"}).out.find("; exposure -3.00\n"),
               std::string::npos);
-    EXPECT_EQ(out("new.png", {}).find("suits"), std::string::npos);
-    EXPECT_EQ(out("new.npy", {"--albedo", "8"}).find("suits"), std::string::npos);
+    EXPECT_NEAR(out("new.png", {"--json"}).json()["exposure"].get<double>(), 0.68, 1e-6);
+    EXPECT_NEAR(out("new.glb", {"--json"}).json()["exposure"].get<double>(), 0.68, 1e-6);
+    // Data are not touched.
+    EXPECT_EQ(out("new.exr", {"--json"}).json()["exposure"], 0.0);
+    EXPECT_EQ(out("new.npy", {"--json"}).json()["exposure"], 0.0);
+    EXPECT_EQ(out("new.npy", {}).out.find("exposure"), std::string::npos);
+}
+
+TEST_F(Relight, ToneMapsAreForPngOnly) {
+    const auto bytes = [&](const std::string& name, const std::string& tone) {
+        succeed({"relight", "scene.prt", "white.hdr", "-o", name, "--size", "32x32", "--exposure",
+                 "1", "--tone-map", tone});
+        return read(name);
+    };
+    const std::string neutral = bytes("new.png", "neutral");
+    succeed({"relight", "scene.prt", "white.hdr", "-o", "plain.png", "--size", "32x32",
+             "--exposure", "1"});
+    EXPECT_TRUE(read("plain.png") == neutral);
+    for (const char* tone : {"agx", "aces", "none"}) {
+        EXPECT_FALSE(bytes("new.png", tone) == neutral) << tone;
+        EXPECT_TRUE(bytes("new.exr", tone) == bytes("new.exr", "neutral")) << tone;
+    }
+    refuse({"--tone-map", "reinhard"}, 2);
+}
+
+TEST_F(Relight, CameraByAngles) {
+    const auto bytes = [&](const std::vector<std::string>& camera) {
+        std::vector<std::string> command = {"relight",  "scene.prt", "white.hdr", "-o",
+                                            "seen.exr", "--size",    "32x32"};
+        command.insert(command.end(), camera.begin(), camera.end());
+        succeed(command);
+        return read("seen.exr");
+    };
+    EXPECT_TRUE(bytes({}) == bytes({"--camera", "24,20"}));
+    EXPECT_TRUE(bytes({"--camera", "24,20"}) == bytes({"--camera", "24,20,,35"}));
+    EXPECT_TRUE(bytes({"--camera", "24,20", "--fov", "60"}) == bytes({"--camera", "24,20,,60"}));
+    EXPECT_FALSE(bytes({"--camera", "24,20"}) == bytes({"--camera", "24,20,9"}));
+    EXPECT_TRUE(bytes({"--front", "+x", "--camera=0,0,5"}) ==
+                bytes({"--eye", "5,0,0", "--target", "0,0,0"}));
+    EXPECT_TRUE(bytes({"--front", "-x", "--camera=0,0,5"}) ==
+                bytes({"--eye", "-5,0,0", "--target", "0,0,0"}));
+    EXPECT_TRUE(bytes({"--camera=0,0,5"}) == bytes({"--eye", "0,0,5", "--target", "0,0,0"}));
+    for (const char* camera : {"1", "a,b", "1,2,3,4,5", "1,2,", "0,91", "0,0,-1", "0,0,0", "nan,0",
+                               "0,0,,180", "0,0,5,0", ",1"})
+        refuse({"--camera", camera}, 2);
+    refuse({"--camera", "1,2", "--eye", "1,2,3"}, 2);
+    refuse({"--camera", "1,2,,30", "--fov", "30"}, 2);
+    refuse({"--front", "+y"}, 2);
+}
+
+TEST_F(Relight, Backgrounds) {
+    write("lamp.hdr", lamp_hdr(4)); // beside the octahedron
+    const auto pixels = [&](const std::vector<std::string>& options) {
+        std::vector<std::string> command = {"relight", "scene.prt", "lamp.hdr", "-o",   "new.exr",
+                                            "--size",  "32x32",     "--camera", "0,0,9"};
+        command.insert(command.end(), options.begin(), options.end());
+        succeed(command);
+        return read("new.exr");
+    };
+    EXPECT_TRUE(pixels({}) == pixels({"--background", "sharp"}));
+    EXPECT_FALSE(pixels({}) == pixels({"--background", "blur=20"}));
+    EXPECT_FALSE(pixels({}) == pixels({"--background", "0.5"}));
+    EXPECT_TRUE(pixels({"--background", "0.5,0.5,0.5"}) == pixels({"--background", "0.5"}));
+    // A channel more.
+    EXPECT_GT(pixels({"--background", "none"}).size(), pixels({"--background", "0"}).size());
+    EXPECT_TRUE(pixels({"--background", "none"}) == pixels({"--transparent"}));
+    for (const char* background : {"red", "blur", "blur=", "blur=0", "blur=181", "1,2", "-1", ""})
+        refuse({"--background", background}, 2);
+    refuse({"--background", "0.5", "--transparent"}, 2);
 }
 
 TEST_F(Relight, AlbedoOfTheMeshIsItsVertexColours) {

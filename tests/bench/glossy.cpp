@@ -83,15 +83,14 @@ std::pair<double, double> lobes_alone(const prt::Transfer& transfer, const cubem
 
 Scene shiny_scene(const Mesh& mesh, const Settings& settings, float roughness,
                   PrecomputeReport& report) {
-    PrecomputeOptions options{
-        .tolerance = settings.tolerance,
-        .face_resolution = settings.resolution,
-        .view = View{relight::automatic_camera(mesh.geometry, {.width = 512, .height = 512})},
-        .surface = everywhere({.albedo = glm::vec3(0.3f),
-                               .specular = glm::vec3(0.5f),
-                               .highlight = prt::Highlight::Ggx,
-                               .roughness_or_exponent = roughness}),
-        .glossy_tolerance = settings.glossy_tolerance};
+    PrecomputeOptions options{.tolerance = settings.tolerance,
+                              .face_resolution = settings.resolution,
+                              .view = View{relight::framed(mesh.geometry, {.aspect = 1.0f})},
+                              .surface = everywhere({.albedo = glm::vec3(0.3f),
+                                                     .specular = glm::vec3(0.5f),
+                                                     .highlight = prt::Highlight::Ggx,
+                                                     .roughness_or_exponent = roughness}),
+                              .glossy_tolerance = settings.glossy_tolerance};
     if (settings.pixels)
         options.receivers = Pixels{.width = 512, .height = 512};
     return precompute(mesh, options, &report);

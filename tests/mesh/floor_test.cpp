@@ -27,8 +27,9 @@ TEST(Floor, AppendsAGridUnderTheMesh) {
     EXPECT_TRUE(
         std::equal(before.triangles.begin(), before.triangles.end(), mesh.triangles.begin()));
     EXPECT_NEAR(area(mesh) - BoxArea, 144.0, 1e-4) << "four times the larger extent, 3, squared";
-    EXPECT_EQ(mesh.positions[8], glm::vec3(0.5f - 6.0f, 0.0f, 1.5f - 6.0f));
-    EXPECT_EQ(mesh.positions.back(), glm::vec3(0.5f + 6.0f, 0.0f, 1.5f + 6.0f));
+    const float height = mesh.positions[8].y;
+    EXPECT_EQ(mesh.positions[8], glm::vec3(0.5f - 6.0f, height, 1.5f - 6.0f));
+    EXPECT_EQ(mesh.positions.back(), glm::vec3(0.5f + 6.0f, height, 1.5f + 6.0f));
     EXPECT_EQ(mesh.normals.back(), glm::vec3(0, 1, 0));
     EXPECT_EQ(mesh.colors[0], glm::vec3(0, 0, 1));
     EXPECT_EQ(mesh.colors.back(), glm::vec3(1.0f));
@@ -36,6 +37,33 @@ TEST(Floor, AppendsAGridUnderTheMesh) {
     const std::vector<glm::vec3> smooth = smooth_normals(mesh);
     for (std::size_t i = 8; i < mesh.num_vertices(); ++i)
         EXPECT_EQ(smooth[i], glm::vec3(0, 1, 0)) << "counter-clockwise seen from above";
+}
+
+TEST(Floor, LiesAHairBelowTheLowestPoint) {
+    for (const float far_off : {0.0f, 1e6f}) {
+        TriangleMesh mesh = box();
+        for (glm::vec3& position : mesh.positions)
+            position += glm::vec3(far_off);
+        append_floor(mesh, 5);
+        const float hair = mesh.positions[0].y - mesh.positions.back().y;
+        // More than the lift of rays (prt::automatic_bias), and too little to be seen.
+        EXPECT_GT(hair, 1.5e-4f * bounds(mesh).diagonal());
+        EXPECT_LT(hair, far_off == 0.0f ? 0.01f : 1.1f);
+        EXPECT_GT(hair, 4.0f * std::numeric_limits<float>::epsilon() * far_off);
+    }
+}
+
+TEST(Floor, IsDenserUnderTheMesh) {
+    TriangleMesh mesh = box();
+    append_floor(mesh, 101, 4.0f);
+    const FloorPlace place = floor_place(std::span(mesh.positions).subspan(8), 101);
+    EXPECT_NEAR(place.center.x, 0.5f, 1e-5f);
+    EXPECT_NEAR(place.center.y, 1.5f, 1e-5f);
+    EXPECT_NEAR(place.half_side, 6.0f, 1e-5f);
+    EXPECT_NEAR(place.spacing_inside, 0.4f * 0.12f, 2e-4f);
+    EXPECT_NEAR(place.spacing_outside, 2.2f * 0.12f, 0.01f);
+    for (std::size_t column = 0; column + 1 < 101; ++column)
+        EXPECT_LT(mesh.positions[8 + column].x, mesh.positions[9 + column].x);
 }
 
 TEST(Floor, OfTheSizeOfThePaper) {
@@ -51,7 +79,8 @@ TEST(Floor, UnderAnUprightMeshTakesTheDiagonal) {
     mesh.positions = {{0, 0, 0}, {0, 2, 0}, {0, 1, 0}};
     mesh.triangles = {{0, 1, 2}};
     append_floor(mesh, 2, 1.0f);
-    EXPECT_EQ(mesh.positions.back(), glm::vec3(1, 0, 1));
+    EXPECT_EQ(mesh.positions.back().x, 1.0f);
+    EXPECT_EQ(mesh.positions.back().z, 1.0f);
     EXPECT_TRUE(mesh.colors.empty());
 }
 

@@ -102,8 +102,7 @@ TEST(ObjReader, ColorsOfVertices) {
 TEST(ObjReader, SkipsFacesOfFewerThanThreeCorners) {
     const TriangleMesh mesh = obj(box_obj() + "f 1 2\nf 3\nf\n");
     expect_box(mesh);
-    EXPECT_THAT(mesh.warnings,
-                testing::ElementsAre("3 of 10 faces have fewer than three corners"));
+    EXPECT_THAT(mesh.warnings, testing::ElementsAre("3 of 10 faces have fewer than three corners"));
     expect_refusal([] { return obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2\n"); },
                    "got 3 vertices and 1 faces");
 }

@@ -13,7 +13,6 @@
 
 #include "relight/binned_environment.h"
 #include "relight/pictures/array_file.h"
-#include "relight/pictures/picture.h"
 #include "relight/relighter.h"
 #include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
@@ -172,23 +171,6 @@ TEST_F(Frames, WhatDoesNotFitIsRefused) {
     EXPECT_THROW(static_cast<void>(binner_.bin(cubemap::CubeMap(4, glm::vec3(-1.0f)))),
                  std::invalid_argument);
     EXPECT_EQ(copy(relighter_.radiance()), before);
-}
-
-TEST(PictureView, DrawsWhatDrawDraws) {
-    const scenes::RelitScene& scene = relit_scene();
-    const cubemap::CubeMap sky = scenes::smooth_environment(16);
-    const PictureOptions options{.width = 40, .height = 30, .samples_per_axis = 2};
-    const Camera camera = automatic_camera(scene.mesh, options);
-    const PictureView kept(scene.mesh, scene.rays, camera, options);
-    const PictureView traced(scene.mesh, scene.rays, camera, options, 100);
-    for (const std::uint32_t seed : {1u, 2u}) {
-        const cubemap::CubeMap light = scenes::random_environment(16, seed);
-        const std::vector<glm::vec3> radiance = relight(scene.transfer, light);
-        const Picture expected = draw(scene.mesh, scene.rays, radiance, sky, camera, options);
-        EXPECT_EQ(kept.draw(radiance, sky).pixels, expected.pixels);
-        EXPECT_EQ(traced.draw(radiance, sky).pixels, expected.pixels);
-    }
-    EXPECT_THROW(static_cast<void>(kept.draw({}, sky)), std::invalid_argument);
 }
 
 TEST(NpyFrames, AreTheFramesOneAfterTheOther) {

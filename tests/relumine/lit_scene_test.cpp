@@ -55,7 +55,7 @@ TEST(LitScene, MayBeMovedWhileLit) {
     Painter painter(*first, {.width = 8, .height = 6});
     LitScene second = std::move(*first);
     first.reset();
-    const Picture picture = painter.draw(second.radiance(), second.environment());
+    const Picture picture = painter.draw(second.lighting());
     EXPECT_EQ(picture.pixels, second.draw({.width = 8, .height = 6}).pixels);
     second.set_layers({disc({1, 1, 0}, 3.0f)});
     LitScene third(boulder_scene());

@@ -28,6 +28,16 @@ TEST_F(MeshFile, KnowsItsOriginAndItsFloor) {
     EXPECT_EQ(standing.floor_vertices, 5u);
 }
 
+TEST_F(MeshFile, IsTurnedUpright) {
+    const mesh::TriangleMesh squares = scenes::two_squares();
+    mesh::save(file("squares.ply"), squares, squares.colors);
+    const Mesh turned = load_mesh(file("squares.ply"), {.up = mesh::UpAxis::Z});
+    for (std::size_t i = 0; i < 8; ++i) {
+        EXPECT_EQ(turned.geometry.normals[i], glm::vec3(0, 0, -1));
+        EXPECT_EQ(turned.geometry.positions[i].y, squares.positions[i].z);
+    }
+}
+
 TEST_F(MeshFile, ThatIsAbsentIsNamed) {
     try {
         static_cast<void>(load_mesh(file("absent.ply")));

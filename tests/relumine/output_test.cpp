@@ -42,7 +42,7 @@ TEST_F(Output, OfManyFramesIsThatOfOne) {
     Painter painter(scene, {.width = 20, .height = 10, .samples_per_axis = 2});
     for (std::uint32_t seed = 1; seed < 4; ++seed) {
         scene.light(scenes::random_environment(8, seed));
-        EXPECT_EQ(painter.draw(scene.radiance(), scene.environment()).pixels,
+        EXPECT_EQ(painter.draw(scene.lighting()).pixels,
                   scene.draw({.width = 20, .height = 10, .samples_per_axis = 2}).pixels);
     }
 }
@@ -66,7 +66,7 @@ TEST_F(Output, IsWrittenByExtension) {
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         EXPECT_EQ(written.pixels[i], 2.0f * picture.pixels[i]);
 
-    scene.save(file("lit.ply"), {.albedo = glm::vec3(0.5f)});
+    scene.save(file("lit.ply"), {.albedo = glm::vec3(0.5f), .exposure_ev = 0.0});
     EXPECT_EQ(mesh::load(file("lit.ply")).colors,
               colors_of(scene.scene(), scene.radiance(), glm::vec3(0.5f)));
     for (const char* name : {"lit.png", "lit.glb", "lit.npy"}) {
@@ -82,7 +82,7 @@ TEST_F(Output, OfPixelsIsTheirPicture) {
     const Picture opaque = scene.draw();
     EXPECT_EQ(opaque.width, 9u);
     EXPECT_TRUE(opaque.alpha.empty());
-    EXPECT_EQ(scene.draw({.transparent = true}).alpha.size(), 45u);
+    EXPECT_EQ(scene.draw({.background = NothingBehind{}}).alpha.size(), 45u);
     EXPECT_THROW(scene.save(file("pixels.ply")), std::invalid_argument);
     EXPECT_FALSE(is_output_of("pixels.GLB", scene.scene()));
     EXPECT_TRUE(is_output_of("pixels.PNG", scene.scene()));

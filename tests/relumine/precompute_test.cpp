@@ -65,7 +65,7 @@ TEST(Precompute, LightsPixelsOfAView) {
     const Scene automatic =
         precompute(mesh, {.tolerance = Tolerance, .receivers = Pixels{.width = 12, .height = 8}});
     EXPECT_EQ(std::get<prt::PixelLayout>(automatic.layout).camera,
-              relight::automatic_camera(mesh, {.width = 12, .height = 8}));
+              relight::framed(mesh, {.aspect = 12.0f / 8.0f}));
 }
 
 TEST(Precompute, LightsTexelsOfALightmap) {
@@ -134,7 +134,7 @@ TEST(Precompute, HighlightsNeedAView) {
     };
     const Scene shiny = precompute(boulder(), seen, &report);
     EXPECT_TRUE(shiny.transfer.glossy);
-    EXPECT_EQ(shiny.settings.view, relight::automatic_camera(shiny.mesh));
+    EXPECT_EQ(shiny.settings.view, relight::framed(shiny.mesh));
     EXPECT_EQ(shiny.settings.glossy_tolerance, seen.glossy_tolerance);
     ASSERT_TRUE(report.highlights);
     EXPECT_GT(report.highlights->num_entries, 0u);

@@ -42,14 +42,41 @@ TEST(SetColors, ReachesTheTransfer) {
     EXPECT_THROW(set_colors(plain, {.albedo = glm::vec3(0.25f)}), std::invalid_argument);
 }
 
+TEST(SetColors, LeavesTheFloorAlone) {
+    Mesh mesh(scenes::boulder());
+    mesh::append_floor(mesh.geometry, 4);
+    mesh.floor_vertices = 4;
+    Scene scene = precompute(std::move(mesh), {.tolerance = scenes::Tolerance,
+                                               .surface = everywhere({.albedo = glm::vec3(0.5f)})});
+    const std::size_t first = scene.mesh.num_vertices() - 16;
+    EXPECT_EQ(first_floor_vertex(scene), first);
+    set_colors(scene, {.albedo = glm::vec3(0.25f)});
+    for (std::size_t i = 0; i < scene.mesh.num_vertices(); ++i)
+        EXPECT_EQ(scene.receivers.surfaces[i].albedo, glm::vec3(i < first ? 0.25f : 1.0f));
+}
+
+TEST(FloorReceivers, AreThoseOfTheAddedFloor) {
+    Mesh mesh(scenes::two_squares());
+    mesh::append_floor(mesh.geometry, 3);
+    mesh.floor_vertices = 3;
+    const Scene scene = precompute(std::move(mesh), {.tolerance = 0.2f});
+    const std::vector<bool> is_floor = floor_receivers(scene);
+    ASSERT_EQ(is_floor.size(), 17u);
+    for (std::size_t i = 0; i < 17; ++i)
+        EXPECT_EQ(is_floor[i], i >= 8);
+    EXPECT_TRUE(floor_receivers(unclustered_scene(scenes::two_squares())).empty());
+    Scene damaged = scene;
+    damaged.settings.floor_vertices = 5;
+    EXPECT_FALSE(first_floor_vertex(damaged));
+}
+
 TEST(CameraOf, IsTheViewThatHighlightsAreFor) {
     const Camera camera{.eye = {3, 2, 1}, .target = {0, 0, 0}};
     const Scene seen = precompute(scenes::boulder(),
                                   {.tolerance = scenes::Tolerance, .view = View{.camera = camera}});
     EXPECT_EQ(camera_of(seen), camera);
     const Scene scene = precompute(scenes::boulder(), {.tolerance = scenes::Tolerance});
-    EXPECT_EQ(camera_of(scene, {.width = 200, .height = 100}, 20.0f),
-              relight::automatic_camera(scene.mesh, {.width = 200, .height = 100}, 20.0f));
+    EXPECT_EQ(camera_of(scene, 2.0f), relight::framed(scene.mesh, {.aspect = 2.0f}));
 }
 
 TEST(NearestReceiver, IsFound) {

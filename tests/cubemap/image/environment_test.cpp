@@ -91,7 +91,7 @@ protected:
 TEST_F(BadPixelsTest, AreRefusedWithCountAndPosition) {
     EXPECT_EQ(message_of([&] { (void)load_environment(path_); }),
               path_.string() + ": expected finite radiance >= 0, got 3 NaN/Inf and 1 negative "
-                               "pixels (0.62 % of the light), first at (3, 1); use --fix-env");
+                               "pixels (4.8 % of the light), first at (3, 1); use --fix-env");
 }
 
 TEST_F(BadPixelsTest, AreFixedWhenAskedFor) {

@@ -359,7 +359,9 @@ TEST(Resample, LatLongsAgreeWithPolygonsOfTheSphere) {
             fill_randomly(image.pixels, width + resolution);
             const CubeMap plain = from_polygons(image, resolution),
                           fast = resample(image, resolution);
-            EXPECT_LT(largest_difference(fast.texels, plain.texels), 2e-5)
+            // The polygons have short arcs in place of parallels, which moves up to 3e-4 of a
+            // texel's area between the rows of such coarse maps.
+            EXPECT_LT(largest_difference(fast.texels, plain.texels), 5e-4)
                 << label(image, resolution);
             EXPECT_NEAR(total_power(fast).y / total_power(plain).y, 1.0, 1e-6);
         }

@@ -1,5 +1,6 @@
 #include "relight/pictures/exposure.h"
 
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -7,12 +8,48 @@
 namespace relumine::relight {
 namespace {
 
-TEST(SuitableExposure, LeavesWhatIsFineAndLiftsWhatIsDark) {
-    EXPECT_EQ(suitable_exposure_ev(std::vector(100, glm::vec3(0.9f))), 0.0f);
-    EXPECT_EQ(suitable_exposure_ev(std::vector(100, glm::vec3(1.0f / 64.0f))), 6.0f);
-    EXPECT_EQ(suitable_exposure_ev(std::vector(100, glm::vec3(256.0f))), -8.0f);
+TEST(SuitableExposure, PutsTheBrightPartsBelowWhite) {
+    for (const float brightness : {1e-6f, 0.02f, 0.8f, 3.0f, 500.0f})
+        EXPECT_NEAR(suitable_exposure_ev(std::vector(100, glm::vec3(brightness))),
+                    std::log2(0.8f / brightness), 0.0051f);
+    // The largest channel counts.
+    EXPECT_NEAR(suitable_exposure_ev(std::vector(9, glm::vec3(0.1f, 3.2f, 0.0f))), -2.0f, 1e-6f);
+    // In hundredths of a stop, so that the printed value gives the same picture.
+    const float ev = suitable_exposure_ev(std::vector(100, glm::vec3(0.123f)));
+    EXPECT_NEAR(100.0f * ev, std::round(100.0f * ev), 1e-3f);
+}
+
+TEST(SuitableExposure, AFewGlintsDoNotDarkenIt) {
+    std::vector<glm::vec3> colors(1000, glm::vec3(0.4f));
+    for (std::size_t i = 0; i < 40; ++i)
+        colors[i] = glm::vec3(1000.0f);
+    EXPECT_NEAR(suitable_exposure_ev(colors), 1.0f, 1e-6f);
+    for (std::size_t i = 40; i < 60; ++i)
+        colors[i] = glm::vec3(1000.0f);
+    EXPECT_LT(suitable_exposure_ev(colors), -8.0f);
+}
+
+TEST(SuitableExposure, LiftsWhatIsMostlyDark) {
+    std::vector<glm::vec3> colors(1000, glm::vec3(0.0f));
+    std::fill(colors.begin(), colors.begin() + 100, glm::vec3(0.8f));
+    EXPECT_EQ(suitable_exposure_ev(colors), 1.5f);
+    std::fill(colors.begin() + 100, colors.end(), glm::vec3(0.05f));
+    EXPECT_EQ(suitable_exposure_ev(colors), 1.0f);
+    std::fill(colors.begin() + 100, colors.end(), glm::vec3(0.2f));
+    EXPECT_EQ(suitable_exposure_ev(colors), 0.0f);
+}
+
+TEST(SuitableExposure, WeightsCount) {
+    const std::vector<glm::vec3> colors = {glm::vec3(1.6f), glm::vec3(0.4f), glm::vec3(99.0f)};
+    EXPECT_EQ(suitable_exposure_ev(colors, std::vector{1.0f, 1.0f, 0.0f}), -1.0f);
+    EXPECT_EQ(suitable_exposure_ev(colors, std::vector{0.01f, 1.0f, 0.0f}), 1.0f);
+}
+
+TEST(SuitableExposure, OfNothingIsZero) {
     EXPECT_EQ(suitable_exposure_ev(std::vector(100, glm::vec3(0.0f))), 0.0f);
     EXPECT_EQ(suitable_exposure_ev({}), 0.0f);
+    EXPECT_EQ(suitable_exposure_ev(std::vector(3, glm::vec3(1.0f)), std::vector(3, 0.0f)), 0.0f);
+    EXPECT_EQ(suitable_exposure_ev(std::vector(3, glm::vec3(1e38f))), -100.0f);
 }
 
 } // namespace

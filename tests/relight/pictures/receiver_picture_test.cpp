@@ -16,6 +16,7 @@
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/receivers/texel_receivers.h"
 #include "relight/exact.h"
+#include "relight/pictures/picture_view.h"
 #include "relight/relighter.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/environments.h"
@@ -48,9 +49,10 @@ TEST(ReceiverPicture, EqualsADirectDrawOfTheSameRadiance) {
         std::vector<glm::vec3> radiance;
         for (const prt::MeshPoint& point : pixels.receivers.points)
             radiance.push_back(prt::value_at(mesh, colors, point));
-        const Picture composed = compose(pixels.layout, radiance, sky);
-        const Picture drawn = draw(mesh, rays, colors, sky, camera,
-                                   {.width = 64, .height = 48, .samples_per_axis = n});
+        const Picture composed = compose(pixels.layout, radiance, map_backdrop(sky));
+        const Picture drawn =
+            PictureView(mesh, rays, camera, {.width = 64, .height = 48, .samples_per_axis = n})
+                .draw({.radiance = colors}, map_backdrop(sky));
         ASSERT_EQ(composed.pixels.size(), drawn.pixels.size());
         EXPECT_TRUE(composed.alpha.empty());
         for (std::size_t i = 0; i < drawn.pixels.size(); ++i)
@@ -58,8 +60,8 @@ TEST(ReceiverPicture, EqualsADirectDrawOfTheSameRadiance) {
 
         // Cut out and laid over the background alone, it is the same picture.
         const Picture cut_out = compose_cut_out(pixels.layout, radiance);
-        const Picture empty =
-            compose(prt::PixelLayout{.camera = camera, .width = 64, .height = 48}, {}, sky);
+        const Picture empty = compose(prt::PixelLayout{.camera = camera, .width = 64, .height = 48},
+                                      {}, map_backdrop(sky));
         for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
             const float alpha = cut_out.alpha[i];
             if (alpha == 1.0f || alpha == 0.0f) {
@@ -79,17 +81,24 @@ TEST(ReceiverPicture, APixelIsTheMeanOfItsSamples) {
                                   .samples = {0, 1, 3, 6}};
     const std::vector<glm::vec3> radiance = {glm::vec3(1), glm::vec3(2), glm::vec3(3),
                                              glm::vec3(8)};
-    const Picture picture = compose(layout, radiance, cubemap::CubeMap(4, glm::vec3(0.5f)));
+    const Backdrop grey = plain_backdrop(glm::vec3(0.5f));
+    const Picture picture = compose(layout, radiance, grey);
     EXPECT_LT(difference(picture.pixels[0], glm::vec3(6.5f / 4.0f)), 1e-6f);
     EXPECT_LT(difference(picture.pixels[1], glm::vec3(9.5f / 4.0f)), 1e-6f);
     const Picture cut_out = compose_cut_out(layout, radiance);
     EXPECT_EQ(cut_out.alpha, (std::vector<float>{0.75f, 0.25f}));
     EXPECT_EQ(cut_out.pixels[0], glm::vec3(1.5f));
     EXPECT_EQ(cut_out.pixels[1], glm::vec3(2.0f));
-    EXPECT_THROW(
-        static_cast<void>(compose(layout, std::span(radiance).first(3), cubemap::CubeMap(4))),
-        std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(compose(layout, radiance, {})), std::invalid_argument);
+    // A receiver that is half transparent shows half of what is behind it.
+    const std::vector<float> opacity = {1.0f, 0.5f, 1.0f, 0.0f};
+    EXPECT_LT(difference(compose(layout, radiance, grey, opacity).pixels[0],
+                         glm::vec3((1.0f + 1.0f + 0.25f + 0.5f + 3.0f) / 4.0f)),
+              1e-6f);
+    EXPECT_EQ(compose_cut_out(layout, radiance, opacity).alpha, (std::vector<float>{0.625f, 0.0f}));
+    EXPECT_THROW(static_cast<void>(compose(layout, std::span(radiance).first(3), grey)),
+                 std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(compose(layout, radiance, grey, std::span(opacity).first(3))),
+                 std::invalid_argument);
     EXPECT_THROW(static_cast<void>(compose_cut_out(layout, {})), std::invalid_argument);
 }
 
@@ -147,10 +156,13 @@ TEST(ReceiverPicture, RelitSphereEqualsTheDrawnOne) {
     const prt::PixelReceivers pixels =
         prt::pixel_receivers(sphere, rays, {.camera = camera, .width = 40, .height = 40});
     const Picture composed =
-        compose(pixels.layout, relight(prt::precompute(pixels.receivers, rays, options), sky), sky);
-    const Picture drawn = draw(
-        sphere, rays, relight(prt::precompute(prt::vertex_receivers(sphere), rays, options), sky),
-        sky, camera, {.width = 40, .height = 40, .samples_per_axis = 1});
+        compose(pixels.layout, relight(prt::precompute(pixels.receivers, rays, options), sky),
+                map_backdrop(sky));
+    const std::vector<glm::vec3> of_vertices =
+        relight(prt::precompute(prt::vertex_receivers(sphere), rays, options), sky);
+    const Picture drawn =
+        PictureView(sphere, rays, camera, {.width = 40, .height = 40, .samples_per_axis = 1})
+            .draw({.radiance = of_vertices}, map_backdrop(sky));
     double error = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < drawn.pixels.size(); ++i) {
         const glm::vec3 d = composed.pixels[i] - drawn.pixels[i];

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "prt/glossy/surface_sampling.h"
-#include "relight/pictures/picture.h"
+#include "relight/pictures/picture_view.h"
 #include "tests/prt/textured_square.h"
 
 namespace relumine::relight {
@@ -50,11 +50,9 @@ TEST(SurfaceColors, PicturesShowWhatIsFinerThanTheMesh) {
     const std::vector<glm::vec3> radiance(4, glm::vec3(1.0f));
     const Camera camera{.eye = {0, 0, 4}, .target = {0, 0, 0}, .fov_degrees = 28.072487f};
     const PictureOptions options{.width = 8, .height = 8, .samples_per_axis = 1};
-    const cubemap::CubeMap black(1);
-    const Picture picture =
-        draw(mesh, rays, radiance, black, camera, options, SurfaceColors(mesh, white));
+    const SurfaceColors textures(mesh, white);
     const PictureView view(mesh, rays, camera, options);
-    EXPECT_EQ(view.draw(radiance, black, SurfaceColors(mesh, white)).pixels, picture.pixels);
+    const Picture picture = view.cut_out({.radiance = radiance, .textures = &textures});
     // The square fills the picture; two pixels a texel. Between its neighbours' centres a texel
     // is mixed with them: a quarter.
     for (std::size_t y = 1; y < 7; ++y) {
@@ -64,7 +62,18 @@ TEST(SurfaceColors, PicturesShowWhatIsFinerThanTheMesh) {
         EXPECT_GT(row[4].g, 0.7f);
         EXPECT_LT(row[4].b, 0.01f);
     }
-    const Picture plain = draw(mesh, rays, radiance, black, camera, options);
+    // A light that is traced shows them, too.
+    const std::vector<glm::vec3> black(4, glm::vec3(0.0f));
+    const glm::dvec3 w(0.0, 0.0, 3.14159265358979);
+    const std::vector<SharpLight> lights = {{.direction = {0, 0, 1}, .irradiance = {w, w, w}}};
+    const Picture traced = view.cut_out({.radiance = black,
+                                         .lights = lights,
+                                         .surfaces = white,
+                                         .textures = &textures,
+                                         .bias = 1e-4f});
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        EXPECT_LT(glm::distance(traced.pixels[i], picture.pixels[i]), 1e-4f) << i;
+    const Picture plain = view.cut_out({.radiance = radiance});
     EXPECT_EQ(plain.pixels[8 * 4 + 2], glm::vec3(1.0f)) << "without colours, the vertices'";
 }
 

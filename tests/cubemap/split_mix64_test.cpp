@@ -1,10 +1,10 @@
-#include "lights/split_mix64.h"
+#include "cubemap/split_mix64.h"
 
 #include <array>
 
 #include <gtest/gtest.h>
 
-namespace relumine::lights {
+namespace relumine::cubemap {
 namespace {
 
 // The published first numbers for this seed, as the reference program of S. Vigna prints them.
@@ -33,4 +33,4 @@ TEST(SplitMix64, NumbersBelowABoundAreAllReached) {
 }
 
 } // namespace
-} // namespace relumine::lights
+} // namespace relumine::cubemap

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace relumine::lights {
+namespace relumine::cubemap {
 
 /// A stream of 64-bit numbers: a counter whose values are mixed.
 class SplitMix64 {
@@ -31,4 +31,4 @@ private:
     std::uint64_t counter_;
 };
 
-} // namespace relumine::lights
+} // namespace relumine::cubemap

@@ -1,0 +1,75 @@
+// Which surfaces a receiver sees where it does not see the sky.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/bounces/bounce_matrix.h"
+#include "prt/receivers/receivers.h"
+#include "prt/transfer.h"
+#include "prt/visibility/ray_scene.h"
+
+namespace relumine::prt {
+
+/// Lights that decide how many rays a receiver needs: a white sky, then suns along +X, -X, +Y, -Y,
+/// +Z and -Z.
+inline constexpr std::size_t NumProbeLights = 7;
+
+/// Direct radiance of a receiver of albedo 1 under each probe light. The sky has radiance 1, so the
+/// first value is the open part of the hemisphere. A sun has irradiance pi on a surface that faces
+/// it.
+using ProbeRadiance = std::array<float, NumProbeLights>;
+
+struct BounceOptions {
+    /// The limit of the standard error of one bounce under any probe light, as a radiance, for
+    /// albedo 1: RMS over the 16 receivers of a block.
+    float tolerance = 0.02f;
+    /// Directions that each receiver looks into at first. They are doubled until the tolerance
+    /// holds.
+    std::uint32_t min_directions = 64;
+    /// A power of two times min_directions at which the doubling ends.
+    std::uint32_t max_directions = 4096;
+    /// Surfaces radiate from both sides; otherwise their backs are black.
+    bool two_sided = false;
+    /// Lift of the rays' origins, as in PrecomputeOptions.
+    float bias = 0.0f;
+    /// Polled a few times a second or more often.
+    std::stop_token stop = {};
+    /// Receives the fraction done in [0, 1]; one call at a time.
+    std::function<void(double)> on_progress = {};
+};
+
+struct BounceStatistics {
+    std::uint64_t num_rays = 0;
+    std::uint64_t num_hits = 0;
+    /// Entries of the matrix: hits on surfaces that face the ray.
+    std::uint64_t num_columns = 0;
+    /// Of all receivers: the part of the hemisphere that surfaces close.
+    double mean_closure = 0.0;
+    /// Estimated standard error of one bounce, RMS over all receivers, worst of the probe lights.
+    double rms_error = 0.0;
+    double seconds = 0.0;
+};
+
+/// Finds the emitters of each vertex: cosine-distributed directions, without those in clusters that
+/// it sees whole, are traced to the first surface, and a vertex of the triangle is drawn by its
+/// barycentric weight, which is unbiased where the nearest is not. The row's sum is the closed part
+/// of the hemisphere, exact to the transfer's tolerance: 1 - B under a white sky.
+///
+/// Shape:   `probes` is [num_receivers] by place.
+/// Memory:  4 bytes per column, some 30 to 100 columns per receiver.
+/// Threads: parallel over blocks (TBB). A row depends on its block only, not on threads.
+/// Throws:  std::invalid_argument where sizes differ, receivers are no vertices of the mesh, or
+///          options are out of range; Cancelled.
+[[nodiscard]] BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh,
+                                              const Receivers& receivers, const Transfer& transfer,
+                                              std::span<const ProbeRadiance> probes,
+                                              const RayScene& rays, const BounceOptions& options,
+                                              BounceStatistics* statistics = nullptr);
+
+} // namespace relumine::prt

@@ -1,0 +1,377 @@
+#include "relight/bounces/bounce_light.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "relight/bounces/bounce_kernel.h"
+
+namespace relumine::relight {
+
+namespace {
+
+/// Differences of earlier iterates that an accelerated step combines.
+constexpr std::size_t AndersonDepth = 3;
+
+/// More products than any scene needs whose light does not grow for ever.
+constexpr std::uint32_t MaxBounces = 1000;
+
+/// Rows that one task handles; sums over them are added in order, so that threads do not matter.
+constexpr std::size_t RowsPerTask = 1024;
+
+using Rgb = std::array<double, 3>;
+
+Rgb operator+(const Rgb& a, const Rgb& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+
+/// Solves the normal equations of up to AndersonDepth unknowns by Cholesky's method; a column that
+/// depends on those before gets the factor 0.
+std::array<double, AndersonDepth>
+least_squares(std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix,
+              std::array<double, AndersonDepth> right, std::size_t size) {
+    constexpr double SmallestPivot = 1e-12;
+    std::array<double, AndersonDepth> largest{};
+    std::array<bool, AndersonDepth> used{};
+    for (std::size_t i = 0; i < size; ++i)
+        largest[i] = matrix[i][i];
+    for (std::size_t i = 0; i < size; ++i) {
+        for (std::size_t k = 0; k < i; ++k)
+            if (used[k])
+                matrix[i][i] -= matrix[i][k] * matrix[i][k];
+        used[i] = matrix[i][i] > SmallestPivot * largest[i];
+        if (!used[i])
+            continue;
+        matrix[i][i] = std::sqrt(matrix[i][i]);
+        for (std::size_t j = i + 1; j < size; ++j) {
+            for (std::size_t k = 0; k < i; ++k)
+                if (used[k])
+                    matrix[j][i] -= matrix[j][k] * matrix[i][k];
+            matrix[j][i] /= matrix[i][i];
+        }
+        for (std::size_t k = 0; k < i; ++k)
+            if (used[k])
+                right[i] -= matrix[i][k] * right[k];
+        right[i] /= matrix[i][i];
+    }
+    std::array<double, AndersonDepth> result{};
+    for (std::size_t i = size; i-- > 0;) {
+        if (!used[i])
+            continue;
+        double value = right[i];
+        for (std::size_t j = i + 1; j < size; ++j)
+            if (used[j])
+                value -= matrix[j][i] * result[j];
+        result[i] = value / matrix[i][i];
+    }
+    return result;
+}
+
+} // namespace
+
+class BounceLight::Impl {
+public:
+    Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
+        : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()), albedo_(size_),
+          direct_(size_), sent_(size_), indirect_(size_), next_(size_),
+          published_(size_, glm::vec3(0.0f)) {
+        if (matrix.num_rows() != size_)
+            throw std::invalid_argument(
+                fmt::format("expected bounces of {} receivers, got {}", size_, matrix.num_rows()));
+    }
+
+    void set_albedo(std::span<const glm::vec3> albedo) {
+        if (albedo.size() != size_)
+            throw std::invalid_argument(
+                fmt::format("expected the albedo of {} receivers, got {}", size_, albedo.size()));
+        float largest = 0.0f;
+        for (const glm::vec3& value : albedo)
+            for (int channel = 0; channel < 3; ++channel) {
+                if (!(value[channel] >= 0.0f && std::isfinite(value[channel])))
+                    throw std::invalid_argument(
+                        fmt::format("expected an albedo >= 0, got {}", value[channel]));
+                largest = std::max(largest, value[channel]);
+            }
+        const float safe = largest_safe_albedo();
+        if (largest > safe)
+            throw std::invalid_argument(
+                fmt::format("expected an albedo up to {:.4g}, beyond which bounces grow for ever, "
+                            "got {}",
+                            safe, largest));
+        contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
+        for (std::size_t place = 0; place < size_; ++place)
+            albedo_[place] = padded(albedo[transfer_.order[place]]);
+    }
+
+    BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
+        const auto start = std::chrono::steady_clock::now();
+        set_direct(direct);
+        std::fill(indirect_.begin(), indirect_.end(), PaddedRgb{});
+        BounceReport report;
+        forget_steps();
+        const std::uint32_t last = limits.num_bounces.value_or(MaxBounces);
+        while (report.num_bounces < last && contraction_ > 0.0) {
+            report.error = bounce();
+            ++report.num_bounces;
+            if (!limits.num_bounces && report.error <= limits.tolerance) {
+                indirect_.swap(next_);
+                break;
+            }
+            if (limits.num_bounces)
+                indirect_.swap(next_);
+            else
+                accelerate();
+        }
+        publish();
+        report.seconds = seconds_since(start);
+        return report;
+    }
+
+    BounceReport step(std::span<const glm::vec3> direct) {
+        const auto start = std::chrono::steady_clock::now();
+        set_direct(direct);
+        BounceReport report;
+        forget_steps();
+        if (contraction_ > 0.0) {
+            report.error = bounce();
+            report.num_bounces = 1;
+            indirect_.swap(next_);
+        } else {
+            std::fill(indirect_.begin(), indirect_.end(), PaddedRgb{});
+        }
+        publish();
+        report.seconds = seconds_since(start);
+        return report;
+    }
+
+    [[nodiscard]] std::span<const glm::vec3> indirect() const { return published_; }
+
+private:
+    void forget_steps() {
+        history_size_ = 0;
+        last_residual_ = 0.0;
+        largest_ratio_ = 0.0;
+    }
+
+    static double seconds_since(std::chrono::steady_clock::time_point start) {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    }
+
+    [[nodiscard]] float largest_safe_albedo() const {
+        constexpr float Margin = 0.999f;
+        return matrix_.spectral_radius > 0.0f ? Margin / matrix_.spectral_radius
+                                              : std::numeric_limits<float>::max();
+    }
+
+    void set_direct(std::span<const glm::vec3> direct) {
+        if (direct.size() != size_)
+            throw std::invalid_argument(fmt::format(
+                "expected the direct light of {} receivers, got {}", size_, direct.size()));
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t place = begin; place < end; ++place)
+                direct_[place] = padded(direct[transfer_.order[place]]);
+        });
+    }
+
+    template<typename Function>
+    void for_rows(const Function& function) const {
+        tbb::parallel_for(
+            std::size_t{0}, (size_ + RowsPerTask - 1) / RowsPerTask, [&](std::size_t task) {
+                function(task * RowsPerTask, std::min(size_, (task + 1) * RowsPerTask));
+            });
+    }
+
+    /// Sums Rgb over all rows in a fixed order.
+    template<typename Function>
+    [[nodiscard]] Rgb sum_over_rows(const Function& function) const {
+        std::vector<Rgb> parts((size_ + RowsPerTask - 1) / RowsPerTask);
+        for_rows([&](std::size_t begin, std::size_t end) {
+            parts[begin / RowsPerTask] = function(begin, end);
+        });
+        Rgb sum{};
+        for (const Rgb& part : parts)
+            sum = sum + part;
+        return sum;
+    }
+
+    /// next_ = A rho (B + indirect_). Returns the estimated error of next_ over the light that
+    /// reaches the receivers.
+    double bounce() {
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 3; ++c)
+                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
+        });
+        std::vector<std::array<double, 2>> parts((size_ + RowsPerTask - 1) / RowsPerTask);
+        for_rows([&](std::size_t begin, std::size_t end) {
+            gather_rows(matrix_, sent_, begin, end, next_);
+            std::array<double, 2>& part = parts[begin / RowsPerTask];
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const double residual = static_cast<double>(next_[i].rgb[c]) -
+                                            static_cast<double>(indirect_[i].rgb[c]);
+                    const double all = static_cast<double>(next_[i].rgb[c]) +
+                                       static_cast<double>(direct_[i].rgb[c]);
+                    part[0] += residual * residual;
+                    part[1] += all * all;
+                }
+        });
+        double residuals = 0.0, all = 0.0;
+        for (const std::array<double, 2>& part : parts) {
+            residuals += part[0];
+            all += part[1];
+        }
+        const double residual = all > 0.0 ? std::sqrt(residuals / all) : 0.0;
+        // What further bounces of the residual add up to. The largest ratio seen is a lower bound
+        // of the factor from bounce to bounce, the eigenvalue of the darkest pocket an upper one.
+        double factor = contraction_;
+        if (last_residual_ > 0.0) {
+            largest_ratio_ = std::max(largest_ratio_, residual / last_residual_);
+            factor = std::sqrt(std::min(largest_ratio_, contraction_) * contraction_);
+        }
+        last_residual_ = residual;
+        factor = std::min(factor, MaxContraction);
+        return residual * factor / (1.0 - factor);
+    }
+
+    /// Takes the next iterate: next_, corrected by the least squares of the last residuals
+    /// [Anderson 1965], for each channel by itself.
+    void accelerate() {
+        Step& now = history_[newest_];
+        now.resize(size_);
+        const std::size_t depth = history_size_;
+        // Differences to the residual and the iterate before.
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    now.residual[i].rgb[c] = next_[i].rgb[c] - indirect_[i].rgb[c];
+                    now.result[i].rgb[c] = next_[i].rgb[c];
+                }
+        });
+        std::array<std::array<Rgb, AndersonDepth>, AndersonDepth> products{};
+        std::array<Rgb, AndersonDepth> right{};
+        for (std::size_t a = 0; a < depth; ++a) {
+            const Step& before = step_before(a);
+            right[a] = sum_over_rows([&](std::size_t begin, std::size_t end) {
+                Rgb sum{};
+                for (std::size_t i = begin; i < end; ++i)
+                    for (std::size_t c = 0; c < 3; ++c) {
+                        const double r = static_cast<double>(now.residual[i].rgb[c]);
+                        sum[c] += r * (r - static_cast<double>(before.residual[i].rgb[c]));
+                    }
+                return sum;
+            });
+            for (std::size_t b = 0; b <= a; ++b) {
+                const Step& other = step_before(b);
+                products[a][b] = sum_over_rows([&](std::size_t begin, std::size_t end) {
+                    Rgb sum{};
+                    for (std::size_t i = begin; i < end; ++i)
+                        for (std::size_t c = 0; c < 3; ++c) {
+                            const double r = static_cast<double>(now.residual[i].rgb[c]);
+                            sum[c] += (r - static_cast<double>(before.residual[i].rgb[c])) *
+                                      (r - static_cast<double>(other.residual[i].rgb[c]));
+                        }
+                    return sum;
+                });
+            }
+        }
+        std::array<std::array<float, 3>, AndersonDepth> factors{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix{};
+            std::array<double, AndersonDepth> vector{};
+            for (std::size_t a = 0; a < depth; ++a) {
+                vector[a] = right[a][c];
+                for (std::size_t b = 0; b <= a; ++b)
+                    matrix[a][b] = matrix[b][a] = products[a][b][c];
+            }
+            const auto solution = least_squares(matrix, vector, depth);
+            for (std::size_t a = 0; a < depth; ++a)
+                factors[a][c] = static_cast<float>(solution[a]);
+        }
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    float value = now.result[i].rgb[c];
+                    for (std::size_t a = 0; a < depth; ++a)
+                        value -= factors[a][c] *
+                                 (now.result[i].rgb[c] - step_before(a).result[i].rgb[c]);
+                    indirect_[i].rgb[c] = value;
+                }
+        });
+        newest_ = (newest_ + 1) % history_.size();
+        history_size_ = std::min(history_size_ + 1, AndersonDepth);
+    }
+
+    struct Step {
+        std::vector<PaddedRgb> residual;
+        std::vector<PaddedRgb> result;
+        void resize(std::size_t size) {
+            residual.resize(size);
+            result.resize(size);
+        }
+    };
+    /// The step `age` + 1 before history_[newest_], which is being made.
+    [[nodiscard]] const Step& step_before(std::size_t age) const {
+        return history_[(newest_ + history_.size() - 1 - age) % history_.size()];
+    }
+
+    void publish() {
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t place = begin; place < end; ++place) {
+                const PaddedRgb& value = indirect_[place];
+                published_[transfer_.order[place]] = {value.rgb[0], value.rgb[1], value.rgb[2]};
+            }
+        });
+    }
+
+    /// Keeps the estimate of the error finite.
+    static constexpr double MaxContraction = 0.999;
+
+    const prt::BounceMatrix& matrix_;
+    const prt::Transfer& transfer_;
+    std::size_t size_;
+    /// Upper bound of the factor from one bounce to the next.
+    double contraction_ = 0.0;
+    /// All by place.
+    std::vector<PaddedRgb> albedo_;
+    std::vector<PaddedRgb> direct_;
+    std::vector<PaddedRgb> sent_;
+    std::vector<PaddedRgb> indirect_;
+    std::vector<PaddedRgb> next_;
+    std::array<Step, AndersonDepth + 1> history_;
+    std::size_t newest_ = 0;
+    std::size_t history_size_ = 0;
+    /// Relative to all light; of this iteration.
+    double last_residual_ = 0.0;
+    double largest_ratio_ = 0.0;
+    /// [num_receivers] in the receivers' order.
+    std::vector<glm::vec3> published_;
+};
+
+BounceLight::BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
+    : impl_(std::make_unique<Impl>(matrix, transfer)) {}
+BounceLight::~BounceLight() = default;
+BounceLight::BounceLight(BounceLight&&) noexcept = default;
+BounceLight& BounceLight::operator=(BounceLight&&) noexcept = default;
+
+void BounceLight::set_albedo(std::span<const glm::vec3> albedo) {
+    impl_->set_albedo(albedo);
+}
+BounceReport BounceLight::solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
+    return impl_->solve(direct, limits);
+}
+BounceReport BounceLight::step(std::span<const glm::vec3> direct) {
+    return impl_->step(direct);
+}
+std::span<const glm::vec3> BounceLight::indirect() const {
+    return impl_->indirect();
+}
+
+} // namespace relumine::relight

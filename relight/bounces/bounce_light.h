@@ -1,0 +1,79 @@
+// Inter-reflection at relighting time: X = rho (B + A X), diffuse.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include <glm/vec3.hpp>
+
+#include "prt/bounces/bounce_matrix.h"
+#include "prt/transfer.h"
+
+namespace relumine::relight {
+
+struct BounceLimits {
+    /// Exactly so many bounces; empty: as many as `tolerance` asks for.
+    std::optional<std::uint32_t> num_bounces = {};
+    /// Relative error of the sum of all bounces, L2 over the receivers.
+    double tolerance = 1e-3;
+};
+
+/// The effect of a call that bounces light.
+struct BounceReport {
+    /// Products with the matrix.
+    std::uint32_t num_bounces = 0;
+    /// Estimated relative error of what further bounces would add.
+    double error = 0.0;
+    double seconds = 0.0;
+};
+
+/// Keeps the light that a scene's receivers get from each other.
+///
+/// X is the diffuse radiance that a receiver sends on, B its direct light for albedo 1, A the
+/// bounces of the scene, rho the albedo. indirect() is A X: what other surfaces add to B.
+///
+/// Threads: parallel inside (TBB); every result is the same bit by bit for any number of threads.
+///          One thread at a time may call functions that are not const.
+class BounceLight {
+public:
+    /// Matrix and transfer must outlive this object. Albedo is 0 at first.
+    ///
+    /// Memory:  some 100 bytes per receiver.
+    /// Throws:  std::invalid_argument for a matrix of other receivers.
+    BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer);
+    ~BounceLight();
+    BounceLight(BounceLight&&) noexcept;
+    BounceLight& operator=(BounceLight&&) noexcept;
+
+    /// Sets the diffuse reflectance, [num_receivers] in the receivers' order.
+    ///
+    /// Throws:  std::invalid_argument for another number of albedos, one that is negative or not
+    ///          finite, or so large that light would grow for ever. The message names the largest
+    ///          albedo that is safe. Nothing has changed then.
+    void set_albedo(std::span<const glm::vec3> albedo);
+
+    /// Finds the bounces from nothing, so that equal light gives equal bits whatever came before.
+    /// Without a number of bounces the iteration is accelerated (Anderson 1965, with as many
+    /// vectors as AndersonDepth).
+    ///
+    /// Shape:   `direct` is [num_receivers], Relighter::diffuse_radiance().
+    /// Cost:    a product with the matrix for each bounce, milliseconds: docs/measurements.md.
+    BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits = {});
+
+    /// Adds one bounce to the present state: for light that changes while it is looked at.
+    BounceReport step(std::span<const glm::vec3> direct);
+
+    /// What other surfaces add to a receiver's direct light, for albedo 1.
+    ///
+    /// Shape:   [num_receivers] in the receivers' order.
+    [[nodiscard]] std::span<const glm::vec3> indirect() const;
+
+private:
+    class Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace relumine::relight

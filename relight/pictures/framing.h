@@ -1,0 +1,41 @@
+// Cameras that show a whole mesh.
+#pragma once
+
+#include <optional>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/receivers/camera.h"
+
+namespace relumine::relight {
+
+using prt::Camera;
+
+/// Where a camera stands that looks at a mesh.
+struct CameraAngles {
+    /// Turns about +Y from the side that the mesh shows as its front, to its right, degrees.
+    double azimuth = 24.0;
+    /// Above the horizon, degrees in [-90, 90].
+    double elevation = 20.0;
+    /// From the middle of what is looked at, in the mesh's unit. Empty: the picture is filled.
+    std::optional<double> distance = {};
+};
+
+struct Framing {
+    CameraAngles angles = {};
+    /// The horizontal direction from the mesh to a camera of azimuth 0.
+    glm::dvec3 front{0.0, 0.0, 1.0};
+    /// Vertical field of view.
+    float fov_degrees = 35.0f;
+    /// The picture's width over its height.
+    float aspect = 1024.0f / 768.0f;
+};
+
+/// Returns a camera that looks at the mesh, from the front, a little from the right and from above
+/// unless told otherwise. What stands on the ground fills two thirds of the picture's width or
+/// height and is in its middle. Triangles in the lowest horizontal plane are the ground, unless
+/// there is nothing else.
+///
+/// Cost:    O(vertices + triangles).
+[[nodiscard]] Camera framed(const mesh::TriangleMesh& mesh, const Framing& framing = {});
+
+} // namespace relumine::relight

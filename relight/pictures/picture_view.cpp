@@ -1,0 +1,350 @@
+#include "relight/pictures/picture_view.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+#include "prt/glossy/brdf.h"
+#include "prt/receivers/mesh_point.h"
+#include "relight/light_packets.h"
+
+namespace relumine::relight {
+
+namespace {
+
+constexpr std::uint32_t NoTriangle = ~std::uint32_t{0};
+
+/// Pixels of a tile, on a side: small enough for the caches, large enough that the ring of pixels
+/// around it, whose lights are looked at too, is a small part of the work.
+constexpr std::uint32_t TileSize = 32;
+
+using Lanes = std::vector<std::uint16_t>;
+
+} // namespace
+
+float FadingFloor::opacity(const glm::vec3& position) const {
+    const float radius = glm::distance(glm::vec2(position.x, position.z), center);
+    if (radius <= opaque_radius)
+        return 1.0f;
+    if (radius >= end_radius)
+        return 0.0f;
+    const float t = (end_radius - radius) / (end_radius - opaque_radius);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                         const Camera& camera, const PictureOptions& options,
+                         const FadingFloor& floor, std::size_t max_bytes)
+    : mesh_(mesh), rays_(rays), camera_(camera), options_(options), floor_(floor),
+      grid_(camera, options.width, options.height, options.samples_per_axis) {
+    const std::size_t num_samples =
+        std::size_t{options.width} * options.height * grid_.samples_per_pixel();
+    if (num_samples > max_bytes / sizeof(Sample))
+        return;
+    samples_.resize(num_samples);
+    const std::size_t per_row = std::size_t{options.width} * grid_.samples_per_pixel();
+    tbb::parallel_for(std::uint32_t{0}, options.height, [&](std::uint32_t y) {
+        if (!options_.stop.stop_requested())
+            trace(y, 0, options_.width, std::span(samples_).subspan(y * per_row, per_row));
+    });
+}
+
+/// Finds what the samples of some pixels of a row see.
+void PictureView::trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_end,
+                        std::span<Sample> samples) const {
+    const std::uint32_t per_pixel = grid_.samples_per_pixel();
+    prt::DirectionPacket packet;
+    std::array<prt::Hit, prt::PacketSize> hits;
+    std::size_t done = 0;
+    const auto trace_packet = [&] {
+        const auto num = packet.num_directions;
+        for (std::size_t lane = num; lane < prt::PacketSize; ++lane)
+            packet.set(lane, {packet.x[0], packet.y[0], packet.z[0]});
+        const std::uint32_t found = rays_.closest_hits(camera_.eye, packet, (1u << num) - 1u, hits);
+        for (std::uint32_t lane = 0; lane < num; ++lane, ++done)
+            samples[done] = (found >> lane & 1u) != 0
+                                ? Sample{hits[lane].triangle, hits[lane].barycentric.x,
+                                         hits[lane].barycentric.y}
+                                : Sample{NoTriangle, 0.0f, 0.0f};
+        packet.num_directions = 0;
+    };
+    for (std::uint32_t x = x_begin; x < x_end; ++x)
+        for (std::uint32_t i = 0; i < per_pixel; ++i) {
+            packet.set(packet.num_directions++, grid_.direction(x, y, i));
+            if (packet.num_directions == prt::PacketSize)
+                trace_packet();
+        }
+    if (packet.num_directions != 0)
+        trace_packet();
+}
+
+float PictureView::opacity(const Sample& sample) const {
+    if (sample.triangle == NoTriangle)
+        return 0.0f;
+    const mesh::Triangle& triangle = mesh_.triangles[sample.triangle];
+    if (!floor_.has(triangle))
+        return 1.0f;
+    return floor_.opacity(
+        prt::value_at(mesh_, mesh_.positions,
+                      {.triangle = sample.triangle, .barycentric = {sample.second, sample.third}}));
+}
+
+/// The samples of some pixels of a row, kept or traced.
+class PictureView::Row {
+public:
+    Row(const PictureView& view, std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_end)
+        : per_pixel_(view.grid_.samples_per_pixel()), x_begin_(x_begin) {
+        const std::size_t count = std::size_t{x_end - x_begin} * per_pixel_;
+        if (!view.samples_.empty()) {
+            samples_ =
+                std::span(view.samples_)
+                    .subspan((std::size_t{y} * view.options_.width + x_begin) * per_pixel_, count);
+            return;
+        }
+        own_.resize(count);
+        view.trace(y, x_begin, x_end, own_);
+        samples_ = own_;
+    }
+    [[nodiscard]] std::span<const Sample> pixel(std::uint32_t x) const {
+        return samples_.subspan(std::size_t{x - x_begin_} * per_pixel_, per_pixel_);
+    }
+
+private:
+    std::size_t per_pixel_;
+    std::uint32_t x_begin_;
+    std::vector<Sample> own_;
+    std::span<const Sample> samples_;
+};
+
+/// Draws a square of pixels.
+class PictureView::Tile {
+public:
+    Tile(const PictureView& view, const MeshLight& light, const LightPackets& packets)
+        : view_(view), mesh_(view.mesh_), light_(light),
+          packets_(packets), rays_{.blockers = &view.rays_, .bias = light.bias},
+          lanes_(packets.num_packets()) {}
+
+    void draw(std::uint32_t x_begin, std::uint32_t y_begin, Picture& picture) {
+        const std::uint32_t x_end = std::min(x_begin + TileSize, picture.width);
+        const std::uint32_t y_end = std::min(y_begin + TileSize, picture.height);
+        // The tile and a ring of pixels around it.
+        left_ = x_begin - std::min(x_begin, 1u);
+        top_ = y_begin - std::min(y_begin, 1u);
+        const std::uint32_t right = std::min(x_end + 1, picture.width);
+        const std::uint32_t bottom = std::min(y_end + 1, picture.height);
+        width_ = right - left_;
+        rows_.clear();
+        for (std::uint32_t y = top_; y < bottom; ++y)
+            rows_.emplace_back(view_, y, left_, right);
+        if (packets_.num_packets() != 0)
+            look_at_lights(right, bottom);
+
+        for (std::uint32_t y = y_begin; y < y_end; ++y)
+            for (std::uint32_t x = x_begin; x < x_end; ++x) {
+                const std::size_t pixel = std::size_t{y} * picture.width + x;
+                const auto [color, alpha] = drawn(x, y, right, bottom);
+                picture.pixels[pixel] = color;
+                picture.alpha[pixel] = alpha;
+            }
+    }
+
+private:
+    struct Pixel {
+        glm::vec3 color;
+        float alpha;
+    };
+
+    [[nodiscard]] static prt::MeshPoint point(const Sample& sample) {
+        return {.triangle = sample.triangle, .barycentric = {sample.second, sample.third}};
+    }
+
+    [[nodiscard]] bool has_texture(const Sample& sample) const {
+        return light_.textures != nullptr && light_.textures->has(sample.triangle);
+    }
+
+    /// Finds the lights that reach a sample.
+    void look(const Sample& sample, std::span<std::uint16_t> lanes) const {
+        const prt::MeshPoint at = point(sample);
+        packets_.visible(prt::smooth_position(mesh_, at), prt::shading_normal(mesh_, at), rays_,
+                         lanes);
+    }
+
+    [[nodiscard]] std::span<std::uint16_t> lanes_of(std::uint32_t x, std::uint32_t y) {
+        const std::size_t pixel = std::size_t{y - top_} * width_ + (x - left_);
+        return std::span(middles_).subspan(pixel * packets_.num_packets(), packets_.num_packets());
+    }
+    [[nodiscard]] static const Sample& middle(std::span<const Sample> samples) {
+        return samples[samples.size() / 2];
+    }
+
+    /// Finds the lights that reach the middle of every pixel.
+    void look_at_lights(std::uint32_t right, std::uint32_t bottom) {
+        middles_.assign(std::size_t{width_} * (bottom - top_) * packets_.num_packets(), 0);
+        for (std::uint32_t y = top_; y < bottom; ++y)
+            for (std::uint32_t x = left_; x < right; ++x)
+                if (const Sample& sample = middle(rows_[y - top_].pixel(x));
+                    sample.triangle != NoTriangle)
+                    look(sample, lanes_of(x, y));
+    }
+
+    /// Whether all pixels around see the same lights.
+    [[nodiscard]] bool is_even(std::uint32_t x, std::uint32_t y, std::uint32_t right,
+                               std::uint32_t bottom) {
+        const std::span<const std::uint16_t> own = lanes_of(x, y);
+        for (std::uint32_t v = y - std::min(y - top_, 1u); v < std::min(y + 2, bottom); ++v)
+            for (std::uint32_t u = x - std::min(x - left_, 1u); u < std::min(x + 2, right); ++u)
+                if (const auto other = lanes_of(u, v);
+                    !std::equal(own.begin(), own.end(), other.begin()))
+                    return false;
+        return true;
+    }
+
+    [[nodiscard]] Pixel drawn(std::uint32_t x, std::uint32_t y, std::uint32_t right,
+                              std::uint32_t bottom) {
+        const std::span<const Sample> samples = rows_[y - top_].pixel(x);
+        const bool traces = packets_.num_packets() != 0;
+        const bool even = traces && is_even(x, y, right, bottom);
+        if (even) {
+            const auto lanes = lanes_of(x, y);
+            std::copy(lanes.begin(), lanes.end(), lanes_.begin());
+        }
+        const bool is_dark = even && std::all_of(lanes_.begin(), lanes_.end(),
+                                                 [](std::uint16_t lanes) { return lanes == 0; });
+        glm::vec3 sum(0.0f);
+        float alpha = 0.0f;
+        for (const Sample& sample : samples) {
+            const float opacity = view_.opacity(sample);
+            if (opacity == 0.0f)
+                continue;
+            glm::vec3 radiance = has_texture(sample)
+                                     ? light_.textures->radiance(light_.radiance, point(sample))
+                                     : prt::value_at(mesh_, light_.radiance, point(sample));
+            if (traces && !is_dark) {
+                if (!even)
+                    look(sample, lanes_);
+                radiance += traced(sample);
+            }
+            sum += opacity * radiance;
+            alpha += opacity;
+        }
+        const auto count = static_cast<float>(samples.size());
+        return {.color = sum / count, .alpha = alpha / count};
+    }
+
+    /// Returns what a sample sends on of the lights in lanes_.
+    [[nodiscard]] glm::vec3 traced(const Sample& sample) const {
+        if (std::all_of(lanes_.begin(), lanes_.end(),
+                        [](std::uint16_t lanes) { return lanes == 0; }))
+            return glm::vec3(0.0f);
+        const prt::MeshPoint at = point(sample);
+        const glm::vec3 normal = prt::shading_normal(mesh_, at);
+        const glm::vec3 albedo =
+            light_.albedo.empty() ? glm::vec3(1.0f) : prt::value_at(mesh_, light_.albedo, at);
+        if (light_.surfaces.empty())
+            return albedo * glm::vec3(packets_.radiance(normal, lanes_));
+        prt::Surface surface = surface_at(at);
+        if (has_texture(sample))
+            surface.albedo = light_.textures->albedo(at);
+        if (surface.highlight == prt::Highlight::None || !light_.eye)
+            return albedo *
+                   prt::reflect(surface, {.diffuse = glm::vec3(packets_.radiance(normal, lanes_))});
+        const glm::vec3 to_eye =
+            glm::normalize(*light_.eye - prt::value_at(mesh_, mesh_.positions, at));
+        prt::BlockSurfaces block;
+        block.set(0, surface, normal, to_eye);
+        prt::Lobes<glm::dvec3> lobes;
+        packets_.light_block(block, {&normal, 1}, lanes_, {&lobes, 1});
+        return albedo *
+               prt::reflect(surface, {.diffuse = glm::vec3(lobes.diffuse),
+                                      .diffuse_grazing = glm::vec3(lobes.diffuse_grazing),
+                                      .specular = glm::vec3(lobes.specular),
+                                      .specular_grazing = glm::vec3(lobes.specular_grazing)});
+    }
+
+    /// Returns the surface between the vertices', with the highlight of the nearest.
+    [[nodiscard]] prt::Surface surface_at(const prt::MeshPoint& at) const {
+        const mesh::Triangle& triangle = mesh_.triangles[at.triangle];
+        const std::array<float, 3> weights = {1.0f - at.barycentric.x - at.barycentric.y,
+                                              at.barycentric.x, at.barycentric.y};
+        const auto nearest = static_cast<std::size_t>(
+            std::max_element(weights.begin(), weights.end()) - weights.begin());
+        prt::Surface surface = light_.surfaces[triangle[nearest]];
+        surface.albedo = surface.specular = glm::vec3(0.0f);
+        float shape = 0.0f;
+        bool is_same = true;
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const prt::Surface& own = light_.surfaces[triangle[corner]];
+            surface.albedo += weights[corner] * own.albedo;
+            surface.specular += weights[corner] * own.specular;
+            shape += weights[corner] * own.roughness_or_exponent;
+            is_same = is_same && own.highlight == surface.highlight;
+        }
+        if (is_same)
+            surface.roughness_or_exponent = shape;
+        return surface;
+    }
+
+    const PictureView& view_;
+    const mesh::TriangleMesh& mesh_;
+    const MeshLight& light_;
+    const LightPackets& packets_;
+    ShadowRays rays_;
+    std::uint32_t left_ = 0, top_ = 0, width_ = 0;
+    std::vector<Row> rows_;
+    /// [pixels of the tile and its ring x packets]
+    Lanes middles_;
+    /// Scratch: [packets]
+    Lanes lanes_;
+};
+
+Picture PictureView::cut_out(const MeshLight& light) const {
+    const auto fits = [&](std::size_t size) {
+        return size == 0 || size == mesh_.num_vertices();
+    };
+    if (light.radiance.size() != mesh_.num_vertices() || !fits(light.albedo.size()) ||
+        !fits(light.surfaces.size()))
+        throw std::invalid_argument("expected one radiance, albedo and surface per vertex");
+    const LightPackets packets(light.lights);
+    Picture picture{.width = options_.width, .height = options_.height};
+    picture.pixels.resize(std::size_t{options_.width} * options_.height);
+    picture.alpha.resize(picture.pixels.size());
+    const std::uint32_t num_columns = (options_.width + TileSize - 1) / TileSize;
+    const std::uint32_t num_rows = (options_.height + TileSize - 1) / TileSize;
+    tbb::parallel_for(std::uint32_t{0}, num_columns * num_rows, [&](std::uint32_t tile) {
+        if (!options_.stop.stop_requested())
+            Tile(*this, light, packets)
+                .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, picture);
+    });
+    return picture;
+}
+
+void PictureView::put_behind(Picture& cut_out, const Backdrop& backdrop) const {
+    tbb::parallel_for(std::uint32_t{0}, options_.height, [&](std::uint32_t y) {
+        if (options_.stop.stop_requested())
+            return;
+        const Row row(*this, y, 0, options_.width);
+        for (std::uint32_t x = 0; x < options_.width; ++x) {
+            const std::size_t pixel = std::size_t{y} * options_.width + x;
+            if (cut_out.alpha[pixel] >= 1.0f)
+                continue;
+            const std::span<const Sample> samples = row.pixel(x);
+            glm::vec3 sum(0.0f);
+            for (std::uint32_t i = 0; i < samples.size(); ++i)
+                if (const float opacity = this->opacity(samples[i]); opacity < 1.0f)
+                    sum += (1.0f - opacity) * backdrop(grid_.direction(x, y, i));
+            cut_out.pixels[pixel] += sum / static_cast<float>(samples.size());
+        }
+    });
+    cut_out.alpha.clear();
+}
+
+Picture PictureView::draw(const MeshLight& light, const Backdrop& backdrop) const {
+    Picture picture = cut_out(light);
+    put_behind(picture, backdrop);
+    return picture;
+}
+
+} // namespace relumine::relight

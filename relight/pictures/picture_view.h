@@ -1,0 +1,129 @@
+// Pictures of relit meshes by ray casting.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "cubemap/image/picture.h"
+#include "mesh/triangle_mesh.h"
+#include "prt/glossy/surface.h"
+#include "prt/receivers/camera.h"
+#include "prt/visibility/ray_scene.h"
+#include "relight/pictures/backdrop.h"
+#include "relight/pictures/surface_colors.h"
+#include "relight/sharp_lights.h"
+
+namespace relumine::relight {
+
+using cubemap::Picture;
+using prt::Camera;
+
+struct PictureOptions {
+    std::uint32_t width = 1024;
+    std::uint32_t height = 768;
+    /// n: each pixel has n x n rays and a box filter.
+    std::uint32_t samples_per_axis = 3;
+    /// Polled between parts of the picture. What is drawn after a stop request is unfinished.
+    std::stop_token stop = {};
+
+    [[nodiscard]] float aspect() const {
+        return static_cast<float>(width) / static_cast<float>(height);
+    }
+};
+
+/// A floor that becomes transparent toward its edge. Triangles of vertices from `first_vertex` on
+/// are the floor.
+struct FadingFloor {
+    std::uint32_t first_vertex = ~std::uint32_t{0};
+    /// x and z.
+    glm::vec2 center{0.0f};
+    /// Opaque up to the first, gone from the second on, in between smooth.
+    float opaque_radius = 0.0f, end_radius = 0.0f;
+
+    [[nodiscard]] bool has(const mesh::Triangle& triangle) const {
+        return triangle[0] >= first_vertex;
+    }
+    /// Returns the opacity of a point of the floor, 0 to 1.
+    [[nodiscard]] float opacity(const glm::vec3& position) const;
+};
+
+/// The light of a mesh that is drawn.
+struct MeshLight {
+    /// [num_vertices] outgoing radiance, but for what `lights` give.
+    std::span<const glm::vec3> radiance;
+    /// Traced at every point that is seen, with its own normal: their shadows are as sharp as the
+    /// picture, on any mesh.
+    std::span<const SharpLight> lights = {};
+    /// [num_vertices] factor on what the lights give.
+    std::span<const glm::vec3> albedo = {};
+    /// [num_vertices], or empty: Lambert of albedo 1.
+    std::span<const prt::Surface> surfaces = {};
+    /// Triangles with a texture take its colour at the point, and the light of the vertices. Null:
+    /// there are none. Must fit the vertices' surfaces.
+    const SurfaceColors* textures = nullptr;
+    /// The eye that highlights are for. Empty: there are none.
+    std::optional<glm::vec3> eye = {};
+    /// Lift of the rays' origins, as in prt::PrecomputeOptions.
+    float bias = 0.0f;
+};
+
+/// A camera's view of a still scene, traced once and drawn in any light.
+class PictureView {
+public:
+    /// Traces the rays and keeps 12 bytes per sample, if they come to at most `max_bytes`.
+    /// Otherwise they are traced anew each time. The mesh and rays must outlive this object.
+    ///
+    /// Throws:  std::invalid_argument for a camera without a direction, a field of view outside
+    ///          (0, 180), a size outside 1..16384.
+    PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const Camera& camera,
+                const PictureOptions& options = {}, const FadingFloor& floor = {},
+                std::size_t max_bytes = std::size_t{1} << 30);
+
+    /// Draws the mesh alone. Alpha is the part of each pixel that it covers; pixels are
+    /// premultiplied.
+    ///
+    /// Lights are traced at the middle of each pixel, and at all its samples where any of the
+    /// pixels around sees other lights.
+    ///
+    /// Throws:  std::invalid_argument where there is not one radiance, albedo or surface per
+    /// vertex.
+    [[nodiscard]] Picture cut_out(const MeshLight& light) const;
+
+    /// Fills what a cut-out leaves free. The picture is then opaque and has no alpha.
+    void put_behind(Picture& cut_out, const Backdrop& backdrop) const;
+
+    /// Draws the mesh before the backdrop.
+    [[nodiscard]] Picture draw(const MeshLight& light, const Backdrop& backdrop) const;
+
+private:
+    /// The point where a sample's ray meets the mesh.
+    struct Sample {
+        std::uint32_t triangle;
+        /// Weights of the triangle's second and third vertex.
+        float second, third;
+    };
+    class Row;
+    class Tile;
+
+    void trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_end,
+               std::span<Sample> samples) const;
+    [[nodiscard]] float opacity(const Sample& sample) const;
+
+    const mesh::TriangleMesh& mesh_;
+    const prt::RayScene& rays_;
+    Camera camera_;
+    PictureOptions options_;
+    FadingFloor floor_;
+    prt::PictureRays grid_;
+    /// [height * width * samples per pixel]; empty when they are traced anew.
+    std::vector<Sample> samples_;
+};
+
+} // namespace relumine::relight

@@ -1,0 +1,92 @@
+#include "viewer/refiner.h"
+
+#include <exception>
+#include <mutex>
+#include <stop_token>
+#include <thread>
+#include <utility>
+
+namespace relumine::viewer {
+
+namespace {
+
+constexpr std::uint32_t FinestSamples = 3;
+
+relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays,
+                       const Shading& shading, const Moment& moment, std::uint32_t samples_per_axis,
+                       const std::stop_token& stop) {
+    std::vector<glm::vec3> colors = moment.radiance;
+    for (std::size_t i = 0; i < colors.size(); ++i)
+        colors[i] *= shading.albedo[i];
+    const relight::PictureView view(mesh, rays, moment.camera,
+                                    {.width = moment.width,
+                                     .height = moment.height,
+                                     .samples_per_axis = samples_per_axis,
+                                     .stop = stop},
+                                    shading.floor);
+    relight::Picture picture = view.cut_out({.radiance = colors,
+                                             .lights = moment.lights,
+                                             .albedo = shading.albedo,
+                                             .surfaces = shading.surfaces,
+                                             .textures = &shading.textures,
+                                             .eye = shading.eye,
+                                             .bias = shading.bias});
+    if (moment.backdrop)
+        view.put_behind(picture, moment.backdrop);
+    return picture;
+}
+
+} // namespace
+
+/// One moment on its way.
+class Refiner::Work {
+public:
+    Work(const Refiner& refiner, Moment moment)
+        : thread_([this, &refiner, moment = std::move(moment)](const std::stop_token& stop) {
+              try {
+                  for (const std::uint32_t samples : {1u, FinestSamples}) {
+                      relight::Picture picture = drawn(refiner.mesh_, refiner.rays_,
+                                                       refiner.shading_, moment, samples, stop);
+                      if (stop.stop_requested())
+                          return;
+                      const std::scoped_lock lock(mutex_);
+                      picture_ = std::move(picture);
+                  }
+              } catch (const std::exception&) { // no memory: the coarser picture stays
+              }
+          }) {}
+
+    [[nodiscard]] std::optional<relight::Picture> take() {
+        const std::scoped_lock lock(mutex_);
+        return std::exchange(picture_, std::nullopt);
+    }
+
+private:
+    std::mutex mutex_;
+    std::optional<relight::Picture> picture_;
+    /// Destroyed first: it stops and joins.
+    std::jthread thread_;
+};
+
+Refiner::Refiner(const mesh::TriangleMesh& mesh, const prt::RayScene& rays, const Shading& shading)
+    : mesh_(mesh), rays_(rays), shading_(shading) {}
+Refiner::~Refiner() = default;
+
+void Refiner::start(Moment moment) {
+    stop();
+    work_ = std::make_unique<Work>(*this, std::move(moment));
+}
+
+void Refiner::stop() {
+    work_.reset();
+}
+
+std::optional<relight::Picture> Refiner::take() {
+    return work_ ? work_->take() : std::nullopt;
+}
+
+relight::Picture Refiner::draw(const Moment& moment) const {
+    return drawn(mesh_, rays_, shading_, moment, FinestSamples, {});
+}
+
+} // namespace relumine::viewer
