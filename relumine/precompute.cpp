@@ -240,7 +240,7 @@ private:
     /// the lowest value that an image of 8 bits has.
     void prepare_textures() {
         mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.textures.empty())
+        if (mesh.textures.empty() || mesh.triangle_materials.empty())
             return;
         if (options_.surface) {
             const auto plain = static_cast<std::uint32_t>(mesh.materials.size());
