@@ -214,7 +214,8 @@ std::string surplus(const CLI::App& command, const std::vector<std::string>& res
 /// What to tell of a line that CLI11 refuses: the first thing that is wrong, which need not be what
 /// CLI11 looks at first.
 std::string complaint(const CLI::App& command, const CLI::ParseError& error) {
-    const std::vector<std::string> rest = command.remaining();
+    std::vector<std::string> rest = command.remaining();
+    std::erase(rest, "--"); // CLI11 leaves it there
     for (const std::string& word : rest)
         if (word.size() > 1 && word.front() == '-') {
             const std::string name = word.substr(0, word.find('='));

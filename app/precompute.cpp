@@ -55,10 +55,13 @@ PrecomputeOptions precompute_options(const Options& options, const mesh::Triangl
     result.stop = session.stop();
     result.on_progress = [&session, clusters = session.progress("precompute"),
                           highlights = session.progress("highlights"),
+                          bounces = session.progress("bounces"),
                           last = Stage::Clusters](Stage stage, double fraction) mutable {
         if (std::exchange(last, stage) != stage)
             session.end_progress();
-        if (const auto& show = stage == Stage::Clusters ? clusters : highlights)
+        if (const auto& show = stage == Stage::Clusters     ? clusters
+                               : stage == Stage::Highlights ? highlights
+                                                            : bounces)
             show(fraction);
     };
     result.on_warning = [&session](Warning kind, const std::string& message) {
@@ -118,6 +121,21 @@ Report glossy_report(const PrecomputeOptions& options, const PrecomputeReport& f
             {"seconds", statistics.seconds},
             {"bytes", bytes},
             {"narrowest_roughness", prt::narrowest_roughness(options.face_resolution)}};
+}
+
+Report bounce_report(const prt::BounceStatistics& bounces, const Scene& scene,
+                     const Session& session) {
+    const auto num_receivers = static_cast<double>(scene.transfer.num_receivers());
+    session.say(fmt::format("bounces: {:.1f} emitters per vertex in {:.1f} s, {:.1f} % of the "
+                            "directions end at surfaces, standard error {:.4f}",
+                            static_cast<double>(bounces.num_columns) / num_receivers,
+                            bounces.seconds, 100.0 * bounces.mean_closure, bounces.rms_error));
+    return {{"rays", bounces.num_rays},
+            {"columns", bounces.num_columns},
+            {"closure", bounces.mean_closure},
+            {"standard_error", bounces.rms_error},
+            {"spectral_radius", scene.bounces->spectral_radius},
+            {"seconds", bounces.seconds}};
 }
 
 Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts,
@@ -227,6 +245,8 @@ void run(const Options& options, Session& session) {
                             static_cast<double>(facts.file_bytes) * 1e-6));
     if (scene.settings.floor_vertices != 0)
         report.set("floor", floor_report(scene, session));
+    if (facts.bounces)
+        report.set("bounces", bounce_report(*facts.bounces, scene, session));
     report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
     report.set("seconds", seconds);
     session.report(report);
@@ -289,6 +309,29 @@ void add_precompute(Command& program, Session& session) {
                     "the paper's form of the tolerance: grows lax with the mesh's size")
         .between(0.0, 1e6)
         .excludes("--tolerance");
+    command
+        .add_option(
+            "--bounces",
+            [options](const std::string& text) {
+                const float standard = prt::BounceOptions{}.tolerance;
+                const std::optional<double> tolerance =
+                    text.empty() ? std::optional<double>(standard) : parse_number(text);
+                if (!tolerance || !(*tolerance >= 1e-4 && *tolerance <= 1.0))
+                    throw UsageError(
+                        "--bounces",
+                        fmt::format("expected a standard error of 0.0001 to 1, got '{0}'; the mesh "
+                                    "goes first: relumine precompute {0} --bounces",
+                                    text));
+                options->precompute.bounce_tolerance = static_cast<float>(*tolerance);
+            },
+            "light goes on from surface to surface, between vertices; the standard error of one "
+            "bounce under a sun or a white sky of radiance 1, 0.02 when it is not given")
+        .value_is_optional()
+        .type_name("[ERROR]");
+    command
+        .add_flag("--two-sided", options->precompute.two_sided_bounces,
+                  "surfaces send bounced light from their backs, too")
+        .needs("--bounces");
     command
         .add_option("--min-depth", options->precompute.min_level,
                     "every cell is split at least this often")

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bounce_option.h"
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
@@ -27,7 +28,23 @@ struct Options {
     /// A light list, alone or added to the environment
     std::string lights;
     OutputOptions output;
+    BounceOption bounces;
+    bool only_bounces = false;
 };
+
+/// What surfaces add to the light alone, if that is asked for.
+Lighting chosen_lighting(const Options& options, const LitScene& lit) {
+    Lighting lighting = lit.lighting();
+    if (options.only_bounces) {
+        if (lit.bounced().empty())
+            throw std::runtime_error(fmt::format(
+                "{}: expected bounces for --only-bounces, got none", options.scene.path));
+        lighting.radiance = lit.bounced();
+        lighting.soft.clear();
+        lighting.lights.clear();
+    }
+    return lighting;
+}
 
 /// Adds the light of a list. `radiance` is the list's, and becomes the sum.
 void add(Lighting& lighting, Lighting list, std::vector<glm::vec3>& radiance) {
@@ -63,16 +80,19 @@ void light_with_environment(const Options& options, Session& session) {
         const lights::LightList list = lights::load_lights(options.lights);
         num_lights = list.lights.size();
         lit.light(list.lights);
-        radiance.assign(lit.radiance().begin(), lit.radiance().end());
-        from_list = lit.lighting();
+        options.bounces.bounce(lit, options.output.for_scene(scene), options.scene.path);
+        from_list = chosen_lighting(options, lit);
+        radiance.assign(from_list->radiance.begin(), from_list->radiance.end());
     }
     const double seconds_list = watch.lap();
     Environment environment = load_environment(options.environment, session);
     const RelightTimes times = lit.light(std::move(environment));
     const std::uint32_t resolution = lit.environment().resolution;
     session.poll();
+    const std::optional<BounceReport> bounces =
+        options.bounces.bounce(lit, options.output.for_scene(scene), options.scene.path);
     watch.lap();
-    Lighting lighting = lit.lighting();
+    Lighting lighting = chosen_lighting(options, lit);
     if (from_list)
         add(lighting, std::move(*from_list), radiance);
     Painter painter(lit, options.output.for_scene(lit.scene()));
@@ -82,14 +102,14 @@ void light_with_environment(const Options& options, Session& session) {
     session.say(fmt::format(
         "{}: {} receivers under {} (R = {}){} in {:.2f} s: scene {:.0f}, environment {:.0f}, "
         "resample "
-        "{:.0f}, bin {:.1f}, trace {:.1f} ({} lights), relight {:.1f}, output {:.0f} ms{}",
+        "{:.0f}, bin {:.1f}, trace {:.1f} ({} lights), relight {:.1f}{}, output {:.0f} ms{}",
         options.output.path, scene.transfer.num_receivers(), options.environment.path, resolution,
         num_lights == 0 ? ""
                         : fmt::format(" and {} lights of {} ({:.1f} ms)", num_lights,
                                       options.lights, 1e3 * seconds_list),
         watch.total(), 1e3 * seconds_load_scene, 1e3 * environment.seconds_load,
         1e3 * environment.seconds_resample, 1e3 * times.seconds_bin, 1e3 * times.seconds_trace,
-        times.num_sharp_lights, 1e3 * times.seconds_relight, 1e3 * seconds_output,
+        times.num_sharp_lights, 1e3 * times.seconds_relight, text_of(bounces), 1e3 * seconds_output,
         options.output.exposure_text(painter)));
     session.report({{"receivers", scene.transfer.num_receivers()},
                     {"clusters", scene.transfer.num_clusters()},
@@ -101,6 +121,8 @@ void light_with_environment(const Options& options, Session& session) {
                     {"seconds_bin", times.seconds_bin},
                     {"seconds_trace", times.seconds_trace},
                     {"seconds_relight", times.seconds_relight},
+                    {"bounces", bounces ? bounces->num_bounces : 0},
+                    {"seconds_bounces", bounces ? bounces->seconds : 0.0},
                     {"sharp_lights", times.num_sharp_lights},
                     {"exposure", painter.exposure_ev(options.output.path)},
                     {"lights", num_lights},
@@ -117,10 +139,11 @@ void light_with_list(const Options& options, Session& session) {
     const double seconds_load_scene = watch.lap();
     session.poll();
     lit.light(list.lights);
+    options.bounces.bounce(lit, options.output.for_scene(lit.scene()), options.scene.path);
     const double seconds_light = watch.lap();
     session.poll();
     Painter painter(lit, options.output.for_scene(lit.scene()));
-    painter.save(options.output.path, lit.lighting());
+    painter.save(options.output.path, chosen_lighting(options, lit));
     const double seconds_output = watch.lap();
 
     session.say(fmt::format(
@@ -171,6 +194,9 @@ void add_relight(Command& program, Session& session) {
             "ray for each light; with ENV, both light together")
         .file();
     options->output.add_to(command);
+    options->bounces.add_to(command);
+    command.add_flag("--only-bounces", options->only_bounces,
+                     "what surfaces add to the direct light, alone");
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bounce_option.h"
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
@@ -16,15 +17,21 @@ struct Options {
     EnvironmentOptions environment;
     std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
+    BounceOption bounces;
+    float albedo = 0.5f;
+    std::uint32_t num_paths = VerifyOptions{}.num_paths;
 };
 
 void run(const Options& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
     lit.light(load_environment(options.environment, session));
+    const std::optional<BounceReport> bounces =
+        options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
 
     Stopwatch watch;
     const Verification check = lit.verify({.num_samples = options.num_samples,
                                            .seed = options.seed,
+                                           .num_paths = options.num_paths,
                                            .stop = session.stop(),
                                            .on_progress = session.progress("exact integration")});
     session.end_progress();
@@ -40,12 +47,19 @@ void run(const Options& options, Session& session) {
                             "{:+.3f} % of the mean radiance {:.4g}",
                             error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs,
                             100.0 * error.bias, error.mean_radiance));
+    if (bounces)
+        session.say(
+            fmt::format("with {} bounces at albedo {}, against {} paths per receiver, whose "
+                        "noise is {:.5f} of the relative L2",
+                        bounces->num_bounces, options.albedo, options.num_paths, check.noise));
     session.say(fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x,
                             worst.y, worst.z));
     session.report({{"relative_l2", error.relative_l2},
                     {"mean_abs", error.mean_abs},
                     {"max_abs", error.max_abs},
                     {"bias", error.bias},
+                    {"bounces", bounces ? bounces->num_bounces : 0},
+                    {"noise", check.noise},
                     {"samples", check.receivers.size()},
                     {"mean_radiance", error.mean_radiance},
                     {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
@@ -66,6 +80,13 @@ void add_verify(Command& program, Session& session) {
     command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
         .show_default();
     command.add_option("--seed", options->seed, "seed of the choice").show_default();
+    options->bounces.add_to(command);
+    command.add_option("--albedo", options->albedo, "of all surfaces, for bounces")
+        .between(0.0, 1.0)
+        .show_default();
+    command.add_option("--paths", options->num_paths, "paths per receiver that bounces are held to")
+        .between(1, 1u << 24)
+        .show_default();
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -53,6 +53,7 @@ function(relumine_library name)
         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
         INSTALL_RPATH "$ORIGIN")
     target_link_libraries(relumine_${name} PRIVATE $<BUILD_INTERFACE:relumine_warnings>)
+    relumine_optimise(relumine_${name} -O2)
     # A shared library depends on no more than it uses.
     target_link_options(relumine_${name} PRIVATE LINKER:--as-needed)
 
@@ -72,7 +73,12 @@ function(relumine_library name)
     relumine_compile_together(relumine_${name})
 endfunction()
 
-# Code that parses, calls and writes gains nothing from what is costly to compile. Only folders with inner loops keep -O3.
-function(relumine_optimise_less target level)
+# Release compiles with -O2. Kernels, the inner loops over all receivers or rays, gain from -O3; code that parses, calls
+# and writes gains nothing from what is costly to compile.
+function(relumine_optimise target level)
     target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:${level}>)
+endfunction()
+
+function(relumine_kernels)
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O3>)
 endfunction()

@@ -29,7 +29,9 @@ struct DecodedImage {
 [[nodiscard]] DecodedImage decode_image(std::span<const std::byte> file);
 
 /// Decodes the alpha of an image: 255 everywhere if it has none. A JPEG never has any, and gives
-/// one pixel. Throws:  as decode_image().
+/// one pixel.
+///
+/// Throws:  as decode_image().
 [[nodiscard]] DecodedImage decode_alpha(std::span<const std::byte> file);
 
 } // namespace relumine::mesh

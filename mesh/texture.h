@@ -35,9 +35,10 @@ struct Texture {
     bool operator==(const Texture&) const = default;
 };
 
-/// Decodes a PNG, JPEG, WebP, BMP or TGA file. Grey becomes RGB, alpha is dropped, 16 bits
-/// become 8. `origin` is the end from which the mesh's uvs count. Throws:  std::runtime_error
-/// "expected X, got Y" for a file that is no such image, is broken, or
+/// Decodes a PNG, JPEG, WebP, BMP or TGA file. Grey becomes RGB, alpha is dropped, 16 bits become
+/// 8. `origin` is the end from which the mesh's uvs count.
+///
+/// Throws:  std::runtime_error "expected X, got Y" for a file that is no such image, is broken, or
 ///          declares more than 16384 x 16384 pixels or more than its bytes can hold
 ///          (mesh/image_decoder.h).
 [[nodiscard]] Texture decode_texture(std::span<const std::byte> file, VOrigin origin);

@@ -18,6 +18,7 @@
 #include "lights/light_list.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/binned_environment.h"
+#include "relight/bounces/bounce_light.h"
 #include "relight/exact.h"
 #include "relight/light_editor.h"
 #include "relight/relighter.h"
@@ -28,6 +29,8 @@
 namespace relumine {
 
 using relight::BinnedEnvironment;
+using relight::BounceLimits;
+using relight::BounceReport;
 using relight::RelightTimes;
 using relight::UpdateReport;
 
@@ -40,6 +43,8 @@ struct VerifyOptions {
     /// Receivers chosen at random, 0 for all
     std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
+    /// Paths of each receiver that bounces are compared with; only after bounce()
+    std::uint32_t num_paths = 256;
     /// Polled a few times a second; Cancelled is thrown
     std::stop_token stop = {};
     /// Fraction in [0, 1]; one call at a time
@@ -51,6 +56,9 @@ struct Verification {
     /// The receivers that were looked at
     std::vector<std::uint32_t> receivers;
     relight::ErrorReport error;
+    /// Standard error of the paths that bounces were compared with, relative to the radiance, L2
+    /// over the receivers; it is a part of error.relative_l2. 0 without bounces.
+    double noise = 0.0;
     /// Whether the pixels of the environment's file were integrated, not the texels of the map
     bool of_file = false;
 };
@@ -173,10 +181,27 @@ public:
     /// Throws:  std::logic_error before the first light() and for a scene without clusters.
     [[nodiscard]] const relight::Relighter& relighter() const;
 
+    /// Adds the light that surfaces send to each other to radiance() and lighting(), all of its
+    /// bounces or so many. It is for the present light: every other light or edit takes it away
+    /// until the next call. Surfaces are Lambert for it; what mirrors would show of other surfaces
+    /// is left out.
+    ///
+    /// `albedo` is [num_receivers] what pictures multiply the radiance with, as picture_albedo().
+    /// Radiance stays that of the receivers' own surfaces, or for albedo 1.
+    ///
+    /// Throws:  std::invalid_argument for a scene without bounces, and as
+    ///          relight::BounceLight::set_albedo(); std::logic_error before the first light().
+    /// Cost:    milliseconds, see docs/measurements.md.
+    BounceReport bounce(std::span<const glm::vec3> albedo, const BounceLimits& limits = {});
+
+    /// The part of radiance() that bounce() added, [num_receivers]; empty without it.
+    [[nodiscard]] std::span<const glm::vec3> bounced() const;
+
     /// Compares the radiance with exact integration, every shadow ray traced. Under an Environment
     /// from a file, its own pixels are integrated, each as a small area: so the error includes that
     /// of resampling. Under a map, or when layers or updates changed the environment, the map's
-    /// texels are.
+    /// texels are. After bounce() its light is compared with a path tracer, which shares nothing
+    /// but the rays.
     ///
     /// Throws:  std::logic_error unless an environment lights the scene; Cancelled.
     /// Cost:    half a million rays for each receiver, or 6 R^2: seconds for 2000 of them.

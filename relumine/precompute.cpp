@@ -14,6 +14,7 @@
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "relight/bounces/probe_lights.h"
 #include "relight/pictures/framing.h"
 #include "relumine/memory_limit.h"
 
@@ -59,6 +60,12 @@ public:
 
 private:
     void check_options() const {
+        if (options_.bounce_tolerance && !std::holds_alternative<Vertices>(options_.receivers))
+            throw std::invalid_argument(
+                "expected vertices for bounces, got pixels or texels, which have none yet");
+        if (options_.bounce_tolerance && !(*options_.bounce_tolerance > 0.0f))
+            throw std::invalid_argument(fmt::format("expected a tolerance of bounces > 0, got {}",
+                                                    *options_.bounce_tolerance));
         if (!options_.output.empty() && options_.output.extension() != ".prt")
             throw std::invalid_argument(
                 fmt::format("{}: expected a name that ends in .prt", options_.output.string()));
@@ -95,6 +102,8 @@ private:
         }
         if (has_highlights)
             add_highlights(rays, sizes);
+        if (options_.bounce_tolerance)
+            add_bounces(rays);
         prt::set_surfaces(scene_.transfer, scene_.receivers);
     }
 
@@ -231,7 +240,7 @@ private:
     /// the lowest value that an image of 8 bits has.
     void prepare_textures() {
         mesh::TriangleMesh& mesh = scene_.mesh;
-        if (mesh.textures.empty())
+        if (mesh.textures.empty() || mesh.triangle_materials.empty())
             return;
         if (options_.surface) {
             const auto plain = static_cast<std::uint32_t>(mesh.materials.size());
@@ -350,6 +359,19 @@ private:
         }
         report_.highlights = statistics;
         scene_.settings.glossy_tolerance = options_.glossy_tolerance;
+    }
+
+    void add_bounces(const prt::RayScene& rays) {
+        prt::BounceStatistics statistics;
+        scene_.bounces = prt::precompute_bounces(scene_.mesh, scene_.receivers, scene_.transfer,
+                                                 relight::probe_radiance(scene_.transfer), rays,
+                                                 {.tolerance = *options_.bounce_tolerance,
+                                                  .two_sided = options_.two_sided_bounces,
+                                                  .bias = clustering_.bias,
+                                                  .stop = options_.stop,
+                                                  .on_progress = progress(Stage::Bounces)},
+                                                 &statistics);
+        report_.bounces = statistics;
     }
 
     [[nodiscard]] std::function<void(double)> progress(Stage stage) const {

@@ -11,6 +11,7 @@
 #include <string>
 #include <variant>
 
+#include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/memory_estimate.h"
@@ -62,6 +63,8 @@ enum class Stage {
     Clusters,
     /// The view-dependent part; only where there are highlights and an eye
     Highlights,
+    /// Light from surface to surface; only where it is asked for
+    Bounces,
 };
 
 /// What on_warning() is told of.
@@ -104,6 +107,12 @@ struct PrecomputeOptions {
     prt::Surface floor_surface = {};
     /// Relative error of a highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
+
+    /// Light bounces from surface to surface, of vertices only; prt::BounceOptions::tolerance.
+    /// Empty: direct light alone.
+    std::optional<float> bounce_tolerance = {};
+    /// Surfaces send bounced light from both sides; otherwise their backs are black.
+    bool two_sided_bounces = false;
 
     /// Bytes. Work that is estimated to take more is refused before it begins. Work that turns out
     /// to take more is stopped. Empty: no limit.
@@ -148,6 +157,9 @@ struct PrecomputeReport {
     std::size_t num_highlights_left_out = 0;
     /// Receivers smoother than narrowest_roughness: their highlights come out wider
     std::size_t num_too_smooth = 0;
+
+    /// Only with bounces
+    std::optional<prt::BounceStatistics> bounces = {};
 
     /// Of the scene file, 0 without one
     std::uint64_t file_bytes = 0;

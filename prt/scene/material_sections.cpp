@@ -43,6 +43,14 @@ std::vector<std::optional<TextureSlot> Material::*> color_slots(mesh::MaterialMo
     }
 }
 
+/// Whether the images of its colours can be stored; textures that were made in code have no file.
+bool has_files(const Material& material, const std::vector<mesh::Texture>& textures) {
+    for (const auto slot : color_slots(material.model))
+        if (const auto& used = material.*slot; used && textures[used->texture].file.empty())
+            return false;
+    return true;
+}
+
 const char* name_of(std::optional<TextureSlot> Material::*slot) {
     return slot == &Material::base_color_texture           ? "base_texture"
            : slot == &Material::metallic_roughness_texture ? "metallic_texture"
@@ -118,8 +126,8 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
 } // namespace
 
 void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh) {
-    const auto has_texture = [](const Material& material) {
-        return material.base_color_texture.has_value();
+    const auto has_texture = [&](const Material& material) {
+        return material.base_color_texture && has_files(material, mesh.textures);
     };
     if (mesh.triangle_materials.empty() ||
         std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
@@ -134,15 +142,18 @@ void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh) {
             {"metallic", material.metallic},
             {"specular", {material.specular.r, material.specular.g, material.specular.b}},
             {"times_vertex_color", material.times_vertex_color}};
+        // A picture takes a material without its textures from the vertices.
+        const bool is_kept = has_files(material, mesh.textures);
         for (const auto slot : color_slots(material.model)) {
-            if (const auto& used = material.*slot; used && !stored.contains(used->texture)) {
+            const auto& used = is_kept ? material.*slot : std::nullopt;
+            if (used && !stored.contains(used->texture)) {
                 const mesh::Texture& texture = mesh.textures[used->texture];
                 stored.emplace(used->texture, textures.size());
                 textures.push_back({{"bytes", texture.file.size()},
                                     {"v_from_top", texture.origin == mesh::VOrigin::Top}});
                 images.insert(images.end(), texture.file.begin(), texture.file.end());
             }
-            json[name_of(slot)] = json_of(material.*slot, stored);
+            json[name_of(slot)] = json_of(used, stored);
         }
         materials.push_back(json);
     }

@@ -10,6 +10,7 @@
 #include <xxhash.h>
 
 #include "files/output_file.h"
+#include "prt/scene/bounce_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/material_sections.h"
 #include "prt/scene/older_counts.h"
@@ -64,6 +65,8 @@ public:
         scene.layout = read_layout(reader_);
         scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
         scene.transfer = transfer(scene.receivers, scene.settings);
+        if (std::holds_alternative<VertexLayout>(scene.layout))
+            scene.bounces = read_bounces(reader_, scene.receivers.size());
         check_scene(scene, reader_.path());
         return scene;
     }
@@ -217,6 +220,13 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
     sections["counts"] = bytes_of(counts.counts);
     if (scene.transfer.glossy)
         add_glossy_sections(sections, *scene.transfer.glossy);
+    if (scene.bounces) {
+        if (!on_vertices)
+            throw std::invalid_argument(
+                fmt::format("{}: expected bounces of vertices only", path.string()));
+        require_bounces(*scene.bounces, num_receivers, num_receivers);
+        add_bounce_sections(sections, *scene.bounces);
+    }
     return write_sections(path, sections);
 }
 

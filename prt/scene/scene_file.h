@@ -7,6 +7,7 @@
 #include <string>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/bounces/bounce_matrix.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
 #include "prt/transfer.h"
@@ -45,6 +46,8 @@ struct Scene {
     Receivers receivers = {};
     /// What the receivers are.
     ReceiverLayout layout = {};
+    /// Light from surface to surface; only of vertices.
+    std::optional<BounceMatrix> bounces = {};
 };
 
 /// Writes the scene, whole or not at all. Returns the file's size in bytes. Positions and normals

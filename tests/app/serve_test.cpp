@@ -183,7 +183,7 @@ TEST_F(Serve, AFailedRequestIsOneLineAndTheSceneGoesOn) {
         "ENV: expected a value, got ''",
         "ENV is required",
         "size: expected text",
-        "expected .png",
+        "expected a name that ends in .png",
         "\"transparent\" to be true or false",
         "output or shared-memory",
         "ends in .npy",

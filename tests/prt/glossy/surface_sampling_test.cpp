@@ -56,6 +56,23 @@ TEST(SurfaceSampling, MetallicRoughness) {
     EXPECT_EQ(surface_at(square(metal), 0, {}).specular, glm::vec3(0.04f));
 }
 
+/// F0 takes its part of the diffuse colour, as KHR_materials_pbrSpecularGlossiness defines it.
+TEST(SurfaceSampling, SpecularGlossiness) {
+    Material material = {.model = MaterialModel::SpecularGlossiness,
+                         .base_color = {1.0f, 0.5f, 0.25f},
+                         .roughness = 0.375f,
+                         .specular = {0.25f, 0.5f, 0.125f}};
+    EXPECT_EQ(surface_at(square(material), 0, {}), (Surface{.albedo = {0.5f, 0.25f, 0.125f},
+                                                            .specular = {0.25f, 0.5f, 0.125f},
+                                                            .highlight = Highlight::Ggx,
+                                                            .roughness_or_exponent = 0.375f}));
+    mesh::TriangleMesh mesh = square(material);
+    mesh.textures = {two_texels({255, 0, 255}, {255, 0, 255})};
+    mesh.materials[0].specular_texture = Clamped;
+    EXPECT_EQ(surface_at(mesh, 0, {}).specular, glm::vec3(0.25f, 0.0f, 0.125f));
+    EXPECT_EQ(surface_at(mesh, 0, {}).albedo, glm::vec3(0.75f, 0.375f, 0.1875f));
+}
+
 TEST(SurfaceSampling, PhongIsLambertWithoutKs) {
     const Material matt = {.base_color = glm::vec3(0.5f), .exponent = 30.0f};
     Material shiny = matt;

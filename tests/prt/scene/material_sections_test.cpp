@@ -64,6 +64,19 @@ TEST(MaterialSections, AreOnlyForTextures) {
     EXPECT_TRUE(read({}, mesh).materials.empty()) << "files without them are good";
 }
 
+TEST(MaterialSections, TexturesThatWereMadeInCodeAreLeftOut) {
+    mesh::TriangleMesh mesh = scenes::textured_square();
+    mesh.textures.push_back({.name = "made", .width = 1, .height = 1, .texels = {{9, 9, 9}}});
+    mesh.materials.push_back({.base_color_texture = mesh::TextureSlot{.texture = 1}});
+    mesh.triangle_materials = {1, 2};
+    const mesh::TriangleMesh same = read(written(mesh), mesh);
+    EXPECT_TRUE(same.materials[1].base_color_texture);
+    EXPECT_FALSE(same.materials[2].base_color_texture);
+    mesh.triangle_materials = {2, 2};
+    mesh.materials[1].base_color_texture.reset();
+    EXPECT_TRUE(written(mesh).empty());
+}
+
 TEST(MaterialSections, BrokenOnesAreRefused) {
     const mesh::TriangleMesh mesh = scenes::textured_square();
     const Sections good = written(mesh);

@@ -291,10 +291,11 @@ TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(BounceScenes, ASmallerToleranceTakesMoreRaysAndErrsLess) {
-    const mesh::TriangleMesh mesh = closed_room();
-    const BouncingScene coarse(mesh, 0.1f), fine(mesh, 0.01f);
-    EXPECT_LT(coarse.statistics.num_rays, fine.statistics.num_rays);
-    EXPECT_LE(fine.statistics.rms_error, 0.01);
+    const mesh::TriangleMesh mesh = bowl(3);
+    const BouncingScene coarse(mesh, 0.1f), fine(mesh, 0.004f);
+    EXPECT_LT(2 * coarse.statistics.num_rays, fine.statistics.num_rays);
+    EXPECT_LT(2.0 * fine.statistics.rms_error, coarse.statistics.rms_error);
+    EXPECT_LE(fine.statistics.rms_error, 0.0045);
 }
 
 TEST(BounceScenes, RefusesWhatDoesNotFit) {

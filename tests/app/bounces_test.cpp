@@ -1,0 +1,93 @@
+// `--bounces` of precompute, relight and verify.
+#include "tests/app/command.h"
+#include "tests/app/formats.h"
+#include "tests/app/small_files.h"
+
+namespace relumine::app {
+namespace {
+
+class Bounces : public AppTest {
+protected:
+    Bounces() {
+        succeed({"generate", "colonnade", "-o", ".", "--vertices", "2000", "-q"});
+        write("white.hdr", white_hdr());
+    }
+
+    void precompute(const std::string& output, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments = {
+            "precompute", "colonnade.ply", "-o", output, "--face-resolution", "64", "-q"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        succeed(arguments);
+    }
+
+    [[nodiscard]] std::vector<std::array<float, 3>> relit(const std::string& scene,
+                                                          std::vector<std::string> more) {
+        more.insert(more.begin(), {"relight", scene, "white.hdr", "-o", "out.npy", "-q"});
+        succeed(more);
+        return npy_values(read("out.npy"));
+    }
+};
+
+double mean(const std::vector<std::array<float, 3>>& values) {
+    double sum = 0.0;
+    for (const auto& value : values)
+        sum += static_cast<double>(value[1]);
+    return sum / static_cast<double>(values.size());
+}
+
+TEST_F(Bounces, AddLightAndAreAPartOfTheirOwn) {
+    precompute("scene.prt", {"--bounces"});
+    precompute("direct.prt");
+    const auto direct = relit("direct.prt", {});
+    EXPECT_EQ(relit("scene.prt", {"--bounces", "0"}), direct) << "direct light stays as it is";
+    const auto all = relit("scene.prt", {});
+    const auto only = relit("scene.prt", {"--only-bounces"});
+    const auto once = relit("scene.prt", {"--bounces", "1", "--only-bounces"});
+    ASSERT_EQ(all.size(), direct.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            ASSERT_NEAR(all[i][c], direct[i][c] + only[i][c], 1e-5f);
+    EXPECT_GT(mean(only), 0.02 * mean(direct));
+    EXPECT_GT(mean(only), mean(once));
+    EXPECT_GT(mean(once), 0.5 * mean(only));
+    EXPECT_EQ(all, relit("scene.prt", {"--bounces", "all"}));
+}
+
+TEST_F(Bounces, AgreeWithAPathTracer) {
+    precompute("scene.prt", {"--bounces", "0.01", "--tolerance", "0.01"});
+    const auto verify = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> arguments = {"verify", "scene.prt", "white.hdr", "--samples",
+                                              "300",    "--albedo",  "0.8",       "--paths",
+                                              "1000",   "--json"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return succeed(arguments).json();
+    };
+    const nlohmann::json with = verify({}), without = verify({"--bounces", "0"});
+    EXPECT_GT(with["bounces"], 2);
+    EXPECT_GT(with["noise"], 0.0);
+    EXPECT_LT(with["noise"], 0.02);
+    // The mesh is coarse, so light between its vertices is, too.
+    EXPECT_LT(with["relative_l2"], 0.05);
+    EXPECT_EQ(without["bounces"], 0);
+    EXPECT_EQ(without["noise"], 0.0);
+    EXPECT_GT(with["mean_radiance"], 1.03 * without["mean_radiance"].get<double>());
+}
+
+TEST_F(Bounces, WrongUseIsOneLine) {
+    precompute("direct.prt");
+    fail({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "all"},
+         {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
+    fail({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--only-bounces"},
+         {"direct.prt: expected bounces for --only-bounces, got none"});
+    misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "many"},
+           "--bounces: expected a number of bounces or 'all', got 'many'");
+    misuse({"precompute", "colonnade.ply", "-o", "x.prt", "--bounces", "0"},
+           "--bounces: expected a standard error of 0.0001 to 1, got '0'");
+    misuse({"precompute", "--bounces", "colonnade.ply", "-o", "x.prt"}, "the mesh goes first");
+    fail({"precompute", "colonnade.ply", "-o", "x.prt", "--bounces", "--receivers", "pixels:32x32",
+          "--view", "auto"},
+         {"expected vertices for bounces"});
+}
+
+} // namespace
+} // namespace relumine::app
