@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <limits>
 #include <type_traits>
@@ -33,6 +34,8 @@ struct Command::Data {
     std::unique_ptr<CLI::App> owned = {};
     std::vector<std::unique_ptr<Option::Data>> options = {};
     std::vector<std::unique_ptr<Command::Data>> commands = {};
+    /// All that were given; the last one counts.
+    std::deque<std::function<void()>> works = {};
 
     [[nodiscard]] CommandTable table() const;
 };
@@ -451,7 +454,9 @@ void Command::footer(const std::string& text) {
 }
 
 void Command::on_run(std::function<void()> work) {
-    data_->app->callback(std::move(work));
+    // The options' variables may live in the work, also in one that this replaces.
+    data_->works.push_back(std::move(work));
+    data_->app->callback([&last = data_->works.back()] { last(); });
 }
 
 Command Command::command(const std::string& name) const {
