@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <limits>
 #include <type_traits>
@@ -33,6 +34,8 @@ struct Command::Data {
     std::unique_ptr<CLI::App> owned = {};
     std::vector<std::unique_ptr<Option::Data>> options = {};
     std::vector<std::unique_ptr<Command::Data>> commands = {};
+    /// All that were given; the last one counts.
+    std::deque<std::function<void()>> works = {};
 
     [[nodiscard]] CommandTable table() const;
 };
@@ -215,13 +218,17 @@ std::string surplus(const CLI::App& command, const std::vector<std::string>& res
 /// CLI11 looks at first.
 std::string complaint(const CLI::App& command, const CLI::ParseError& error) {
     std::vector<std::string> rest = command.remaining();
-    std::erase(rest, "--"); // CLI11 leaves it there
-    for (const std::string& word : rest)
-        if (word.size() > 1 && word.front() == '-') {
-            const std::string name = word.substr(0, word.find('='));
-            return fmt::format("{}: no option of `{}`{}", name, full_name(command),
-                               files::did_you_mean(name, names_of_options(command)));
-        }
+    // CLI11 leaves the two dashes there; no options follow them.
+    const auto dashes = std::find(rest.begin(), rest.end(), "--");
+    const auto option = std::find_if(rest.begin(), dashes, [](const std::string& word) {
+        return word.size() > 1 && word.front() == '-';
+    });
+    if (option != dashes) {
+        const std::string name = option->substr(0, option->find('='));
+        return fmt::format("{}: no option of `{}`{}", name, full_name(command),
+                           files::did_you_mean(name, names_of_options(command)));
+    }
+    std::erase(rest, "--");
     const std::vector<std::string> commands = names_of_commands(command);
     if (!commands.empty() && !rest.empty())
         return fmt::format("expected a command, got '{}'{}", rest.front(),
@@ -451,7 +458,9 @@ void Command::footer(const std::string& text) {
 }
 
 void Command::on_run(std::function<void()> work) {
-    data_->app->callback(std::move(work));
+    // The options' variables may live in the work, also in one that this replaces.
+    data_->works.push_back(std::move(work));
+    data_->app->callback([&last = data_->works.back()] { last(); });
 }
 
 Command Command::command(const std::string& name) const {

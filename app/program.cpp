@@ -18,9 +18,9 @@ void add_commands(CommandLine& line, Session& session) {
     add_env(program, session);
     add_view(program, session);
     add_serve(program, session);
+    add_help(line);
     add_completion(line);
     add_man(line);
-    add_help(line);
 }
 
 } // namespace relumine::app

@@ -10,8 +10,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-#include "lights/nearest_centre.h"
 #include "cubemap/split_mix64.h"
+#include "lights/nearest_centre.h"
 
 namespace relumine::lights {
 

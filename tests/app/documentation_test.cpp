@@ -57,8 +57,8 @@ protected:
     }
 
     [[nodiscard]] std::vector<std::string> commands() const {
-        return {"precompute", "relight",  "animate", "edit", "verify",     "lights",
-                "info",       "generate", "env",     "view", "completion", "man"};
+        return {"precompute", "relight", "animate", "edit",       "verify", "lights", "info",
+                "generate",   "env",     "view",    "completion", "man",    "serve",  "help"};
     }
 };
 

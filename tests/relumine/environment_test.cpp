@@ -1,5 +1,7 @@
 #include "relumine/environment.h"
 
+#include <limits>
+
 #include "cubemap/resample/resample.h"
 #include "data_gen/environments.h"
 #include "tests/relumine/small_scenes.h"
@@ -28,7 +30,7 @@ TEST_F(EnvironmentFile, IsResampledAndTurned) {
 TEST_F(EnvironmentFile, WithBadPixelsIsFixedOnlyWhenAsked) {
     cubemap::EnvironmentImage image =
         cubemap::to_image(cubemap::CubeMap(4, glm::vec3(1.0f)), cubemap::Layout::LatLong, 16, 8);
-    image.pixels[20].g = -1.0f;
+    image.pixels[20].g = std::numeric_limits<float>::quiet_NaN();
     cubemap::save_image(file("bad.exr"), image);
     EXPECT_THROW(static_cast<void>(load_environment(file("bad.exr"))), std::runtime_error);
     EXPECT_EQ(load_environment(file("bad.exr"), {.fix_bad_pixels = true}).num_fixed_pixels, 1u);

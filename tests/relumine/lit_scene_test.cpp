@@ -1,7 +1,9 @@
 #include "relumine/lit_scene.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -200,6 +202,34 @@ TEST(LitScene, IsVerifiedByExactIntegration) {
     std::stop_source stop;
     stop.request_stop();
     EXPECT_THROW(static_cast<void>(scene.verify({.stop = stop.get_token()})), Cancelled);
+}
+
+TEST(LitScene, BouncesUntilTheLightChanges) {
+    LitScene scene(
+        precompute(scenes::boulder(), {.tolerance = scenes::Tolerance, .bounce_tolerance = 0.05f}));
+    const std::vector<glm::vec3> albedo(scene.scene().receivers.size(), glm::vec3(0.5f));
+    EXPECT_THROW(scene.bounce(albedo), std::logic_error);
+    const cubemap::CubeMap white(8, glm::vec3(1.0f));
+    scene.light(white);
+    const std::vector<glm::vec3> direct(scene.radiance().begin(), scene.radiance().end());
+    EXPECT_TRUE(scene.bounced().empty());
+    scene.bounce(albedo);
+    const std::vector<glm::vec3> all(scene.radiance().begin(), scene.radiance().end());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        ASSERT_EQ(all[i], direct[i] + scene.bounced()[i]);
+    EXPECT_GT(std::accumulate(all.begin(), all.end(), glm::vec3(0.0f)).g,
+              1.01f * std::accumulate(direct.begin(), direct.end(), glm::vec3(0.0f)).g);
+    scene.light(white);
+    EXPECT_TRUE(std::equal(direct.begin(), direct.end(), scene.radiance().begin()));
+    scene.bounce(albedo);
+    EXPECT_TRUE(std::equal(all.begin(), all.end(), scene.radiance().begin()));
+
+    const Verification check = scene.verify({.num_samples = 50, .num_paths = 64});
+    EXPECT_GT(check.noise, 0.0);
+    EXPECT_LT(check.error.relative_l2, 0.1);
+    LitScene without(boulder_scene());
+    without.light(white);
+    EXPECT_THROW(without.bounce(albedo), std::invalid_argument);
 }
 
 TEST(LitScene, KnowsWhatLightsIt) {

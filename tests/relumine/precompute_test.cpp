@@ -27,7 +27,7 @@ TEST(Precompute, IsItsStepsInOneCall) {
     prt::expect_same(scene.transfer, prt::precompute(prt::vertex_receivers(mesh), rays,
                                                      {.tolerance = Tolerance, .bias = bias}));
     EXPECT_EQ(scene.mesh.positions, mesh.positions);
-    EXPECT_EQ(scene.receivers.positions, mesh.positions);
+    EXPECT_EQ(scene.receivers.positions, prt::vertex_receivers(mesh).positions);
     EXPECT_EQ(scene.settings.tolerance, Tolerance);
     EXPECT_EQ(scene.settings.bias, bias);
     EXPECT_EQ(scene.settings.min_level, 3u);

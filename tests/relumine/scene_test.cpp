@@ -26,7 +26,7 @@ TEST(Tolerance, TravelsWithTheScene) {
 
 TEST(UnclusteredScene, HasVerticesAndABias) {
     const Scene scene = unclustered_scene(scenes::boulder());
-    EXPECT_EQ(scene.receivers.positions, scene.mesh.positions);
+    EXPECT_EQ(scene.receivers.positions, prt::vertex_receivers(scene.mesh).positions);
     EXPECT_EQ(scene.settings.bias, prt::automatic_bias(scene.mesh));
     EXPECT_EQ(scene.transfer.num_receivers(), 0u);
 }

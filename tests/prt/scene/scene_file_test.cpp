@@ -405,7 +405,7 @@ VisibleCounts counts_of_all_samples(const Scene& scene, const Blockers& blockers
     const Transfer& transfer = scene.transfer;
     std::vector<glm::vec3> origins;
     for (std::size_t place = 0; place < transfer.num_receivers(); ++place)
-        origins.push_back(ray_origin(scene.mesh.positions[transfer.order[place]],
+        origins.push_back(ray_origin(scene.receivers.positions[transfer.order[place]],
                                      transfer.normals[place], scene.settings.bias));
     const NormalArrays normals(transfer.normals);
     VisibilityPlanes planes(origins, normals, blockers);
