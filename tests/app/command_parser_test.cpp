@@ -124,6 +124,7 @@ TEST_F(CommandParser, RefusesWrongLines) {
     EXPECT_THAT(refused({"run", "a", "--nonsense"}), HasSubstr("--nonsense"));
     EXPECT_EQ(refused({"run", "-n", "two", "--", "a"}),
               "--number: expected a whole number of 0 to 4294967295, got 'two'");
+    EXPECT_EQ(refused({"run", "--", "-a", "-b"}), "IN: expected no argument more, got '-b'");
     EXPECT_THAT(refused({"run", "a", "-n", "1", "-n", "2"}), HasSubstr("--number"));
     EXPECT_THAT(refused({"run", "a", "-q", "--volume", "2"}), HasSubstr("--volume"));
     EXPECT_THAT(refused({"run", "a", "--echo", "2"}), HasSubstr("--volume"));
