@@ -46,10 +46,6 @@ void require_fit(const Scene& scene, std::span<const glm::vec3> radiance) {
                                                 scene.receivers.size(), radiance.size()));
 }
 
-} // namespace
-
-namespace {
-
 /// Whether the colours are looked at or computed with.
 enum class Purpose { Show, Compute };
 
@@ -85,8 +81,6 @@ std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options,
     return result;
 }
 
-namespace {
-
 /// Radiance is finite, but its product with albedo and exposure need not be.
 void require_finite(const std::filesystem::path& path, std::span<const glm::vec3> values,
                     double exposure_ev = 0.0) {
@@ -97,8 +91,6 @@ void require_finite(const std::filesystem::path& path, std::span<const glm::vec3
                 fmt::format("{}: expected radiance times albedo and exposure within {}, got more",
                             path.string(), std::numeric_limits<float>::max()));
 }
-
-} // namespace
 
 std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
     std::vector<glm::vec3> result(a.begin(), a.end());

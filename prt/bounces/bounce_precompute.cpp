@@ -1,7 +1,6 @@
 #include "prt/bounces/bounce_precompute.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>

@@ -49,9 +49,6 @@ app::Session& fresh_session() {
     return session;
 }
 
-/// Ends a command before its work.
-struct ParsedOnly {};
-
 /// Returns true for a line that is not refused as wrong usage.
 bool run(app::CommandLine& program, const Words& arguments) {
     try {
@@ -227,16 +224,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         return 0;
     app::CommandLine program("relumine", "", "");
     app::add_commands(program, fresh_session());
-    program.before_run([&program] {
-        for (const char* name : {"generate", "view", "completion", "man", "help", "serve"})
-            if (program.command_name() == fmt::format("relumine {}", name))
-                throw ParsedOnly();
-    });
-    try {
-        run(program, lines(text));
-    } catch (const ParsedOnly&) {
-        ++fuzz::num_accepted;
-    }
+    for (const char* name : {"generate", "view", "completion", "man", "help", "serve"})
+        program.root().command(name).on_run([] {});
+    run(program, lines(text));
     fuzz::require(fs::is_empty(Empty), "a failed command leaves no file");
     return 0;
 }

@@ -125,6 +125,8 @@ TEST_F(LightFile, WritesNothingThatItWouldRefuse) {
     EXPECT_THROW(save_lights(path_, {}), std::invalid_argument);
     EXPECT_THROW(save_lights(path_, {.lights = {{}}, .seed = ~std::uint64_t{0}}),
                  std::invalid_argument);
+    save_lights(path_, {.lights = {{}}, .environment = "a\xff.hdr"});
+    EXPECT_EQ(load_lights(path_).environment, "a\ufffd.hdr") << "bytes that JSON cannot hold";
     EXPECT_THROW(save_lights("/no/such/folder/lights.json", {.lights = {{}}}), std::runtime_error);
 }
 
