@@ -52,6 +52,10 @@ function(relumine_library name)
         VERSION ${PROJECT_VERSION}
         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
         INSTALL_RPATH "$ORIGIN")
+    if(RELUMINE_BUILD_PYTHON)
+        # The module is a shared object that holds the static libraries.
+        set_target_properties(relumine_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+    endif()
     target_link_libraries(relumine_${name} PRIVATE $<BUILD_INTERFACE:relumine_warnings>)
     relumine_optimise(relumine_${name} -O2)
     # A shared library depends on no more than it uses.

@@ -111,7 +111,7 @@ void check_for_save(const LightLayers& layers) {
 
 } // namespace
 
-void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
+std::string json_text(const LightLayers& layers) {
     check_for_save(layers);
     Json root = {{"version", 1}};
     if (layers.base)
@@ -126,14 +126,16 @@ void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
         for (const KeyFrame& key : layers.frames)
             root["frames"].push_back(json(key, layers.layers));
     }
-    std::string text;
     try {
-        text = root.dump(2) + '\n';
+        return root.dump(2) + '\n';
     } catch (const Json::exception&) {
         throw std::invalid_argument(
-            fmt::format("{}: expected names and paths in UTF-8, got other bytes", path.string()));
+            "light layers: expected names and paths in UTF-8, got other bytes");
     }
-    files::save_text(path, text);
+}
+
+void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
+    files::save_text(path, json_text(layers));
 }
 
 } // namespace relumine::cubemap
