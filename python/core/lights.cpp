@@ -65,8 +65,8 @@ py::tuple loaded_list(const Path& path) {
 }
 
 void save_list(const Path& path, const py::buffer& directions, const py::buffer& irradiances,
-          const py::buffer& solid_angles, const std::string& method,
-          const std::optional<std::string>& format_name, bool soft, double lumens_per_watt) {
+               const py::buffer& solid_angles, const std::string& method,
+               const std::optional<std::string>& format_name, bool soft, double lumens_per_watt) {
     const auto format =
         format_name ? lights::light_format_named(*format_name) : lights::light_format_of(path);
     if (!format)

@@ -33,7 +33,8 @@ _SYSTEM_ERRORS = {
 
 
 def _file_error(text: str, path: str) -> OSError:
-    reason = text[len(path) + 2 :] if text.startswith(f"{path}: ") else text
+    reason = text[len(path) + 1 :].lstrip() if text.startswith(f"{path}:") else text
+    reason = re.sub(r"^(\d+): ", r"line \1: ", reason)
     for words, code in _SYSTEM_ERRORS.items():
         if words in text:
             return OSError(code, reason, path)

@@ -84,7 +84,7 @@ class Mesh:
         Raises OSError with the file's name.
 
         >>> relumine.Mesh.load("boulder.ply", floor=20)
-        <relumine.Mesh: 5402 vertices, 10722 triangles, floor of 20 x 20>
+        <relumine.Mesh: 7312 vertices, 14070 triangles, floor of 20 x 20>
         """
         options = {"up": up, "normals": normals, "floor": floor, "floor_scale": floor_scale}
         with errors(path):

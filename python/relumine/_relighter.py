@@ -98,10 +98,10 @@ class Relighter:
     Relighter take turns.
 
     >>> relighter = relumine.Relighter(scene)
-    >>> relighter.set_environment(environment).sharp_lights
-    0
+    >>> relighter.set_environment(environment).seconds_relight < 1
+    True
     >>> relighter.radiance.shape
-    (5002, 3)
+    (6912, 3)
     """
 
     def __init__(
@@ -271,7 +271,7 @@ class Relighter:
 
         samples  receivers chosen at random; 0: all
 
-        >>> relighter.verify(100).relative_l2 < 0.2
+        >>> relighter.verify(20).relative_l2 < 0.2
         True
         """
         found = self._core.verify(samples, seed, paths, progress)

@@ -124,7 +124,7 @@ def precompute(
 
     >>> scene = relumine.precompute(relumine.Mesh.load("boulder.ply"), tolerance=0.05)
     >>> scene
-    <relumine.Scene: vertices, 5002 receivers, 1452 clusters>
+    <relumine.Scene: vertices, 6912 receivers, 384 clusters>
     """
     if not isinstance(mesh, Mesh):
         if triangles is None:
@@ -171,7 +171,7 @@ class Scene:
     report: Dict[str, Any]
 
     @classmethod
-    def _of(cls, core: _core.Scene) -> "Scene":
+    def _of(cls, core: CoreScene) -> "Scene":
         scene = cls.__new__(cls)
         scene._core = core
         scene.report = {}
@@ -182,7 +182,7 @@ class Scene:
         """Reads a .prt file and checks all of it. Raises OSError with the file's name.
 
         >>> relumine.Scene.load("boulder.prt").num_receivers
-        5002
+        6912
         """
         with errors(path):
             return cls._of(_core.load_scene(os.fspath(path)))
