@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from typing import Any, Dict, Mapping, Optional, Sequence, Tuple
+from typing import Any, Dict, Optional, Sequence, Tuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, floats, numbers, view
+from ._arrays import Floats, floats, view
 from ._files import Path, errors
 from ._lights import LightList
 from ._mesh import warn

@@ -6,8 +6,8 @@ import json
 import os
 import re
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, field, fields
-from typing import Any, ClassVar, Dict, Iterator, List, Mapping, Optional, Sequence, Tuple, Union
+from dataclasses import asdict, dataclass, fields
+from typing import Any, ClassVar, Dict, Iterator, List, Mapping, Optional, Sequence, Union
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Docstrings that run, types that hold, a stub that says what the module has."""
+"""Docstrings that run, types that hold, a stub that says what the compiled part has."""
 
 import doctest
 import inspect
@@ -89,4 +89,4 @@ def test_types_hold(tmp_path):
 def test_the_stub_fits_the_module(tmp_path):
     config = tmp_path / "mypy.ini"
     config.write_text(f"[mypy]\ncache_dir = {tmp_path}\n")
-    mypy("mypy.stubtest", "relumine", "--mypy-config-file", str(config))
+    mypy("mypy.stubtest", "relumine._core", "--mypy-config-file", str(config))
