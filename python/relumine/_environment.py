@@ -232,7 +232,8 @@ class Environment:
         height, width, _ = self.pixels.shape
         flip, tilt, rotate = self._core.angles
         turns = [f"flip {flip}"] if flip else []
-        turns += [f"{name} {angle:g}" for name, angle in (("tilt", tilt), ("rotate", rotate)) if angle]
+        angles = (("tilt", tilt), ("rotate", rotate))
+        turns += [f"{name} {angle:g}" for name, angle in angles if angle]
         r = self.face_resolution
         return (
             f"<relumine.Environment: {self.layout} {width} x {height}, "

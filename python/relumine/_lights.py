@@ -94,4 +94,5 @@ class LightList:
         return len(self.directions)
 
     def __repr__(self) -> str:
-        return f"<relumine.LightList: {len(self)} lights{' by ' + self.method if self.method else ''}>"
+        method = f" by {self.method}" if self.method else ""
+        return f"<relumine.LightList: {len(self)} lights{method}>"
