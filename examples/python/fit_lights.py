@@ -71,7 +71,7 @@ solved = time.perf_counter()
 relighter.set_layers(boxes(found))
 fitted = picture()
 error = np.linalg.norm(fitted - target) / np.linalg.norm(target)
-print(f"{1e3 * (drawn - start):.0f} ms for 12 pictures, {1e3 * (solved - drawn):.0f} ms for the fit")
+print(f"{1e3 * (drawn - start):.0f} ms for 12 pictures, {1e3 * (solved - drawn):.0f} ms to fit")
 for i, (true, color) in enumerate(zip(hidden, found)):
     print(f"box {i:2}: {np.round(true, 2)} found {np.round(color, 2)}")
 print(f"relative difference of the pictures {error:.4f}")
