@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <xxhash.h>
 
 #include "files/output_file.h"
@@ -32,24 +31,23 @@ std::vector<std::byte> counted(const std::vector<bool>& flags) {
 }
 
 std::vector<std::byte> settings_json(const SceneSettings& settings) {
-    nlohmann::json json = {{"tolerance", settings.tolerance},
-                           {"min_level", settings.min_level},
-                           {"face_resolution", settings.face_resolution},
-                           {"bias", settings.bias},
-                           {"floor_vertices", settings.floor_vertices},
-                           {"source", settings.source},
-                           {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
+    files::Json json = {{"tolerance", settings.tolerance},
+                        {"min_level", settings.min_level},
+                        {"face_resolution", settings.face_resolution},
+                        {"bias", settings.bias},
+                        {"floor_vertices", settings.floor_vertices},
+                        {"source", settings.source},
+                        {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
     if (settings.epsilon)
-        json["epsilon"] = *settings.epsilon;
+        json.set("epsilon", *settings.epsilon);
     if (settings.glossy_tolerance)
-        json["glossy_tolerance"] = *settings.glossy_tolerance;
+        json.set("glossy_tolerance", *settings.glossy_tolerance);
     if (settings.view) {
         const Camera& view = *settings.view;
-        json["view"] = {view.eye.x,    view.eye.y,    view.eye.z,      view.target.x,
-                        view.target.y, view.target.z, view.fov_degrees};
+        json.set("view", {view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y,
+                          view.target.z, view.fov_degrees});
     }
-    // A file name need not be UTF-8, but JSON must be.
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string text = json.text(2);
     return bytes_of(std::vector<char>(text.begin(), text.end()));
 }
 
@@ -88,7 +86,7 @@ private:
     }
 
     SceneSettings settings() const {
-        const nlohmann::json json = reader_.json("settings");
+        const files::Json json = reader_.json("settings");
         SceneSettings settings;
         try {
             settings.tolerance = real(json.at("tolerance"));
@@ -96,15 +94,14 @@ private:
             settings.face_resolution = natural(json.at("face_resolution"));
             settings.bias = real(json.at("bias"));
             settings.floor_vertices = natural(json.at("floor_vertices"));
-            settings.source = json.at("source");
-            settings.source_hash =
-                std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
+            settings.source = json.at("source").string();
+            settings.source_hash = std::stoull(json.at("source_hash").string(), nullptr, 16);
             if (json.contains("epsilon"))
                 settings.epsilon = real(json.at("epsilon"));
             if (json.contains("glossy_tolerance"))
                 settings.glossy_tolerance = real(json.at("glossy_tolerance"));
             if (json.contains("view")) {
-                const nlohmann::json& view = json.at("view");
+                const files::Json& view = json.at("view");
                 const auto at = [&](std::size_t i) {
                     return real(view.at(i));
                 };
