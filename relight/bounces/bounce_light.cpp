@@ -250,14 +250,20 @@ private:
     /// Returns |next_ - indirect_| over |B + next_|.
     [[nodiscard]] double step_size() const {
         const auto [steps, all] = sum_over_rows<2>([&](std::size_t begin, std::size_t end) {
-            std::array<double, 2> part{};
+            // The fourth channel is 0 everywhere. A task has few rows, so floats will do.
+            PaddedRgb step_sums, light_sums;
             for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const double step = static_cast<double>(next_[i].rgb[c] - indirect_[i].rgb[c]);
-                    const double light = static_cast<double>(next_[i].rgb[c] + direct_[i].rgb[c]);
-                    part[0] += step * step;
-                    part[1] += light * light;
+                for (std::size_t c = 0; c < 4; ++c) {
+                    const float step = next_[i].rgb[c] - indirect_[i].rgb[c];
+                    const float light = next_[i].rgb[c] + direct_[i].rgb[c];
+                    step_sums.rgb[c] += step * step;
+                    light_sums.rgb[c] += light * light;
                 }
+            std::array<double, 2> part{};
+            for (std::size_t c = 0; c < 3; ++c) {
+                part[0] += static_cast<double>(step_sums.rgb[c]);
+                part[1] += static_cast<double>(light_sums.rgb[c]);
+            }
             return part;
         });
         return all > 0.0 ? std::sqrt(steps / all) : 0.0;
@@ -318,21 +324,25 @@ private:
         // Of each channel: products of each difference with the change, then with each other.
         constexpr std::size_t NumSums = AndersonDepth * (1 + AndersonDepth);
         const auto sums = sum_over_rows<3 * NumSums>([&](std::size_t begin, std::size_t end) {
-            std::array<double, 3 * NumSums> part{};
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    double* sum = part.data() + c * NumSums;
-                    const float change = now.change[i].rgb[c];
-                    std::array<double, AndersonDepth> differences{};
-                    for (std::size_t a = 0; a < depth; ++a)
-                        differences[a] =
-                            static_cast<double>(change - step_before(a).change[i].rgb[c]);
-                    for (std::size_t a = 0; a < depth; ++a) {
-                        sum[a] += static_cast<double>(change) * differences[a];
+            std::array<PaddedRgb, NumSums> sums_of_task{};
+            for (std::size_t i = begin; i < end; ++i) {
+                std::array<PaddedRgb, AndersonDepth> differences{};
+                for (std::size_t a = 0; a < depth; ++a)
+                    for (std::size_t c = 0; c < 4; ++c)
+                        differences[a].rgb[c] =
+                            now.change[i].rgb[c] - step_before(a).change[i].rgb[c];
+                for (std::size_t a = 0; a < depth; ++a)
+                    for (std::size_t c = 0; c < 4; ++c) {
+                        sums_of_task[a].rgb[c] += now.change[i].rgb[c] * differences[a].rgb[c];
                         for (std::size_t b = 0; b <= a; ++b)
-                            sum[AndersonDepth * (1 + a) + b] += differences[a] * differences[b];
+                            sums_of_task[AndersonDepth * (1 + a) + b].rgb[c] +=
+                                differences[a].rgb[c] * differences[b].rgb[c];
                     }
-                }
+            }
+            std::array<double, 3 * NumSums> part{};
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t k = 0; k < NumSums; ++k)
+                    part[c * NumSums + k] = static_cast<double>(sums_of_task[k].rgb[c]);
             return part;
         });
         std::array<std::array<float, 4>, AndersonDepth> factors{};
@@ -360,7 +370,10 @@ private:
         for_rows([&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place) {
                 const PaddedRgb& value = indirect_[place];
-                published_[transfer_.order[place]] = {value.rgb[0], value.rgb[1], value.rgb[2]};
+                // Corrections may go too far by the tolerance.
+                published_[transfer_.order[place]] = {std::max(value.rgb[0], 0.0f),
+                                                      std::max(value.rgb[1], 0.0f),
+                                                      std::max(value.rgb[2], 0.0f)};
             }
         });
     }
