@@ -241,8 +241,7 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
         if (!std::holds_alternative<VertexLayout>(scene.layout))
             throw std::invalid_argument(
                 fmt::format("{}: expected bounces of vertices only", path.string()));
-        const std::size_t num_receivers = scene.transfer.num_receivers();
-        require_bounces(*scene.bounces, num_receivers, num_receivers);
+        require_bounces(*scene.bounces, scene.transfer.num_receivers());
         add_bounce_sections(sections, *scene.bounces);
     }
     return write_sections(path, sections);
