@@ -250,20 +250,19 @@ private:
     /// Returns |next_ - indirect_| over |B + next_|.
     [[nodiscard]] double step_size() const {
         const auto [steps, all] = sum_over_rows<2>([&](std::size_t begin, std::size_t end) {
-            // The fourth channel is 0 everywhere. A task has few rows, so floats will do.
-            PaddedRgb step_sums, light_sums;
+            // The fourth channel is 0 everywhere.
+            std::array<double, 4> step_sums{}, light_sums{};
             for (std::size_t i = begin; i < end; ++i)
                 for (std::size_t c = 0; c < 4; ++c) {
-                    const float step = next_[i].rgb[c] - indirect_[i].rgb[c];
-                    const float light = next_[i].rgb[c] + direct_[i].rgb[c];
-                    step_sums.rgb[c] += step * step;
-                    light_sums.rgb[c] += light * light;
+                    const auto step = static_cast<double>(next_[i].rgb[c] - indirect_[i].rgb[c]);
+                    const auto light = static_cast<double>(next_[i].rgb[c] + direct_[i].rgb[c]);
+                    step_sums[c] += step * step;
+                    light_sums[c] += light * light;
                 }
-            std::array<double, 2> part{};
-            for (std::size_t c = 0; c < 3; ++c) {
-                part[0] += static_cast<double>(step_sums.rgb[c]);
-                part[1] += static_cast<double>(light_sums.rgb[c]);
-            }
+            const auto sum_of = [](const std::array<double, 4>& sums) {
+                return sums[0] + sums[1] + sums[2];
+            };
+            const std::array<double, 2> part = {sum_of(step_sums), sum_of(light_sums)};
             return part;
         });
         return all > 0.0 ? std::sqrt(steps / all) : 0.0;
@@ -324,25 +323,26 @@ private:
         // Of each channel: products of each difference with the change, then with each other.
         constexpr std::size_t NumSums = AndersonDepth * (1 + AndersonDepth);
         const auto sums = sum_over_rows<3 * NumSums>([&](std::size_t begin, std::size_t end) {
-            std::array<PaddedRgb, NumSums> sums_of_task{};
+            std::array<std::array<double, 4>, NumSums> sums_of_task{};
             for (std::size_t i = begin; i < end; ++i) {
-                std::array<PaddedRgb, AndersonDepth> differences{};
+                const std::array<float, 4>& change = now.change[i].rgb;
+                std::array<std::array<double, 4>, AndersonDepth> differences{};
                 for (std::size_t a = 0; a < depth; ++a)
                     for (std::size_t c = 0; c < 4; ++c)
-                        differences[a].rgb[c] =
-                            now.change[i].rgb[c] - step_before(a).change[i].rgb[c];
+                        differences[a][c] =
+                            static_cast<double>(change[c] - step_before(a).change[i].rgb[c]);
                 for (std::size_t a = 0; a < depth; ++a)
                     for (std::size_t c = 0; c < 4; ++c) {
-                        sums_of_task[a].rgb[c] += now.change[i].rgb[c] * differences[a].rgb[c];
+                        sums_of_task[a][c] += static_cast<double>(change[c]) * differences[a][c];
                         for (std::size_t b = 0; b <= a; ++b)
-                            sums_of_task[AndersonDepth * (1 + a) + b].rgb[c] +=
-                                differences[a].rgb[c] * differences[b].rgb[c];
+                            sums_of_task[AndersonDepth * (1 + a) + b][c] +=
+                                differences[a][c] * differences[b][c];
                     }
             }
             std::array<double, 3 * NumSums> part{};
             for (std::size_t c = 0; c < 3; ++c)
                 for (std::size_t k = 0; k < NumSums; ++k)
-                    part[c * NumSums + k] = static_cast<double>(sums_of_task[k].rgb[c]);
+                    part[c * NumSums + k] = sums_of_task[k][c];
             return part;
         });
         std::array<std::array<float, 4>, AndersonDepth> factors{};
