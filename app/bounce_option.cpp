@@ -7,31 +7,31 @@
 namespace relumine::app {
 
 void BounceOption::add_to(Command& command) {
-    given_ =
-        command
-            .add_option(
-                "--bounces",
-                [this](const std::string& text) {
-                    if (text == "all") {
-                        limits_.num_bounces.reset();
-                        return;
-                    }
-                    const auto count = parse_count(text);
-                    if (!count)
-                        throw UsageError(
-                            "--bounces",
-                            fmt::format("expected a number of bounces or 'all', got '{}'", text));
-                    limits_.num_bounces = *count;
-                },
-                "how often light goes on from surface to surface: N, 0 for direct light "
-                "alone, or all [all where the scene was made with --bounces, otherwise 0]")
-            .type_name("N");
+    command
+        .add_option(
+            "--bounces",
+            [this](const std::string& text) {
+                is_given_ = true;
+                if (text == "all") {
+                    limits_.num_bounces.reset();
+                    return;
+                }
+                const auto count = parse_count(text);
+                if (!count)
+                    throw UsageError(
+                        "--bounces",
+                        fmt::format("expected a number of bounces or 'all', got '{}'", text));
+                limits_.num_bounces = *count;
+            },
+            "how often light goes on from surface to surface: N, 0 for direct light "
+            "alone, or all [all where the scene was made with --bounces, otherwise 0]")
+        .type_name("N");
 }
 
 bool BounceOption::applies_to(const Scene& scene, const std::string& path) const {
     if (limits_.num_bounces && *limits_.num_bounces == 0)
         return false;
-    if (!scene.bounces && given_.is_given())
+    if (!scene.bounces && is_given_)
         throw std::runtime_error(fmt::format(
             "{}: expected a scene made with `relumine precompute --bounces`, got one without "
             "bounces",

@@ -34,7 +34,7 @@ public:
     [[nodiscard]] const BounceLimits& limits() const { return limits_; }
 
 private:
-    Option given_;
+    bool is_given_ = false;
     BounceLimits limits_;
 };
 

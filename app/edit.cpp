@@ -145,6 +145,7 @@ public:
 
 private:
     void check_receivers() {
+        static_cast<void>(options_.bounces.applies_to(lit_.scene(), options_.scene.path));
         if (!options_.who.empty()) // a map, whatever the receivers are
             return;
         painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
