@@ -495,7 +495,7 @@ def register():
     )
     bpy.types.Scene.relumine_face_resolution = bpy.props.IntProperty(
         name="World resolution", description="Texels along a face of the world's cube map",
-        default=128, min=8, max=2048,
+        default=64, min=8, max=2048,
     )  # fmt: skip
     for name, handler in _HANDLERS:
         getattr(bpy.app.handlers, name).append(handler)
