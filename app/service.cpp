@@ -371,7 +371,7 @@ std::string Service::answer(std::string_view request) {
         answer.update(impl_->session.take_notes());
         if (has_id)
             answer.set("id", id);
-        return answer.line();
+        return answer.text();
     };
     const auto failed = [&](const std::string& message) {
         return answered(false, {{"error", one_line(message)}});
@@ -401,7 +401,7 @@ std::string Service::answer(std::string_view request) {
 }
 
 std::string Service::refusal(const std::string& message) {
-    return Report{{"ok", false}, {"error", one_line(message)}}.line();
+    return Report{{"ok", false}, {"error", one_line(message)}}.text();
 }
 
 } // namespace relumine::app

@@ -229,7 +229,7 @@ void Session::report(Report result) const {
     if (!json)
         return;
     result.update(take_notes());
-    fmt::print("{}\n", result.text());
+    fmt::print("{}\n", result.text(2));
     std::fflush(stdout);
 }
 

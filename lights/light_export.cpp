@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <nlohmann/json.hpp>
 
+#include "files/json.h"
 #include "files/output_file.h"
 
 namespace relumine::lights {
@@ -219,7 +219,7 @@ std::string blender_text(const LightList& list, const ExportOptions& options) {
 }
 
 std::string gltf_text(const LightList& list, const ExportOptions& options) {
-    using Json = nlohmann::ordered_json;
+    using files::Json;
     const std::string comment = fmt::format(
         "{} {} {} A directional light shines along its node's local -Z. glTF's intensity is "
         "illuminance in lux: here irradiance times {} "
@@ -251,7 +251,7 @@ std::string gltf_text(const LightList& list, const ExportOptions& options) {
         {"scene", 0},
         {"scenes", {{{"nodes", indices}}}},
         {"nodes", nodes}};
-    return root.dump(1) + "\n";
+    return root.text(1, Json::Order::Set, Json::Utf8::Require) + "\n";
 }
 
 } // namespace

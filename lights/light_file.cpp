@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <glm/geometric.hpp>
-#include <nlohmann/json.hpp>
 
+#include "files/json.h"
 #include "files/json_value.h"
 #include "files/output_file.h"
 
@@ -144,28 +144,25 @@ void validate(const LightList& list) {
 
 std::string json_text(const LightList& list) {
     validate(list);
-    using Json = nlohmann::ordered_json;
-    const auto array = [](const glm::dvec3& v) {
-        return Json::array({v.x, v.y, v.z});
-    };
+    using files::Json;
     Json head = {{"version", 1}};
     if (!list.environment.empty())
-        head["environment"] = list.environment;
+        head.set("environment", list.environment);
     if (!list.method.empty())
-        head["method"] = list.method;
+        head.set("method", list.method);
     if (list.seed)
-        head["seed"] = *list.seed;
+        head.set("seed", *list.seed);
     // One light per line keeps a list of hundreds readable, and an error names the line of its
     // light. A file's name may have bytes that JSON cannot hold.
-    std::string result = head.dump(2, ' ', false, Json::error_handler_t::replace);
+    std::string result = head.text(2, Json::Order::Set);
     result.resize(result.size() - 2); // "\n}"
     result += ",\n  \"lights\": [";
     const char* separator = "\n    ";
     for (const DistantLight& light : list.lights) {
-        const Json value = {{"direction", array(light.direction)},
-                            {"irradiance", array(light.irradiance)},
+        const Json value = {{"direction", light.direction},
+                            {"irradiance", light.irradiance},
                             {"solid_angle", light.solid_angle}};
-        result += separator + value.dump();
+        result += separator + value.text(-1, Json::Order::Set);
         separator = ",\n    ";
     }
     return result + "\n  ]\n}\n";

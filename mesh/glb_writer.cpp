@@ -9,7 +9,8 @@
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
-#include <nlohmann/json.hpp>
+
+#include "files/json.h"
 
 namespace relumine::mesh {
 
@@ -34,17 +35,17 @@ struct ArrayKind {
 
 /// The arrays of a file, one after the other, with a view and an accessor for each.
 struct Arrays {
-    nlohmann::json views = nlohmann::json::array();
-    nlohmann::json accessors = nlohmann::json::array();
+    files::Json::Array views;
+    files::Json::Array accessors;
     std::string bytes;
 
     /// Appends an array. Returns the index of its accessor.
     template<class Value>
     std::size_t append(std::span<const Value> values, const ArrayKind& kind, std::size_t count) {
-        nlohmann::json view = {
+        files::Json view = {
             {"buffer", 0}, {"byteLength", values.size_bytes()}, {"target", kind.target}};
         if (!bytes.empty())
-            view["byteOffset"] = bytes.size();
+            view.set("byteOffset", bytes.size());
         accessors.push_back({{"bufferView", views.size()},
                              {"componentType", kind.component_type},
                              {"count", count},
@@ -60,15 +61,15 @@ struct Arrays {
 };
 
 /// Sets the exact bounds of positions, which the format demands.
-void set_bounds(nlohmann::json& accessor, std::span<const glm::vec3> positions) {
+void set_bounds(files::Json& accessor, std::span<const glm::vec3> positions) {
     glm::vec3 min = positions[0], max = positions[0];
     for (const glm::vec3& position : positions) {
         min = glm::min(min, position);
         max = glm::max(max, position);
     }
     // Doubles give the floats' exact values in JSON.
-    accessor["min"] = {double{min.x}, double{min.y}, double{min.z}};
-    accessor["max"] = {double{max.x}, double{max.y}, double{max.z}};
+    accessor.set("min", {double{min.x}, double{min.y}, double{min.z}});
+    accessor.set("max", {double{max.x}, double{max.y}, double{max.z}});
 }
 
 void append_number(std::string& file, std::uint32_t number) {
@@ -116,33 +117,33 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
 
     Arrays arrays;
     arrays.bytes.reserve(num_bytes);
-    nlohmann::json attributes;
-    attributes["POSITION"] = arrays.append(mesh.positions);
+    files::Json attributes;
+    attributes.set("POSITION", arrays.append(mesh.positions));
     set_bounds(arrays.accessors.back(), mesh.positions);
-    attributes["NORMAL"] = arrays.append(normals);
-    attributes["COLOR_0"] = arrays.append(colors);
+    attributes.set("NORMAL", arrays.append(normals));
+    attributes.set("COLOR_0", arrays.append(colors));
     const std::size_t indices =
         arrays.append(std::span(mesh.triangles), {UnsignedInt, "SCALAR", ElementArrayBuffer},
                       3 * mesh.num_triangles());
 
-    using nlohmann::json;
-    const json document = {
+    using files::Json;
+    const Json document = {
         {"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
-        {"extensionsUsed", json::array({"KHR_materials_unlit"})},
-        {"buffers", json::array({{{"byteLength", arrays.bytes.size()}}})},
+        {"extensionsUsed", Json::array({"KHR_materials_unlit"})},
+        {"buffers", Json::array({{{"byteLength", arrays.bytes.size()}}})},
         {"bufferViews", arrays.views},
         {"accessors", arrays.accessors},
-        {"materials", json::array({{{"name", "radiance"},
+        {"materials", Json::array({{{"name", "radiance"},
                                     {"doubleSided", true},
-                                    {"extensions", {{"KHR_materials_unlit", json::object()}}}}})},
-        {"meshes", json::array({{{"primitives", json::array({{{"attributes", attributes},
+                                    {"extensions", {{"KHR_materials_unlit", Json::object()}}}}})},
+        {"meshes", Json::array({{{"primitives", Json::array({{{"attributes", attributes},
                                                               {"indices", indices},
                                                               {"material", 0},
                                                               {"mode", Triangles}}})}}})},
-        {"nodes", json::array({{{"mesh", 0}}})},
-        {"scenes", json::array({{{"nodes", json::array({0})}}})},
+        {"nodes", Json::array({{{"mesh", 0}}})},
+        {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
         {"scene", 0}};
-    return container(document.dump(), arrays.bytes);
+    return container(document.text(), arrays.bytes);
 }
 
 } // namespace relumine::mesh

@@ -25,9 +25,7 @@ namespace {
 /// Describes a value for an error message. Arrays and objects are not written out: they may nest as
 /// deep as the file is long.
 std::string described(const Json& value) {
-    return value.is_structured()
-               ? std::string(value.type_name())
-               : excerpt(value.dump(-1, ' ', true, Json::error_handler_t::replace));
+    return value.is_structured() ? std::string(value.type_name()) : excerpt(value.text());
 }
 
 [[noreturn]] void fail(const char* key, std::string_view expected, const Json& got) {
@@ -38,8 +36,7 @@ std::string described(const Json& value) {
 const Json* find(const Json& object, const char* key) {
     if (!object.is_object())
         fail(fmt::format("an object with \"{}\"", key), object.type_name());
-    const auto found = object.find(key);
-    return found == object.end() ? nullptr : &*found;
+    return object.find(key);
 }
 
 const Json& require(const Json& object, const char* key) {
@@ -196,10 +193,10 @@ std::string_view lost_without(std::string_view extension) {
 std::uint64_t whole_value(const Json& value, const char* name) {
     // Sums and products of two such numbers stay far from 2^64.
     constexpr double Max = 1e12;
-    if (!value.is_number() || !(value.get<double>() >= 0.0 && value.get<double>() <= Max) ||
-        value.get<double>() != std::floor(value.get<double>()))
+    if (!value.is_number() || !(value.number() >= 0.0 && value.number() <= Max) ||
+        value.number() != std::floor(value.number()))
         fail(name, "a whole number", value);
-    return static_cast<std::uint64_t>(value.get<double>());
+    return static_cast<std::uint64_t>(value.number());
 }
 
 std::uint64_t whole(const Json& object, const char* key, std::optional<std::uint64_t> fallback) {
@@ -211,9 +208,9 @@ double number(const Json& object, const char* key, std::optional<double> fallbac
     const Json* value = fallback ? find(object, key) : &require(object, key);
     if (value == nullptr)
         return *fallback;
-    if (!value->is_number() || !std::isfinite(value->get<double>()))
+    if (!value->is_number() || !std::isfinite(value->number()))
         fail(key, "a number", *value);
-    return value->get<double>();
+    return value->number();
 }
 
 float fraction(const Json& object, const char* key, float fallback) {
@@ -227,7 +224,7 @@ bool flag(const Json& object, const char* key) {
     const Json* value = find(object, key);
     if (value != nullptr && !value->is_boolean())
         fail(key, "true or false", *value);
-    return value != nullptr && value->get<bool>();
+    return value != nullptr && value->boolean();
 }
 
 std::string text(const Json& object, const char* key, const std::string& fallback) {
@@ -236,7 +233,7 @@ std::string text(const Json& object, const char* key, const std::string& fallbac
         return fallback;
     if (!value->is_string())
         fail(key, "text", *value);
-    return value->get<std::string>();
+    return value->string();
 }
 
 std::vector<double> numbers(const Json& object, const char* key, std::vector<double> fallback) {
@@ -244,11 +241,14 @@ std::vector<double> numbers(const Json& object, const char* key, std::vector<dou
     if (value == nullptr)
         return fallback;
     if (!value->is_array() || value->size() != fallback.size() ||
-        !std::all_of(value->begin(), value->end(), [](const Json& item) {
-            return item.is_number() && std::isfinite(item.get<double>());
+        !std::all_of(value->values().begin(), value->values().end(), [](const Json& item) {
+            return item.is_number() && std::isfinite(item.number());
         }))
         fail(key, fmt::format("{} numbers", fallback.size()), *value);
-    return value->get<std::vector<double>>();
+    std::vector<double> result;
+    for (const Json& item : value->values())
+        result.push_back(item.number());
+    return result;
 }
 
 const Json& child(const Json& object, const char* key) {
@@ -261,6 +261,16 @@ const Json& child(const Json& object, const char* key) {
     return *value;
 }
 
+const Json::Array& items(const Json& object, const char* key) {
+    static const Json::Array none;
+    const Json* value = find(object, key);
+    if (value == nullptr)
+        return none;
+    if (!value->is_array())
+        fail(key, "an array", *value);
+    return value->values();
+}
+
 Document::Document(std::span<const std::byte> file, std::filesystem::path folder)
     : folder_(std::move(folder)), file_bytes_(file.size()), json_text_(as_text(file)) {
     if (json_text_.starts_with("glTF"))
@@ -268,14 +278,12 @@ Document::Document(std::span<const std::byte> file, std::filesystem::path folder
     try {
         try {
             root_ = Json::parse(json_text_);
-        } catch (const Json::parse_error&) {
+        } catch (const files::JsonError&) {
             // A name in the encoding of an old program must not make the whole file unreadable.
             root_ = Json::parse(with_latin1(json_text_));
         }
-    } catch (const Json::parse_error& error) {
-        fail("glTF's JSON", fmt::format("a syntax error at byte {}", error.byte));
-    } catch (const Json::exception&) {
-        fail("glTF's JSON", "a number out of range");
+    } catch (const files::JsonError& error) {
+        fail("glTF's JSON", error.what());
     }
     const std::string version = text(child(root_, "asset"), "version", "none");
     if (!version.starts_with("2."))
@@ -327,10 +335,10 @@ void Document::check_extensions() {
                                                             "KHR_texture_transform"};
     const auto names = [this](const char* key) {
         std::set<std::string> result;
-        for (const Json& name : child(root_, key)) {
+        for (const Json& name : items(root_, key)) {
             if (!name.is_string())
                 fail(fmt::format("names in \"{}\"", key), described(name));
-            result.insert(name.get<std::string>());
+            result.insert(name.string());
         }
         return result;
     };
@@ -348,9 +356,7 @@ void Document::check_extensions() {
 }
 
 const Json& Document::element(const char* array, std::uint64_t index) const {
-    const Json& elements = child(root_, array);
-    if (!elements.empty() && !elements.is_array())
-        fail(fmt::format("\"{}\" as an array", array), "an object");
+    const Json::Array& elements = items(root_, array);
     if (index >= elements.size())
         fail(fmt::format("indices of \"{}\" below {}", array, elements.size()),
              fmt::format("{}", index));

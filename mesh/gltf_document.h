@@ -14,11 +14,11 @@
 #include <string_view>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include "files/json.h"
 
 namespace relumine::mesh::gltf {
 
-using Json = nlohmann::json;
+using files::Json;
 
 /// Returns a number of the array called `name`.
 [[nodiscard]] std::uint64_t whole_value(const Json& value, const char* name);
@@ -42,6 +42,8 @@ using Json = nlohmann::json;
                                           std::vector<double> fallback);
 /// Returns the object or array of a name. Returns an empty one if it is absent.
 [[nodiscard]] const Json& child(const Json& object, const char* key);
+/// Returns the values of an array. Returns none if it is absent.
+[[nodiscard]] const Json::Array& items(const Json& object, const char* key);
 
 /// A parsed file, and the buffers that it names.
 class Document {
@@ -55,7 +57,7 @@ public:
     [[nodiscard]] std::uint64_t num_bytes() const;
     /// Returns an element of one of the document's arrays: "accessors", "nodes" ...
     [[nodiscard]] const Json& element(const char* array, std::uint64_t index) const;
-    [[nodiscard]] std::size_t count(const char* array) const { return child(root_, array).size(); }
+    [[nodiscard]] std::size_t count(const char* array) const { return items(root_, array).size(); }
 
     /// Returns one line for each extension that the file uses and the reader does not: what is
     /// lost.

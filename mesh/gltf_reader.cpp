@@ -106,19 +106,18 @@ private:
 /// Returns the roots of the default scene, or of the first one. In a file without scenes, nodes
 /// without parents are the roots.
 std::vector<std::uint64_t> GltfReader::root_nodes() const {
-    const auto indices = [](const Json& array) {
+    const auto indices = [](const Json& owner, const char* key) {
         std::vector<std::uint64_t> result;
-        for (const Json& item : array)
+        for (const Json& item : gltf::items(owner, key))
             result.push_back(gltf::whole_value(item, "nodes"));
         return result;
     };
     if (document_.count("scenes") > 0)
-        return indices(gltf::child(
-            document_.element("scenes", gltf::whole(document_.root(), "scene", 0)), "nodes"));
+        return indices(document_.element("scenes", gltf::whole(document_.root(), "scene", 0)),
+                       "nodes");
     std::vector<bool> is_child(document_.count("nodes"), false);
     for (std::size_t i = 0; i < is_child.size(); ++i)
-        for (const std::uint64_t node :
-             indices(gltf::child(document_.element("nodes", i), "children")))
+        for (const std::uint64_t node : indices(document_.element("nodes", i), "children"))
             if (node < is_child.size())
                 is_child[node] = true;
     std::vector<std::uint64_t> roots;
@@ -217,7 +216,7 @@ Attributes::Attributes(gltf::Document& document, const Json& description)
                           .is_normalized = gltf::flag(accessor, "normalized")});
     };
     add("POSITION", 3), add("NORMAL", 3), add("COLOR_0", 3);
-    for (const auto& [name, id] : ids.items())
+    for (const auto& [name, id] : ids.members())
         if (name.starts_with("TEXCOORD_"))
             add(name, 2);
     draco_ = decode_draco(document.view(gltf::whole(extension, "bufferView")), wanted);
@@ -303,7 +302,7 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
     std::optional<std::vector<Primitive>>& mesh = meshes_[index];
     if (!mesh) {
         mesh.emplace();
-        for (const Json& item : gltf::child(description, "primitives")) {
+        for (const Json& item : gltf::items(description, "primitives")) {
             has_targets_ |= !gltf::child(item, "targets").empty();
             if (std::optional<Primitive> read = primitive(item)) {
                 count(*read);
@@ -450,7 +449,7 @@ PolygonSoup GltfReader::read() {
                            group(node, index));
                 }
         }
-        const Json& children = gltf::child(node, "children");
+        const Json::Array& children = gltf::items(node, "children");
         for (std::size_t i = children.size(); i-- > 0;)
             to_visit.push_back({gltf::whole_value(children[i], "children"), transform});
     }
@@ -476,7 +475,7 @@ PolygonSoup GltfReader::read() {
 PolygonSoup read_gltf(std::span<const std::byte> bytes, const std::filesystem::path& folder) {
     try {
         return GltfReader(bytes, folder).read();
-    } catch (const Json::exception&) {
+    } catch (const files::JsonError&) {
         throw std::runtime_error("expected glTF's JSON, got a value of another type");
     }
 }

@@ -8,17 +8,17 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cubemap/layers/layer_fields.h"
 #include "cubemap/layers/layer_file.h"
+#include "files/json.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
 
 namespace {
 
-using Json = nlohmann::ordered_json;
+using files::Json;
 
 /// Returns the shortest decimal that reads back as the same float. As a double, the float would
 /// have many digits.
@@ -36,10 +36,10 @@ Json json(const LayerField& field, std::span<const double> numbers) {
     if (field.number != nullptr || field.single != nullptr)
         return numbers[0];
     if (field.points == nullptr)
-        return {numbers[0], numbers[1], numbers[2]};
+        return Json::array({numbers[0], numbers[1], numbers[2]});
     Json points = Json::array();
     for (std::size_t i = 0; i < numbers.size(); i += 3)
-        points.push_back({numbers[i], numbers[i + 1], numbers[i + 2]});
+        points.push_back(Json::array({numbers[i], numbers[i + 1], numbers[i + 2]}));
     return points;
 }
 
@@ -51,12 +51,12 @@ Json json(LightLayer layer) {
             for (double& number : numbers)
                 number = shortest(static_cast<float>(number));
         }
-        result[std::string(field.name)] = json(field, numbers);
+        result.set(field.name, json(field, numbers));
     }
-    result["effect"] = effect_name(layer.effect);
+    result.set("effect", effect_name(layer.effect));
     if (const auto* patch = std::get_if<ImagePatch>(&layer.effect)) {
-        result["path"] = patch->path.string();
-        result["blend"] = patch->blend == ImagePatch::Blend::Add ? "add" : "replace";
+        result.set("path", patch->path.string());
+        result.set("blend", patch->blend == ImagePatch::Blend::Add ? "add" : "replace");
     }
     return result;
 }
@@ -82,7 +82,10 @@ Json json(const KeyFrame& key, std::vector<LightLayer> layers) {
             throw std::invalid_argument(
                 fmt::format("key frame {}: expected finite values of a field of \"{}\", got \"{}\"",
                             key.frame, change.layer, change.field));
-        changes[change.layer][change.field] = json(*field, change.values);
+        const Json* before = changes.find(change.layer);
+        Json of_layer = before != nullptr ? *before : Json::object();
+        of_layer.set(change.field, json(*field, change.values));
+        changes.set(change.layer, std::move(of_layer));
     }
     return {{"frame", key.frame}, {"layers", std::move(changes)}};
 }
@@ -115,21 +118,23 @@ void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
     check_for_save(layers);
     Json root = {{"version", 1}};
     if (layers.base)
-        root["base"] = layers.base->string();
+        root.set("base", layers.base->string());
     if (layers.rotate_degrees)
-        root["rotate_degrees"] = *layers.rotate_degrees;
-    root["layers"] = Json::array();
+        root.set("rotate_degrees", *layers.rotate_degrees);
+    Json all = Json::array();
     for (const LightLayer& layer : layers.layers)
-        root["layers"].push_back(json(layer));
+        all.push_back(json(layer));
+    root.set("layers", std::move(all));
     if (!layers.frames.empty()) {
-        root["frames"] = Json::array();
+        Json frames = Json::array();
         for (const KeyFrame& key : layers.frames)
-            root["frames"].push_back(json(key, layers.layers));
+            frames.push_back(json(key, layers.layers));
+        root.set("frames", std::move(frames));
     }
     std::string text;
     try {
-        text = root.dump(2) + '\n';
-    } catch (const Json::exception&) {
+        text = root.text(2, Json::Order::Set, Json::Utf8::Require) + '\n';
+    } catch (const files::JsonError&) {
         throw std::invalid_argument(
             fmt::format("{}: expected names and paths in UTF-8, got other bytes", path.string()));
     }

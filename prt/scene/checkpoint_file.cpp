@@ -7,11 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <xxhash.h>
 
 #include "files/append_log.h"
 #include "files/folder_lock.h"
+#include "files/json.h"
 #include "files/output_file.h"
 
 namespace relumine::prt {
@@ -72,15 +72,19 @@ std::runtime_error CheckpointFile::damaged(const std::string& name) {
 void CheckpointFile::check_fingerprint() {
     const std::vector<std::byte> bytes = files::read(file(RunName));
     const auto* text = reinterpret_cast<const char*>(bytes.data());
-    const nlohmann::json json = nlohmann::json::parse(text, text + bytes.size(), nullptr, false);
+    files::Json json;
+    try {
+        json = files::Json::parse({text, bytes.size()});
+    } catch (const files::JsonError&) {
+        throw damaged(RunName);
+    }
     if (!json.is_object())
         throw damaged(RunName);
     for (const auto& [name, value] : fingerprint_) {
-        const auto found = json.find(name);
-        if (found != json.end() && *found == value)
+        const files::Json* found = json.find(name);
+        const std::string got = found != nullptr && found->is_string() ? found->string() : "none";
+        if (got == value)
             continue;
-        const std::string got =
-            found != json.end() && found->is_string() ? found->get<std::string>() : "none";
         throw std::runtime_error(
             fmt::format("{}: expected a checkpoint of this run ({} {}), got another's "
                         "({} {}); without --resume the work begins anew",
@@ -124,10 +128,10 @@ void CheckpointFile::claim() {
     }
     clear();
     logs_.clear();
-    nlohmann::json json = nlohmann::json::object();
+    files::Json json = files::Json::object();
     for (const auto& [name, value] : fingerprint_)
-        json[name] = value;
-    files::save_text(file(RunName), json.dump(2) + "\n");
+        json.set(name, value);
+    files::save_text(file(RunName), json.text(2) + "\n");
     files::sync_folder(files::folder_of(folder_));
     is_ours_ = true;
 }

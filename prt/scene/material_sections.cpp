@@ -5,13 +5,11 @@
 #include <map>
 #include <optional>
 
-#include <nlohmann/json.hpp>
-
 namespace relumine::prt {
 
 namespace {
 
-using Json = nlohmann::json;
+using files::Json;
 using mesh::Material;
 using mesh::TextureSlot;
 
@@ -92,7 +90,7 @@ std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
         return static_cast<mesh::Wrap>(below(json.at("wrap").at(axis), 3));
     };
     return TextureSlot{.texture = below(json.at("image"), static_cast<std::uint32_t>(num_textures)),
-                       .is_srgb = json.at("srgb").get<bool>(),
+                       .is_srgb = json.at("srgb").boolean(),
                        .wrap = {wrap(0), wrap(1)},
                        .uv_from_mesh_uv = glm::mat2(finite(uv.at(0)), finite(uv.at(1)),
                                                     finite(uv.at(2)), finite(uv.at(3))),
@@ -105,7 +103,7 @@ Material material_of(const Json& json, std::size_t num_textures) {
     material.base_color = color(json.at("base"));
     material.metallic = fraction(json.at("metallic"));
     material.specular = color(json.at("specular"));
-    material.times_vertex_color = json.at("times_vertex_color").get<bool>();
+    material.times_vertex_color = json.at("times_vertex_color").boolean();
     for (const auto slot : color_slots(material.model))
         material.*slot = slot_of(json.at(name_of(slot)), num_textures);
     return material;
@@ -118,7 +116,7 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
         throw std::out_of_range("expected an image in the section");
     mesh::Texture texture = mesh::decode_texture(
         std::span(images).subspan(offset, size),
-        json.at("v_from_top").get<bool>() ? mesh::VOrigin::Top : mesh::VOrigin::Bottom);
+        json.at("v_from_top").boolean() ? mesh::VOrigin::Top : mesh::VOrigin::Bottom);
     offset += size;
     return texture;
 }
@@ -153,11 +151,11 @@ void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh) {
                                     {"v_from_top", texture.origin == mesh::VOrigin::Top}});
                 images.insert(images.end(), texture.file.begin(), texture.file.end());
             }
-            json[name_of(slot)] = json_of(used, stored);
+            json.set(name_of(slot), json_of(used, stored));
         }
         materials.push_back(json);
     }
-    const std::string text = Json({{"images", textures}, {"materials", materials}}).dump(2);
+    const std::string text = Json({{"images", textures}, {"materials", materials}}).text(2);
     sections["materials"] = bytes_of(std::vector<char>(text.begin(), text.end()));
     sections["images"] = std::move(images);
     sections["t_materials"] = bytes_of(mesh.triangle_materials);
@@ -171,9 +169,9 @@ void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mes
     const std::vector<char> text = reader.elements<char>("materials");
     const std::vector<std::byte>& images = reader.bytes("images");
     try {
-        const Json json = Json::parse(text.begin(), text.end());
+        const Json json = Json::parse({text.data(), text.size()});
         std::size_t offset = 0, num_texels = 0;
-        for (const Json& texture : json.at("images")) {
+        for (const Json& texture : json.at("images").values()) {
             mesh.textures.push_back(texture_of(texture, images, offset));
             num_texels += mesh.textures.back().texels.size();
             // As for one image of a mesh file: a byte for 128 texels where there are many.
@@ -182,7 +180,7 @@ void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mes
         }
         if (offset != images.size())
             throw std::out_of_range("expected as many bytes as images have");
-        for (const Json& material : json.at("materials"))
+        for (const Json& material : json.at("materials").values())
             mesh.materials.push_back(material_of(material, mesh.textures.size()));
     } catch (const std::exception&) {
         reader.fail("materials", "JSON with materials and their images");

@@ -4,33 +4,28 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace relumine::prt {
 
 namespace {
 
-nlohmann::json json_of(const glm::vec3& v) {
-    return {v.x, v.y, v.z};
-}
-
-glm::vec3 vector(const nlohmann::json& json) {
-    if (!json.is_array() || json.size() != 3)
+glm::vec3 vector(const files::Json& json) {
+    if (json.values().size() != 3)
         throw std::out_of_range("expected three numbers");
-    return {real(json[0]), real(json[1]), real(json[2])};
+    return {real(json.at(0)), real(json.at(1)), real(json.at(2))};
 }
 
-nlohmann::json json_of(const PixelLayout& layout) {
+files::Json json_of(const PixelLayout& layout) {
     return {{"kind", "pixels"},
             {"width", layout.width},
             {"height", layout.height},
             {"samples_per_axis", layout.samples_per_axis},
-            {"eye", json_of(layout.camera.eye)},
-            {"target", json_of(layout.camera.target)},
+            {"eye", layout.camera.eye},
+            {"target", layout.camera.target},
             {"fov_degrees", layout.camera.fov_degrees}};
 }
 
-nlohmann::json json_of(const TexelLayout& layout) {
+files::Json json_of(const TexelLayout& layout) {
     return {{"kind", "texels"}, {"width", layout.width}, {"height", layout.height}};
 }
 
@@ -74,7 +69,7 @@ void add_layout(Sections& sections, const Layout& layout, const Receivers& recei
         throw std::invalid_argument(
             fmt::format("expected a normal and a point for each of {} receivers, got {} and {}",
                         receivers.size(), receivers.normals.size(), receivers.points.size()));
-    const std::string text = json_of(layout).dump(2);
+    const std::string text = json_of(layout).text(2);
     sections["layout"] = bytes_of(std::vector<char>(text.begin(), text.end()));
     sections["layout_mask"] = mask(places(layout), num_places(layout));
     sections["r_positions"] = bytes_of(receivers.positions);
@@ -145,22 +140,22 @@ std::vector<MeshPoint> read_points(const SectionReader& reader, std::size_t coun
 }
 
 /// Returns a size, checked before anything is done with it.
-std::uint32_t size_of(const nlohmann::json& json) {
+std::uint32_t size_of(const files::Json& json) {
     const std::uint32_t size = natural(json);
     if (size < 1 || size > MaxPictureSize)
         throw std::out_of_range("expected a size of a picture");
     return size;
 }
 
-ReceiverLayout layout_of(const nlohmann::json& json) {
-    if (json.at("kind") == "texels") {
+ReceiverLayout layout_of(const files::Json& json) {
+    if (json.at("kind").string() == "texels") {
         TexelLayout layout{.width = size_of(json.at("width")),
                            .height = size_of(json.at("height"))};
         if (layout.num_texels() > MaxLayoutPlaces)
             throw std::out_of_range("expected fewer texels");
         return layout;
     }
-    if (json.at("kind") != "pixels")
+    if (json.at("kind").string() != "pixels")
         throw std::out_of_range("expected pixels or texels");
     PixelLayout layout{.camera = {.eye = vector(json.at("eye")),
                                   .target = vector(json.at("target")),
@@ -210,7 +205,7 @@ void add_receiver_sections(Sections& sections, const Receivers& receivers,
 ReceiverLayout read_layout(const SectionReader& reader) {
     if (!reader.has("layout"))
         return VertexLayout{};
-    const nlohmann::json json = reader.json("layout");
+    const files::Json json = reader.json("layout");
     ReceiverLayout layout;
     try {
         layout = layout_of(json);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <xxhash.h>
 
 #include "files/output_file.h"
@@ -32,26 +31,25 @@ std::vector<std::byte> counted(const std::vector<bool>& flags) {
 }
 
 std::vector<std::byte> settings_json(const SceneSettings& settings) {
-    nlohmann::json json = {{"tolerance", settings.tolerance},
-                           {"min_level", settings.min_level},
-                           {"face_resolution", settings.face_resolution},
-                           {"bias", settings.bias},
-                           {"floor_vertices", settings.floor_vertices},
-                           {"source", settings.source},
-                           {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
+    files::Json json = {{"tolerance", settings.tolerance},
+                        {"min_level", settings.min_level},
+                        {"face_resolution", settings.face_resolution},
+                        {"bias", settings.bias},
+                        {"floor_vertices", settings.floor_vertices},
+                        {"source", settings.source},
+                        {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
     if (settings.floor_added != 0)
-        json["floor_added"] = settings.floor_added;
+        json.set("floor_added", settings.floor_added);
     if (settings.epsilon)
-        json["epsilon"] = *settings.epsilon;
+        json.set("epsilon", *settings.epsilon);
     if (settings.glossy_tolerance)
-        json["glossy_tolerance"] = *settings.glossy_tolerance;
+        json.set("glossy_tolerance", *settings.glossy_tolerance);
     if (settings.view) {
         const Camera& view = *settings.view;
-        json["view"] = {view.eye.x,    view.eye.y,    view.eye.z,      view.target.x,
-                        view.target.y, view.target.z, view.fov_degrees};
+        json.set("view", {view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y,
+                          view.target.z, view.fov_degrees});
     }
-    // A file name need not be UTF-8, but JSON must be.
-    const std::string text = json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace);
+    const std::string text = json.text(2);
     return bytes_of(std::vector<char>(text.begin(), text.end()));
 }
 
@@ -105,7 +103,7 @@ private:
     }
 
     SceneSettings settings() const {
-        const nlohmann::json json = reader_.json("settings");
+        const files::Json json = reader_.json("settings");
         SceneSettings settings;
         try {
             settings.tolerance = real(json.at("tolerance"));
@@ -115,15 +113,14 @@ private:
             settings.floor_vertices = natural(json.at("floor_vertices"));
             if (json.contains("floor_added"))
                 settings.floor_added = natural(json.at("floor_added"));
-            settings.source = json.at("source");
-            settings.source_hash =
-                std::stoull(json.at("source_hash").get<std::string>(), nullptr, 16);
+            settings.source = json.at("source").string();
+            settings.source_hash = std::stoull(json.at("source_hash").string(), nullptr, 16);
             if (json.contains("epsilon"))
                 settings.epsilon = real(json.at("epsilon"));
             if (json.contains("glossy_tolerance"))
                 settings.glossy_tolerance = real(json.at("glossy_tolerance"));
             if (json.contains("view")) {
-                const nlohmann::json& view = json.at("view");
+                const files::Json& view = json.at("view");
                 const auto at = [&](std::size_t i) {
                     return real(view.at(i));
                 };

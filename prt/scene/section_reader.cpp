@@ -26,12 +26,15 @@ const std::vector<std::byte>& SectionReader::bytes(const std::string& name) cons
     return found->second;
 }
 
-nlohmann::json SectionReader::json(const std::string& name) const {
+files::Json SectionReader::json(const std::string& name) const {
     const std::vector<char> text = elements<char>(name);
-    nlohmann::json json = nlohmann::json::parse(text.begin(), text.end(), nullptr, false);
-    if (json.is_discarded() || std::find(text.begin(), text.end(), '\0') != text.end())
+    if (std::find(text.begin(), text.end(), '\0') != text.end())
         fail(name, "JSON text");
-    return json;
+    try {
+        return files::Json::parse({text.data(), text.size()});
+    } catch (const files::JsonError&) {
+        fail(name, "JSON text");
+    }
 }
 
 std::vector<bool> SectionReader::bits(const std::string& name, std::size_t count) const {
@@ -46,17 +49,16 @@ std::vector<bool> SectionReader::bits(const std::string& name, std::size_t count
     return result;
 }
 
-std::uint32_t natural(const nlohmann::json& json) {
-    if (!json.is_number_unsigned() ||
-        json.get<std::uint64_t>() > std::numeric_limits<std::uint32_t>::max())
+std::uint32_t natural(const files::Json& json) {
+    if (json.whole() > std::numeric_limits<std::uint32_t>::max())
         throw std::out_of_range("expected an integer of 32 bits");
-    return json.get<std::uint32_t>();
+    return static_cast<std::uint32_t>(json.whole());
 }
 
-float real(const nlohmann::json& json) {
-    if (!json.is_number() || !(std::abs(json.get<double>()) <= std::numeric_limits<float>::max()))
-        throw std::out_of_range("expected a number");
-    return json.get<float>();
+float real(const files::Json& json) {
+    if (!(std::abs(json.number()) <= std::numeric_limits<float>::max()))
+        throw std::out_of_range("expected a number that a float holds");
+    return static_cast<float>(json.number());
 }
 
 } // namespace relumine::prt

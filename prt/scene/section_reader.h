@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "files/json.h"
 #include "prt/scene/section_file.h"
 
 namespace relumine::prt {
@@ -70,7 +70,7 @@ public:
 
     /// Parses a section of JSON text. Fails for other text, and for zero bytes, which end a text
     /// for the JSON library.
-    [[nodiscard]] nlohmann::json json(const std::string& name) const;
+    [[nodiscard]] files::Json json(const std::string& name) const;
 
     /// Returns exactly `count` bits. The rest of the last byte must be zero.
     [[nodiscard]] std::vector<bool> bits(const std::string& name, std::size_t count) const;
@@ -80,10 +80,10 @@ private:
     Sections sections_;
 };
 
-/// Numbers of a JSON object, checked for range, which the JSON library's casts are not.
+/// Numbers of a JSON object, checked for range, as 32 bits hold them.
 ///
-/// Throws:  std::out_of_range for a number beyond the type.
-[[nodiscard]] std::uint32_t natural(const nlohmann::json& json);
-[[nodiscard]] float real(const nlohmann::json& json);
+/// Throws:  std::out_of_range for a number beyond the type, files::JsonError for another type.
+[[nodiscard]] std::uint32_t natural(const files::Json& json);
+[[nodiscard]] float real(const files::Json& json);
 
 } // namespace relumine::prt
