@@ -33,7 +33,10 @@ void write_scene(const data_gen::Scene& scene, const Options& options, Session& 
     make_folder(options.folder);
     const std::filesystem::path path =
         std::filesystem::path(options.folder) / fmt::format("{}.ply", scene.name);
-    mesh::save(path, mesh, std::vector<glm::vec3>(mesh.num_vertices(), glm::vec3(1.0f)));
+    constexpr float Plaster = 0.5f; // white would keep all light that bounces
+    mesh::save(path, mesh,
+               mesh.colors.empty() ? std::vector(mesh.num_vertices(), glm::vec3(Plaster))
+                                   : mesh.colors);
     session.say(fmt::format("{}: {} vertices, {} triangles", path.string(), mesh.num_vertices(),
                             mesh.num_triangles()));
     files.push_back({{"file", path.string()},

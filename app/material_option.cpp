@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cstdint>
 #include <map>
+#include <stdexcept>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -36,13 +37,13 @@ constexpr std::array<Model, 3> Models = {{
 class Parser {
 public:
     Parser(const std::string& text, const std::string& option) : text_(text), option_(option) {}
-    MaterialOption parse();
+    SurfaceMaterial parse();
 
 private:
     [[noreturn]] void fail(const std::string& expected, std::string_view got) const {
         throw UsageError(option_, fmt::format("expected {}, got '{}'", expected, got));
     }
-    const Model& take_model(std::string_view& rest, MaterialOption& result) const;
+    const Model& take_model(std::string_view& rest, SurfaceMaterial& result) const;
     void read_values(std::string_view rest, const Model& model);
     [[nodiscard]] std::vector<float> numbers(std::string_view key, float max) const;
     [[nodiscard]] std::optional<glm::vec3> color(std::string_view key) const;
@@ -54,7 +55,7 @@ private:
 
 /// Group names may have any letters: the model is looked for behind the last = that a model's name
 /// follows.
-const Model& Parser::take_model(std::string_view& rest, MaterialOption& result) const {
+const Model& Parser::take_model(std::string_view& rest, SurfaceMaterial& result) const {
     const std::string_view text = text_;
     for (std::size_t start = text.size() + 1; start-- > 0;) {
         if (start > 0 && text[start - 1] != '=')
@@ -127,8 +128,8 @@ std::optional<glm::vec3> Parser::color(std::string_view key) const {
     return glm::vec3(values[0], values[1], values[2]);
 }
 
-MaterialOption Parser::parse() {
-    MaterialOption result;
+SurfaceMaterial Parser::parse() {
+    SurfaceMaterial result;
     std::string_view rest;
     const Model& model = take_model(rest, result);
     read_values(rest, model);
@@ -154,57 +155,17 @@ MaterialOption Parser::parse() {
 
 } // namespace
 
-prt::Surface MaterialOption::applied_to(const prt::Surface& surface) const {
-    glm::vec3 specular_color(0.0f);
-    if (specular)
-        specular_color = *specular;
-    else if (highlight == prt::Highlight::Ggx)
-        specular_color = surface.highlight == prt::Highlight::Ggx
-                             ? surface.specular
-                             : glm::vec3(0.04f); // glass, plastic
-    return {.albedo = albedo.value_or(surface.albedo),
-            .specular = specular_color,
-            .highlight = highlight,
-            .roughness_or_exponent = roughness_or_exponent};
-}
-
-MaterialOption parse_material(const std::string& text, const std::string& option) {
+SurfaceMaterial parse_material(const std::string& text, const std::string& option) {
     return Parser(text, option).parse();
 }
 
-prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options,
+prt::SurfaceOverride surface_override(const std::vector<SurfaceMaterial>& options,
                                       const mesh::TriangleMesh& mesh, const std::string& option) {
-    // The last option that names a group, or all, decides; a mesh without groups has one without a
-    // name.
-    std::vector<std::optional<MaterialOption>> by_group(
-        std::max<std::size_t>(mesh.groups.size(), 1));
-    for (const MaterialOption& material : options) {
-        if (material.group.empty()) {
-            std::fill(by_group.begin(), by_group.end(), material);
-            continue;
-        }
-        const auto found = std::find(mesh.groups.begin(), mesh.groups.end(), material.group);
-        if (found == mesh.groups.end())
-            throw UsageError(
-                option,
-                mesh.groups.empty()
-                    ? fmt::format("expected no group, since the mesh has none, got '{}'",
-                                  material.group)
-                    : fmt::format("expected a group of the mesh ({}{}), got '{}'",
-                                  fmt::join(mesh.groups.begin(),
-                                            mesh.groups.begin() +
-                                                static_cast<std::ptrdiff_t>(
-                                                    std::min<std::size_t>(mesh.groups.size(), 8)),
-                                            ", "),
-                                  mesh.groups.size() > 8 ? ", ..." : "", material.group));
-        by_group[static_cast<std::size_t>(found - mesh.groups.begin())] = material;
+    try {
+        return relumine::surface_override(options, mesh);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError(option, error.what());
     }
-    return [by_group = std::move(by_group)](const mesh::TriangleMesh& of, std::uint32_t triangle,
-                                            const prt::Surface& surface) {
-        const std::size_t group = of.triangle_groups.empty() ? 0 : of.triangle_groups[triangle];
-        return group < by_group.size() && by_group[group] ? by_group[group]->applied_to(surface)
-                                                          : surface;
-    };
 }
 
 } // namespace relumine::app

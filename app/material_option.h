@@ -3,39 +3,22 @@
 // file that has several.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
-#include <glm/vec3.hpp>
-
 #include "mesh/triangle_mesh.h"
 #include "prt/glossy/surface_sampling.h"
+#include "relumine/material.h"
 
 namespace relumine::app {
 
-/// What one option says. Colours that it leaves out stay the file's.
-struct MaterialOption {
-    /// The group or material that the option is for. Empty: the whole mesh.
-    std::string group = {};
-    prt::Highlight highlight = prt::Highlight::None;
-    float roughness_or_exponent = 1.0f;
-    /// `albedo` or `kd`
-    std::optional<glm::vec3> albedo = {};
-    /// `f0` or `ks`; without it 0.04 where the file has no F0 of its own
-    std::optional<glm::vec3> specular = {};
-
-    /// The surface in place of the file's.
-    [[nodiscard]] prt::Surface applied_to(const prt::Surface& surface) const;
-};
-
 /// Parses one option. Throws UsageError "expected X, got Y" that names `option`.
-[[nodiscard]] MaterialOption parse_material(const std::string& text,
-                                            const std::string& option = "--material");
+[[nodiscard]] SurfaceMaterial parse_material(const std::string& text,
+                                             const std::string& option = "--material");
 
 /// All options on a mesh, in their order: later ones win. Throws UsageError for a group
 /// that the mesh does not have.
-[[nodiscard]] prt::SurfaceOverride surface_override(const std::vector<MaterialOption>& options,
+[[nodiscard]] prt::SurfaceOverride surface_override(const std::vector<SurfaceMaterial>& options,
                                                     const mesh::TriangleMesh& mesh,
                                                     const std::string& option = "--material");
 

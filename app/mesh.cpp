@@ -46,9 +46,11 @@ struct MeshFiles {
         return mesh;
     }
 
-    void save(mesh::TriangleMesh mesh, const Session& session) const {
-        if (crease)
-            mesh = mesh::with_creases(mesh, *crease);
+    [[nodiscard]] mesh::TriangleMesh creased(mesh::TriangleMesh mesh) const {
+        return crease ? mesh::with_creases(mesh, *crease) : mesh;
+    }
+
+    void save(const mesh::TriangleMesh& mesh, const Session& session) const {
         for (const std::string& what : mesh::save(output, mesh))
             session.warn(fmt::format("{}: left out: {}", output, what));
         session.say(fmt::format("{}: {} vertices, {} triangles", output, mesh.num_vertices(),
@@ -85,7 +87,7 @@ struct RepairCommand {
                                     found.num_new_triangles));
         if (found.is_nothing())
             session.say("nothing to repair");
-        files.save(std::move(result), session);
+        files.save(files.creased(std::move(result)), session);
         session.report({{"welded", found.num_welded},
                         {"zero_area", found.num_zero_area},
                         {"duplicates", found.num_duplicates},
@@ -117,7 +119,7 @@ struct RefineCommand {
     void run(Session& session) const {
         files.check();
         options.check();
-        Mesh mesh(files.load(session));
+        Mesh mesh(files.creased(files.load(session)));
         mesh.source = files.input;
         files.save(options.refined(std::move(mesh), {}, session).geometry, session);
         session.report({});
@@ -140,7 +142,7 @@ struct SimplifyCommand {
 
     void run(Session& session) const {
         files.check();
-        Mesh mesh(files.load(session));
+        Mesh mesh(files.creased(files.load(session)));
         mesh.source = files.input;
         files.save(simplified_to(std::move(mesh), num_vertices, session).geometry, session);
         session.report({});

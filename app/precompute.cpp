@@ -131,12 +131,14 @@ Report glossy_report(const PrecomputeOptions& options, const PrecomputeReport& f
 Report bounce_report(const prt::BounceStatistics& bounces, const Scene& scene,
                      const Session& session) {
     const auto num_receivers = static_cast<double>(scene.transfer.num_receivers());
-    session.say(fmt::format("bounces: {:.1f} emitters per vertex in {:.1f} s, {:.1f} % of the "
-                            "directions end at surfaces, standard error {:.4f}",
-                            static_cast<double>(bounces.num_columns) / num_receivers,
-                            bounces.seconds, 100.0 * bounces.mean_closure, bounces.rms_error));
+    session.say(fmt::format(
+        "bounces: {:.1f} emitters per vertex, shared by {:.1f}, in {:.1f} s, {:.1f} % of the "
+        "directions end at surfaces, standard error {:.4f}",
+        static_cast<double>(bounces.num_emitters) / num_receivers, bounces.mean_averaged,
+        bounces.seconds, 100.0 * bounces.mean_closure, bounces.rms_error));
     return {{"rays", bounces.num_rays},
-            {"columns", bounces.num_columns},
+            {"emitters", bounces.num_emitters},
+            {"averaged", bounces.mean_averaged},
             {"closure", bounces.mean_closure},
             {"standard_error", bounces.rms_error},
             {"spectral_radius", scene.bounces->spectral_radius},
@@ -194,9 +196,11 @@ Report floor_report(const Scene& scene, const Session& session) {
 /// The parts of the seconds from start to finish: "clusters 8.1, highlights 3.0, the rest 0.4".
 std::string where_time_went(const PrecomputeReport& facts, double seconds) {
     const double highlights = facts.highlights ? facts.highlights->seconds : 0.0;
-    return fmt::format("clusters {:.1f}{}, the rest {:.1f}", facts.clusters.seconds,
+    const double bounces = facts.bounces ? facts.bounces->seconds : 0.0;
+    return fmt::format("clusters {:.1f}{}{}, the rest {:.1f}", facts.clusters.seconds,
                        facts.highlights ? fmt::format(", highlights {:.1f}", highlights) : "",
-                       std::max(seconds - facts.clusters.seconds - highlights, 0.0));
+                       facts.bounces ? fmt::format(", bounces {:.1f}", bounces) : "",
+                       std::max(seconds - facts.clusters.seconds - highlights - bounces, 0.0));
 }
 
 /// Triangles that are wound the wrong way round look inwards, where it is dark, unless the file's
@@ -368,7 +372,7 @@ void add_precompute(Command& program, Session& session) {
                 options->precompute.bounce_tolerance = static_cast<float>(*tolerance);
             },
             "light goes on from surface to surface, between vertices; the standard error of one "
-            "bounce under a sun or a white sky of radiance 1, 0.02 when it is not given")
+            "bounce under a sun or a white sky of radiance 1, 0.01 when it is not given")
         .value_is_optional()
         .type_name("[ERROR]");
     command

@@ -25,7 +25,7 @@ void SurfaceOptions::check() const {
 prt::SurfaceOverride SurfaceOptions::surface(const mesh::TriangleMesh& mesh) const {
     if (materials_.empty())
         return {};
-    std::vector<MaterialOption> options;
+    std::vector<SurfaceMaterial> options;
     for (const std::string& material : materials_)
         options.push_back(parse_material(material));
     return surface_override(options, mesh);
@@ -34,7 +34,7 @@ prt::SurfaceOverride SurfaceOptions::surface(const mesh::TriangleMesh& mesh) con
 prt::Surface SurfaceOptions::floor_surface() const {
     prt::Surface surface;
     for (const std::string& text : materials_)
-        if (const MaterialOption material = parse_material(text); material.group == "floor")
+        if (const SurfaceMaterial material = parse_material(text); material.group == "floor")
             surface = material.applied_to({});
     return surface;
 }

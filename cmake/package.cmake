@@ -2,6 +2,7 @@
 # themselves: the CMake package that find_package(relumine) reads, the licence, the Debian packages.
 #
 # Component runtime:     the program, shared libraries, the licence.
+# Component python:      the Python package (python/CMakeLists.txt).
 # Component development: headers, static libraries, the CMake package.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
@@ -51,11 +52,15 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/relumineConfigVersion.cma
 install(FILES ${PROJECT_BINARY_DIR}/relumineConfig.cmake ${PROJECT_BINARY_DIR}/relumineConfigVersion.cmake
     DESTINATION ${package_dir} COMPONENT development)
 install(EXPORT relumine NAMESPACE relumine:: FILE relumineTargets.cmake DESTINATION ${package_dir} COMPONENT development)
-foreach(component runtime development)
-    set(name relumine)
-    if(component STREQUAL development)
-        set(name relumine-dev)
-    endif()
+set(components runtime development)
+if(RELUMINE_BUILD_PYTHON)
+    list(APPEND components python)
+endif()
+set(package_runtime relumine)
+set(package_development relumine-dev)
+set(package_python python3-relumine)
+foreach(component IN LISTS components)
+    set(name ${package_${component}})
     install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${name}
         RENAME copyright COMPONENT ${component})
 endforeach()
@@ -64,8 +69,8 @@ if(NOT PROJECT_IS_TOP_LEVEL)
     return()
 endif()
 
-# Two Debian packages: relumine_VERSION_ARCHITECTURE.deb is the program, relumine-dev_... the library for programs of
-# one's own. dpkg-shlibdeps finds what programs and shared libraries depend on.
+# The Debian packages: relumine_VERSION_ARCHITECTURE.deb is the program, relumine-dev_... the library for programs of
+# one's own, python3-relumine_... the Python package. dpkg-shlibdeps finds what programs and shared libraries depend on.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME relumine)
 set(CPACK_PACKAGE_CONTACT "Relumine developers <developers@relumine.invalid>")
@@ -91,6 +96,16 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "Relights 3D assets under measured environment light (library)
 Headers, libraries and a CMake package: find_package(relumine).")
+if(RELUMINE_BUILD_PYTHON)
+    list(APPEND CPACK_COMPONENTS_ALL python)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-relumine)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+    set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+        "python3 (>= ${RELUMINE_PYTHON_VERSION}), python3 (<< ${RELUMINE_PYTHON_NEXT_VERSION}), python3-numpy")
+    set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+        "Relights 3D assets under measured environment light (Python)
+The Python package: import relumine.")
+endif()
 if(BUILD_SHARED_LIBS)
     list(APPEND development_depends "relumine (= ${PROJECT_VERSION})")
     set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)

@@ -157,12 +157,15 @@ mesh::TriangleMesh sphere(std::size_t num_vertices) {
 }
 
 std::span<const Scene> scenes() {
-    static constexpr std::array<Scene, 4> Scenes = {{
+    static constexpr std::array<Scene, 6> Scenes = {{
         {"colonnade", "a round temple of fluted columns: long hard and soft shadows", colonnade},
         {"knot", "a torus knot just above the floor: soft shadows on itself and on the floor",
          knot},
         {"blob", "a weathered boulder of fractal noise: small shadows everywhere", blob},
         {"sphere", "a sphere hovering over the floor, whose shadow has a closed form", sphere},
+        {"room", "a closed room with one window: sun that bounces", room},
+        {"painted_room", "an open room with a red and a green wall: colours that bounce",
+         painted_room},
     }};
     return Scenes;
 }

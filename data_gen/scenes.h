@@ -14,9 +14,10 @@ namespace relumine::data_gen {
 inline constexpr std::size_t MinSceneVertices = 1'000;
 inline constexpr std::size_t MaxSceneVertices = 5'000'000;
 
-// Every scene stands on a flat floor at y = 0 that faces +Y and holds about half of the vertices.
-// The rest are closed surfaces of evenly spaced vertices: smooth where the shape is smooth, with
-// doubled vertices along sharp edges. Normals are set; colours and texture coordinates are not.
+// Every scene stands on a flat floor at y = 0 that faces +Y. Outside of rooms it holds about half
+// of the vertices, and the rest are closed surfaces. Vertices are evenly spaced, shared where the
+// shape is smooth and doubled along sharp edges. Normals are set, texture coordinates are not; only
+// rooms have colours.
 //
 // Unit:    metre.
 // Result:  `num_vertices` is met within 4 % (1 % from 20,000 on). The same argument gives the same
@@ -50,6 +51,15 @@ inline constexpr std::size_t MaxSceneVertices = 5'000'000;
 [[nodiscard]] mesh::TriangleMesh sphere(std::size_t num_vertices = 100'000);
 inline constexpr float SphereRadius = 1.0f;
 inline constexpr glm::vec3 SphereCenter{0.0f, 1.5f, 0.0f};
+
+/// Returns a closed room, 4 x 2.8 x 5 m, with one window: light that bounces. Floor, walls and
+/// ceiling are sheets that face inwards. A box and a ball stand on the floor. The window is a shaft
+/// of 0.3 m in the wall at x = -2, open outside, where the sun of `sun_sky` shines in.
+[[nodiscard]] mesh::TriangleMesh room(std::size_t num_vertices = 100'000);
+
+/// Returns a room without a front wall, 4 x 3.2 x 4 m: its left wall is red, its right wall green.
+/// A box and a ball on the floor show the colours that bounce.
+[[nodiscard]] mesh::TriangleMesh painted_room(std::size_t num_vertices = 100'000);
 
 /// One row of the list of scenes.
 struct Scene {

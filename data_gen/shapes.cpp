@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace relumine::data_gen {
 namespace {
@@ -42,6 +44,29 @@ void append_grid(mesh::TriangleMesh& mesh, std::uint32_t num_u, std::uint32_t nu
     }
 }
 
+// Cuts [low, high] at the breaks inside it, and the pieces evenly.
+std::vector<double> coordinates(double low, double high, std::vector<double> breaks,
+                                double spacing) {
+    breaks.push_back(low);
+    breaks.push_back(high);
+    std::sort(breaks.begin(), breaks.end());
+    breaks.erase(std::unique(breaks.begin(), breaks.end()), breaks.end());
+    std::vector<double> result = {low};
+    for (std::size_t i = 1; i < breaks.size(); ++i) {
+        const double begin = breaks[i - 1];
+        const double end = breaks[i];
+        if (begin < low || end > high) {
+            continue;
+        }
+        const std::uint32_t num = num_intervals(end - begin, spacing);
+        for (std::uint32_t k = 1; k < num; ++k) {
+            result.push_back(begin + (end - begin) * k / num);
+        }
+        result.push_back(end);
+    }
+    return result;
+}
+
 } // namespace
 
 std::uint32_t num_intervals(double length, double spacing, std::uint32_t minimum) {
@@ -72,6 +97,56 @@ void append_box(mesh::TriangleMesh& mesh, const glm::dvec3& min, const glm::dvec
                             point[v] = coordinate(v, j);
                             return point;
                         });
+        }
+    }
+}
+
+void append_wall(mesh::TriangleMesh& mesh, const Wall& wall, double spacing,
+                 std::span<const PlaneRectangle> holes) {
+    std::array<std::vector<double>, 2> lines;
+    for (int side = 0; side < 2; ++side) {
+        std::vector<double> breaks;
+        for (const PlaneRectangle& hole : holes) {
+            breaks.push_back(hole.min[side]);
+            breaks.push_back(hole.max[side]);
+        }
+        lines[static_cast<std::size_t>(side)] =
+            coordinates(wall.outline.min[side], wall.outline.max[side], breaks, spacing);
+    }
+    const auto& [us, vs] = lines;
+    const auto is_hole = [&](std::size_t i, std::size_t j) {
+        const double u = 0.5 * (us[i] + us[i + 1]);
+        const double v = 0.5 * (vs[j] + vs[j + 1]);
+        return std::any_of(holes.begin(), holes.end(), [&](const PlaneRectangle& hole) {
+            return u > hole.min.x && u < hole.max.x && v > hole.min.y && v < hole.max.y;
+        });
+    };
+    // Vertices appear with the first cell that needs them.
+    constexpr std::uint32_t None = ~0U;
+    std::vector<std::uint32_t> vertices(us.size() * vs.size(), None);
+    const auto vertex = [&](std::size_t i, std::size_t j) {
+        std::uint32_t& index = vertices[j * us.size() + i];
+        if (index == None) {
+            index = next_index(mesh);
+            glm::dvec3 point;
+            point[wall.axis] = wall.at;
+            point[(wall.axis + 1) % 3] = us[i];
+            point[(wall.axis + 2) % 3] = vs[j];
+            mesh.positions.emplace_back(point);
+        }
+        return index;
+    };
+    for (std::size_t j = 0; j + 1 < vs.size(); ++j) {
+        for (std::size_t i = 0; i + 1 < us.size(); ++i) {
+            if (is_hole(i, j)) {
+                continue;
+            }
+            std::array<std::uint32_t, 4> quad = {vertex(i, j), vertex(i + 1, j),
+                                                 vertex(i + 1, j + 1), vertex(i, j + 1)};
+            if (!wall.faces_up) {
+                std::swap(quad[1], quad[3]);
+            }
+            append_quad(mesh, quad, ((i + j) & 1U) != 0);
         }
     }
 }

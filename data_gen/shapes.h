@@ -5,7 +5,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <span>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
@@ -20,6 +22,29 @@ namespace relumine::data_gen {
 /// so edges are sharp.
 void append_box(mesh::TriangleMesh& mesh, const glm::dvec3& min, const glm::dvec3& max,
                 double spacing);
+
+/// A rectangle on an axis-aligned plane. Its coordinates are those of the axes after the plane's: y
+/// and z on a plane of constant x, z and x for y, x and y for z.
+struct PlaneRectangle {
+    glm::dvec2 min{0.0};
+    glm::dvec2 max{0.0};
+};
+
+/// A rectangular wall without thickness.
+struct Wall {
+    /// The axis that the wall is perpendicular to: 0, 1 or 2.
+    int axis = 1;
+    /// The wall's coordinate on this axis.
+    double at = 0.0;
+    /// The wall faces the axis' larger coordinates, otherwise the smaller ones.
+    bool faces_up = true;
+    PlaneRectangle outline;
+};
+
+/// Appends a wall of about evenly spaced vertices. Rectangles are left out of it; vertices lie
+/// along their edges.
+void append_wall(mesh::TriangleMesh& mesh, const Wall& wall, double spacing,
+                 std::span<const PlaneRectangle> holes = {});
 
 /// Appends a square floor at y = 0 about the origin. It faces +Y and has close to `num_vertices`
 /// vertices (at least 4).

@@ -37,21 +37,25 @@ glm::dmat3 flipped(char axis) {
     return result;
 }
 
-} // namespace
-
-cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& path,
-                                                 const EnvironmentOptions& options) {
+cubemap::LoadOptions load_options(const EnvironmentOptions& options) {
     const cubemap::Convention& from = convention_of(options);
-    cubemap::LoadOptions load{.layout = options.layout, .fix_bad_pixels = options.fix_bad_pixels};
-    if (!load.layout && from.layouts.size() == 1)
-        load.layout = from.layouts.front();
-    cubemap::EnvironmentImage image = cubemap::load_environment(path, load);
+    cubemap::LoadOptions result{.layout = options.layout, .fix_bad_pixels = options.fix_bad_pixels};
+    if (!result.layout && from.layouts.size() == 1)
+        result.layout = from.layouts.front();
+    return result;
+}
+
+/// Applies what does not depend on directions. `name` stands for the image in messages.
+cubemap::EnvironmentImage as_convention_has_it(cubemap::EnvironmentImage image,
+                                               const std::string& name,
+                                               const EnvironmentOptions& options) {
+    const cubemap::Convention& from = convention_of(options);
     if (!from.reads(image.layout)) {
         std::vector<std::string_view> names;
         for (const cubemap::Layout layout : from.layouts)
             names.push_back(cubemap::name(layout));
         throw std::runtime_error(fmt::format("{}: expected a {} in the convention of {}, got a {}",
-                                             path.string(), fmt::join(names, " or "), from.name,
+                                             name, fmt::join(names, " or "), from.name,
                                              cubemap::name(image.layout)));
     }
     // Programs other than OpenEXR's own do not look at the attribute.
@@ -63,6 +67,21 @@ cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& pa
     if (from.swaps_z_faces)
         cubemap::swap_z_faces(image);
     return image;
+}
+
+} // namespace
+
+cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& path,
+                                                 const EnvironmentOptions& options) {
+    return as_convention_has_it(cubemap::load_environment(path, load_options(options)),
+                                path.string(), options);
+}
+
+cubemap::EnvironmentImage environment_image(cubemap::Picture picture,
+                                            const EnvironmentOptions& options) {
+    const std::string name = "environment";
+    return as_convention_has_it(
+        cubemap::environment_image(std::move(picture), name, load_options(options)), name, options);
 }
 
 glm::dmat3 world_from_image(cubemap::Layout layout, const EnvironmentOptions& options) {
@@ -97,19 +116,27 @@ relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> i
     return relight::image_backdrop(std::move(image), turn);
 }
 
-Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
+Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                           const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    const auto image =
-        std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
-    const Clock::time_point loaded = Clock::now();
     Environment result{.map = cube_map_of(*image, options),
                        .file = {.image = image, .turn = world_from_image(image->layout, options)},
                        .assumptions = image->assumptions};
     result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
     result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));
-    result.seconds_load = std::chrono::duration<double>(loaded - start).count();
-    result.seconds_resample = std::chrono::duration<double>(Clock::now() - loaded).count();
+    result.seconds_resample = std::chrono::duration<double>(Clock::now() - start).count();
+    return result;
+}
+
+Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    auto image =
+        std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
+    const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
+    Environment result = environment_of(std::move(image), options);
+    result.seconds_load = seconds_load;
     return result;
 }
 

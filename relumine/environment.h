@@ -61,6 +61,14 @@ struct Environment {
 [[nodiscard]] cubemap::EnvironmentImage
 load_environment_image(const std::filesystem::path& path, const EnvironmentOptions& options = {});
 
+/// Returns a picture made in code as load_environment_image() returns a file's. Samples lie at
+/// texel centres.
+///
+/// Throws:  std::runtime_error "environment: expected X, got Y"; std::invalid_argument for an
+///          unknown convention.
+[[nodiscard]] cubemap::EnvironmentImage environment_image(cubemap::Picture picture,
+                                                          const EnvironmentOptions& options = {});
+
 /// Returns the matrix of convention, flip, tilt and rotation, from the image's own directions to
 /// the world's.
 [[nodiscard]] glm::dmat3 world_from_image(cubemap::Layout layout,
@@ -77,6 +85,10 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
 /// Returns Environment::warnings of an image; `light_from_below` as in cubemap::upside_down().
 [[nodiscard]] std::vector<std::string> warnings_about(const cubemap::EnvironmentImage& image,
                                                       double light_from_below);
+
+/// Resamples and turns an image. Only load_environment() fills `seconds_load`.
+[[nodiscard]] Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                         const EnvironmentOptions& options = {});
 
 /// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.
 ///

@@ -17,8 +17,9 @@
 namespace relumine {
 
 struct LitScene::Impl {
-    Impl(Scene&& given, const LightOptions& options)
-        : scene(std::move(given)), rays(scene.mesh), clusters_only(options.clusters_only) {
+    Impl(std::shared_ptr<const Scene>&& given, const LightOptions& options)
+        : owned_scene(std::move(given)), scene(*owned_scene), rays(scene.mesh),
+          clusters_only(options.clusters_only) {
         if (scene.blockers)
             others.emplace(*scene.blockers);
     }
@@ -154,7 +155,8 @@ struct LitScene::Impl {
         return radiance;
     }
 
-    Scene scene;
+    std::shared_ptr<const Scene> owned_scene;
+    const Scene& scene;
     prt::RayScene rays;
     /// Of the scene's own blockers
     std::optional<prt::RayScene> others;
@@ -184,6 +186,9 @@ struct LitScene::Impl {
 };
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
+    : LitScene(std::make_shared<const Scene>(std::move(scene)), options) {}
+
+LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options)
     : impl_(std::make_unique<Impl>(std::move(scene), options)) {
     const Scene& own = impl_->scene;
     if (has_clusters() && own.receivers.size() != own.transfer.num_receivers())

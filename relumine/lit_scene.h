@@ -103,6 +103,8 @@ public:
     /// Throws:  std::invalid_argument for a transfer of other receivers, and for clusters_only with
     ///          a scene that has no clusters.
     explicit LitScene(Scene scene, const LightOptions& options = {});
+    /// Shares the scene with others, each in a light of its own.
+    explicit LitScene(std::shared_ptr<const Scene> scene, const LightOptions& options = {});
     ~LitScene();
     LitScene(LitScene&&) noexcept;
     LitScene& operator=(LitScene&&) noexcept;

@@ -13,6 +13,7 @@
 // IWYU pragma: begin_exports
 #include "relumine/environment.h"
 #include "relumine/lit_scene.h"
+#include "relumine/material.h"
 #include "relumine/mesh.h"
 #include "relumine/output.h"
 #include "relumine/precompute.h"

@@ -186,6 +186,31 @@ ImageFile decode_faces(const std::vector<std::filesystem::path>& paths) {
     return all;
 }
 
+/// Finds out the layout, and looks at every pixel.
+EnvironmentImage understood(ImageFile file, const LoadOptions& options, const std::string& path) {
+    EnvironmentImage image;
+    static_cast<Picture&>(image) = static_cast<Picture&&>(file);
+    interpret(file, options, path, image);
+    image.bad_pixels = find_bad_pixels(image);
+    BadPixels& bad = image.bad_pixels;
+    if (bad.count() == 0)
+        return image;
+    if (bad.num_negative > 0)
+        bad.negative_share = negative_share(image);
+    if (options.fix_bad_pixels || (bad.is_harmless() && options.refuse_bad_pixels))
+        fix_bad_pixels(image);
+    else if (options.refuse_bad_pixels)
+        throw std::runtime_error(fmt::format(
+            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels{}, first at "
+            "({}, {}); use --fix-env",
+            path, bad.num_nan + bad.num_infinite, bad.num_negative,
+            bad.num_negative == 0
+                ? ""
+                : fmt::format(" ({:.2g} % of the light)", 100.0 * bad.negative_share),
+            bad.first_x, bad.first_y));
+    return image;
+}
+
 std::string extension_of(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
@@ -212,31 +237,18 @@ EnvironmentImage load_environment(const std::filesystem::path& path, const LoadO
     if (paths.size() > 1 && options.layout && *options.layout != Layout::Cube)
         throw std::runtime_error(fmt::format("{}: expected layout cube for six files, got {}",
                                              path.string(), name(*options.layout)));
-    ImageFile file = paths.size() > 1 ? decode_faces(paths) : decode(paths.front());
-    EnvironmentImage image;
-    static_cast<Picture&>(image) = static_cast<Picture&&>(file);
-    interpret(file, options, path.string(), image);
+    EnvironmentImage image = understood(
+        paths.size() > 1 ? decode_faces(paths) : decode(paths.front()), options, path.string());
     if (paths.size() > 1)
         image.assumptions = fmt::format("cube of six files, {}", image.assumptions);
-
-    image.bad_pixels = find_bad_pixels(image);
-    BadPixels& bad = image.bad_pixels;
-    if (bad.count() == 0)
-        return image;
-    if (bad.num_negative > 0)
-        bad.negative_share = negative_share(image);
-    if (options.fix_bad_pixels || (bad.is_harmless() && options.refuse_bad_pixels))
-        fix_bad_pixels(image);
-    else if (options.refuse_bad_pixels)
-        throw std::runtime_error(fmt::format(
-            "{}: expected finite radiance >= 0, got {} NaN/Inf and {} negative pixels{}, first at "
-            "({}, {}); use --fix-env",
-            path.string(), bad.num_nan + bad.num_infinite, bad.num_negative,
-            bad.num_negative == 0
-                ? ""
-                : fmt::format(" ({:.2g} % of the light)", 100.0 * bad.negative_share),
-            bad.first_x, bad.first_y));
     return image;
+}
+
+EnvironmentImage environment_image(Picture picture, const std::string& name,
+                                   const LoadOptions& options) {
+    ImageFile file;
+    static_cast<Picture&>(file) = std::move(picture);
+    return understood(std::move(file), options, name);
 }
 
 std::uint32_t natural_resolution(const EnvironmentImage& image) {

@@ -125,6 +125,13 @@ environment_files(const std::filesystem::path& path);
 [[nodiscard]] EnvironmentImage load_environment(const std::filesystem::path& path,
                                                 const LoadOptions& options = {});
 
+/// Returns a picture made in code as load_environment() returns a file's, with samples at texel
+/// centres. `name` stands for it in messages.
+///
+/// Throws:  std::runtime_error "name: expected X, got Y".
+[[nodiscard]] EnvironmentImage environment_image(Picture picture, const std::string& name,
+                                                 const LoadOptions& options = {});
+
 /// Returns the cube-map resolution that is about as fine as the image: width / 4 for a lat-long, an
 /// angular map or a mirror ball, width / 2.25 for an octahedral map, the face's resolution for a
 /// cube or a cross.

@@ -50,11 +50,14 @@ struct LightLayers {
 ///          allow, unknown fields included.
 [[nodiscard]] LightLayers load_layers(const std::filesystem::path& path);
 
-/// Writes a file that load_layers() reads back to the same values, bit by bit. The file appears
-/// whole or not at all. Pictures are named, not written.
+/// Returns the text of a file that load_layers() reads back to the same values, bit by bit.
 ///
-/// Throws:  std::invalid_argument for layers that load_layers() would refuse; std::runtime_error
-///          naming the file.
+/// Throws:  std::invalid_argument for layers that load_layers() would refuse.
+[[nodiscard]] std::string json_text(const LightLayers& layers);
+
+/// Writes json_text(). The file appears whole or not at all. Pictures are named, not written.
+///
+/// Throws:  as json_text(), and std::runtime_error naming the file.
 void save_layers(const std::filesystem::path& path, const LightLayers& layers);
 
 /// Returns the layers at a frame, which may lie between whole frames. Each keyed field is

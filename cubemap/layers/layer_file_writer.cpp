@@ -114,7 +114,7 @@ void check_for_save(const LightLayers& layers) {
 
 } // namespace
 
-void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
+std::string json_text(const LightLayers& layers) {
     check_for_save(layers);
     Json root = {{"version", 1}};
     if (layers.base)
@@ -131,14 +131,16 @@ void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
             frames.push_back(json(key, layers.layers));
         root.set("frames", std::move(frames));
     }
-    std::string text;
     try {
-        text = root.text(2, Json::Order::Set, Json::Utf8::Require) + '\n';
+        return root.text(2, Json::Order::Set, Json::Utf8::Require) + '\n';
     } catch (const files::JsonError&) {
         throw std::invalid_argument(
-            fmt::format("{}: expected names and paths in UTF-8, got other bytes", path.string()));
+            "light layers: expected names and paths in UTF-8, got other bytes");
     }
-    files::save_text(path, text);
+}
+
+void save_layers(const std::filesystem::path& path, const LightLayers& layers) {
+    files::save_text(path, json_text(layers));
 }
 
 } // namespace relumine::cubemap

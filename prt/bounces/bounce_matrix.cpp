@@ -16,26 +16,36 @@ constexpr double LargestRowSum = 1.0 + 1e-4;
 
 constexpr int NumPowerIterations = 30;
 
+void require_lists(const PlaceLists& lists, std::size_t num_receivers) {
+    if (lists.begin.size() != num_receivers + 1)
+        throw std::invalid_argument(fmt::format("expected bounces of {} receivers, got {}",
+                                                num_receivers, lists.begin.size() - 1));
+    if (lists.begin.front() != 0 || lists.begin.back() != lists.places.size() ||
+        !std::is_sorted(lists.begin.begin(), lists.begin.end()))
+        throw std::invalid_argument("expected rows of bounces that follow each other");
+    for (const std::uint32_t place : lists.places)
+        if (place >= num_receivers)
+            throw std::invalid_argument(fmt::format(
+                "expected bounces between {} receivers, got number {}", num_receivers, place));
+}
+
 } // namespace
 
-void require_bounces(const BounceMatrix& matrix, std::size_t num_rows, std::size_t num_emitters) {
-    if (matrix.num_rows() != num_rows || matrix.row_begin.size() != num_rows + 1)
-        throw std::invalid_argument(
-            fmt::format("expected bounces of {} receivers, got {}", num_rows, matrix.num_rows()));
-    if (matrix.row_begin.front() != 0 || matrix.row_begin.back() != matrix.columns.size() ||
-        !std::is_sorted(matrix.row_begin.begin(), matrix.row_begin.end()))
-        throw std::invalid_argument("expected rows of bounces that follow each other");
-    for (std::size_t place = 0; place < num_rows; ++place) {
-        const double sum = static_cast<double>(matrix.weights[place]) *
-                           static_cast<double>(matrix.row(place).size());
+void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers) {
+    if (matrix.num_rows() != num_receivers)
+        throw std::invalid_argument(fmt::format("expected bounces of {} receivers, got {}",
+                                                num_receivers, matrix.num_rows()));
+    require_lists(matrix.emitters, num_receivers);
+    require_lists(matrix.averaged, num_receivers);
+    for (std::size_t place = 0; place < num_receivers; ++place) {
+        double num_emitters = 0.0;
+        for (const std::uint32_t other : matrix.averaged[place])
+            num_emitters += static_cast<double>(matrix.emitters[other].size());
+        const double sum = static_cast<double>(matrix.weights[place]) * num_emitters;
         if (!(matrix.weights[place] >= 0.0f && sum <= LargestRowSum))
             throw std::invalid_argument(fmt::format(
                 "expected bounces that keep at most all of the light, got a factor of {}", sum));
     }
-    for (const std::uint32_t column : matrix.columns)
-        if (column >= num_emitters)
-            throw std::invalid_argument(fmt::format(
-                "expected bounces from {} emitters, got number {}", num_emitters, column));
     if (!(matrix.spectral_radius >= 0.0f && matrix.spectral_radius <= LargestRowSum))
         throw std::invalid_argument(fmt::format(
             "expected bounces that keep 0 to 1 of the light, got {}", matrix.spectral_radius));
@@ -43,18 +53,26 @@ void require_bounces(const BounceMatrix& matrix, std::size_t num_rows, std::size
 
 float spectral_radius(const BounceMatrix& matrix) {
     const std::size_t n = matrix.num_rows();
-    if (matrix.columns.empty())
+    if (matrix.emitters.places.empty())
         return 0.0f;
     std::vector<float> x(n, 1.0f);
+    std::vector<float> gathered(n);
     std::vector<float> product(n);
+    const auto sum_of = [](std::span<const std::uint32_t> places, const std::vector<float>& from) {
+        double sum = 0.0;
+        for (const std::uint32_t place : places)
+            sum += static_cast<double>(from[place]);
+        return sum;
+    };
     double norm = std::sqrt(static_cast<double>(n));
     double radius = 0.0;
     for (int iteration = 0; iteration < NumPowerIterations; ++iteration) {
         tbb::parallel_for(std::size_t{0}, n, [&](std::size_t place) {
-            double sum = 0.0;
-            for (const std::uint32_t column : matrix.row(place))
-                sum += static_cast<double>(x[column]);
-            product[place] = static_cast<float>(static_cast<double>(matrix.weights[place]) * sum);
+            gathered[place] = static_cast<float>(sum_of(matrix.emitters[place], x));
+        });
+        tbb::parallel_for(std::size_t{0}, n, [&](std::size_t place) {
+            product[place] = static_cast<float>(static_cast<double>(matrix.weights[place]) *
+                                                sum_of(matrix.averaged[place], gathered));
         });
         double squares = 0.0;
         for (const float value : product)

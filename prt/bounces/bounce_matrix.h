@@ -8,32 +8,50 @@
 
 namespace relumine::prt {
 
-/// Row x holds sampled form factors: the radiance that a receiver of albedo 1 gets from other
-/// receivers, its emitters, is the row's weight times the sum of X over the row's columns. An
-/// emitter that was hit twice stands twice. Colour is no part of it, so albedo stays editable
+/// A list of places for each receiver.
+struct PlaceLists {
+    /// [size() + 1] the first of each list in `places`.
+    std::vector<std::uint64_t> begin = {0};
+    /// Ascending within a list. A place may stand there twice.
+    std::vector<std::uint32_t> places = {};
+
+    [[nodiscard]] std::size_t size() const { return begin.size() - 1; }
+    [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t list) const {
+        return {places.data() + begin[list],
+                static_cast<std::size_t>(begin[list + 1] - begin[list])};
+    }
+    void append(std::span<const std::uint32_t> list) {
+        places.insert(places.end(), list.begin(), list.end());
+        begin.push_back(places.size());
+    }
+    bool operator==(const PlaceLists&) const = default;
+};
+
+/// Sampled form factors. The radiance that a receiver of albedo 1 gets from others is
+///
+///     weights[x] * (sum over y in averaged[x] of (sum over z in emitters[y] of X(z)))
+///
+/// where X is the radiance of each emitter: a receiver's own samples, and those of similar
+/// receivers near it, count alike. Colour is no part of this, so albedo stays editable
 /// [direct-to-indirect transfer: Hasan, Pellacini and Bala 2006].
 struct BounceMatrix {
-    /// [num_rows] by place: weight of each of the row's columns.
+    /// [num_rows] by place.
     std::vector<float> weights;
-    /// [num_rows + 1] the row's first column in `columns`.
-    std::vector<std::uint64_t> row_begin = {0};
-    /// Places of emitters, ascending within a row.
-    std::vector<std::uint32_t> columns = {};
+    /// What the rays of each receiver hit.
+    PlaceLists emitters;
+    /// Receivers that share their samples; each is a member of its own list.
+    PlaceLists averaged;
     /// The largest eigenvalue: how much of the light a further bounce keeps at albedo 1. Light
     /// grows for ever at albedos of 1/spectral_radius and more.
     float spectral_radius = 0.0f;
 
     [[nodiscard]] std::size_t num_rows() const { return weights.size(); }
-    [[nodiscard]] std::span<const std::uint32_t> row(std::size_t place) const {
-        return {columns.data() + row_begin[place],
-                static_cast<std::size_t>(row_begin[place + 1] - row_begin[place])};
-    }
     bool operator==(const BounceMatrix&) const = default;
 };
 
-/// Throws:  std::invalid_argument where the arrays contradict each other, a column is no emitter, a
-///          weight is negative or not finite, or a row's sum is above 1.
-void require_bounces(const BounceMatrix& matrix, std::size_t num_rows, std::size_t num_emitters);
+/// Throws:  std::invalid_argument where the arrays contradict each other, a place is none of the
+///          receivers, a weight is negative or not finite, or a row's sum is above 1.
+void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers);
 
 /// Returns the largest eigenvalue of a square matrix of bounces, from below, by power iteration.
 ///

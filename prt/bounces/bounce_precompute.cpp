@@ -6,7 +6,9 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,7 +17,9 @@
 
 #include "cubemap/face.h"
 #include "cubemap/split_mix64.h"
+#include "prt/bounces/similar_receivers.h"
 #include "prt/precompute.h"
+#include "prt/receivers/mesh_point.h"
 
 namespace relumine::prt {
 
@@ -69,71 +73,33 @@ private:
 };
 
 /// What a receiver's rays met.
-struct RowHits {
-    /// [num_hits] place of the emitter, or NoEmitter.
-    std::vector<std::uint32_t> emitters;
-    /// [num_hits] index of the direction.
-    std::vector<std::uint32_t> directions;
+struct Samples {
+    /// Place of each emitter, or NoEmitter, of every second direction: two halves, whose difference
+    /// tells the error.
+    std::array<std::vector<std::uint32_t>, 2> halves;
+    std::uint32_t num_directions = 0;
+    /// Over the hits.
+    double sum_inverse_distances = 0.0;
+
+    [[nodiscard]] std::size_t num_hits() const { return halves[0].size() + halves[1].size(); }
+    /// Harmonic mean of the distances of surfaces; sky is infinitely far away.
+    [[nodiscard]] float distance() const {
+        return static_cast<float>(num_directions / sum_inverse_distances);
+    }
 };
 
-/// Makes the rows of a block of receivers.
-class RowBuilder {
+/// Traces the samples of receivers.
+class Sampler {
 public:
-    RowBuilder(const mesh::TriangleMesh& mesh, const Receivers& receivers, const Transfer& transfer,
-               std::span<const ProbeRadiance> probes, const RayScene& rays,
-               const BounceOptions& options)
+    Sampler(const mesh::TriangleMesh& mesh, const Receivers& receivers, const Transfer& transfer,
+            std::span<const ProbeRadiance> probes, const RayScene& rays,
+            const BounceOptions& options)
         : mesh_(mesh), receivers_(receivers), transfer_(transfer), probes_(probes), rays_(rays),
           options_(options), place_of_(receivers.size()) {
         for (std::uint32_t place = 0; place < transfer.order.size(); ++place)
             place_of_[transfer.order[place]] = place;
     }
 
-    struct Block {
-        std::array<std::vector<std::uint32_t>, BlockSize> columns;
-        std::array<float, BlockSize> weights{};
-        std::uint64_t num_rays = 0;
-        std::uint64_t num_hits = 0;
-        double sum_closure = 0.0;
-        /// Sum over the rows of the squared standard error, worst of the probe lights.
-        double sum_squared_error = 0.0;
-    };
-
-    [[nodiscard]] Block make(std::size_t block) const {
-        Block result;
-        const std::size_t begin = block * BlockSize;
-        const std::size_t size = std::min(BlockSize, transfer_.num_receivers() - begin);
-        std::array<RowHits, BlockSize> hits;
-        std::uint32_t num_directions = 0;
-        double error = 0.0;
-        do {
-            const std::uint32_t next =
-                num_directions == 0 ? options_.min_directions : 2 * num_directions;
-            error = 0.0;
-            for (std::size_t i = 0; i < size; ++i) {
-                look(begin + i, num_directions, next, hits[i], result.num_rays);
-                error += squared_error(begin + i, hits[i]);
-            }
-            num_directions = next;
-        } while (num_directions < options_.max_directions &&
-                 error > static_cast<double>(size) * options_.tolerance * options_.tolerance);
-        result.sum_squared_error = error;
-        for (std::size_t i = 0; i < size; ++i) {
-            const double closure = closure_of(begin + i);
-            result.sum_closure += closure;
-            result.num_hits += hits[i].emitters.size();
-            if (!hits[i].emitters.empty())
-                result.weights[i] =
-                    static_cast<float>(closure / static_cast<double>(hits[i].emitters.size()));
-            result.columns[i] = std::move(hits[i].emitters);
-            std::erase(result.columns[i], NoEmitter);
-            std::sort(result.columns[i].begin(), result.columns[i].end());
-            if (result.columns[i].empty())
-                result.weights[i] = 0.0f;
-        }
-        return result;
-    }
-
-private:
     /// Returns the part of the hemisphere that surfaces close.
     [[nodiscard]] double closure_of(std::size_t place) const {
         const glm::vec3& normal = transfer_.normals[place];
@@ -142,16 +108,18 @@ private:
         return std::clamp(1.0 - static_cast<double>(probes_[place][0]), 0.0, 1.0);
     }
 
-    /// Traces the directions begin .. end - 1 of a receiver.
-    void look(std::size_t place, std::uint32_t begin, std::uint32_t end, RowHits& hits,
-              std::uint64_t& num_rays) const {
+    /// Looks into as many directions as `num_directions`, after those that are there. Returns the
+    /// number of rays.
+    std::uint64_t look(std::size_t place, std::uint32_t num_directions, Samples& samples) const {
+        const std::uint32_t begin = std::exchange(samples.num_directions, num_directions);
         if (closure_of(place) == 0.0)
-            return;
+            return 0;
         const std::uint32_t receiver = transfer_.order[place];
         const CosineDirections directions(transfer_.normals[place], receiver);
         const glm::vec3 origin =
             ray_origin(receivers_.positions[receiver], transfer_.normals[place], options_.bias);
-        for (std::uint32_t i = begin; i < end; ++i) {
+        std::uint64_t num_rays = 0;
+        for (std::uint32_t i = begin; i < num_directions; ++i) {
             const glm::dvec3 direction = directions[i];
             const std::uint32_t leaf = transfer_.quadtree.leaf_at(cubemap::face_point(direction));
             if (transfer_.counts.count(place, leaf) == 16)
@@ -162,11 +130,37 @@ private:
                 continue;
             const double choice = unit_interval(
                 cubemap::SplitMix64((std::uint64_t{receiver} << 32u | i) ^ ChoiceSeed).next());
-            hits.emitters.push_back(emitter_of(*hit, glm::vec3(direction), choice));
-            hits.directions.push_back(i);
+            samples.halves[i % 2].push_back(emitter_of(*hit, glm::vec3(direction), choice));
+            const MeshPoint at{hit->triangle, hit->barycentric};
+            const auto distance =
+                static_cast<double>(glm::distance(value_at(mesh_, mesh_.positions, at), origin));
+            samples.sum_inverse_distances += 1.0 / distance;
         }
+        return num_rays;
     }
 
+    /// Returns the squared standard error of one bounce under the worst of the probe lights, from
+    /// the difference of the halves.
+    [[nodiscard]] double squared_error(std::size_t place, const Samples& samples) const {
+        const double closure = closure_of(place);
+        if (samples.num_hits() == 0)
+            return closure * closure;
+        std::array<std::array<double, NumProbeLights>, 2> means{};
+        for (std::size_t half = 0; half < 2; ++half) {
+            for (const std::uint32_t emitter : samples.halves[half])
+                if (emitter != NoEmitter)
+                    for (std::size_t light = 0; light < NumProbeLights; ++light)
+                        means[half][light] += static_cast<double>(probes_[emitter][light]);
+            for (double& mean : means[half])
+                mean /= std::max(static_cast<double>(samples.halves[half].size()), 1.0);
+        }
+        double worst = 0.0;
+        for (std::size_t light = 0; light < NumProbeLights; ++light)
+            worst = std::max(worst, std::abs(means[0][light] - means[1][light]));
+        return 0.25 * closure * closure * worst * worst;
+    }
+
+private:
     /// Draws a vertex of the triangle by its barycentric weight; `choice` is in [0, 1).
     [[nodiscard]] std::uint32_t emitter_of(const Hit& hit, const glm::vec3& direction,
                                            double choice) const {
@@ -179,30 +173,6 @@ private:
                                    : choice < static_cast<double>(u + v) ? 2
                                                                          : 0;
         return place_of_[corners[corner]];
-    }
-
-    /// Returns the squared standard error of a row under the worst of the probe lights, from the
-    /// difference of its halves: every second direction.
-    [[nodiscard]] double squared_error(std::size_t place, const RowHits& hits) const {
-        const double closure = closure_of(place);
-        if (hits.emitters.empty())
-            return closure * closure;
-        std::array<std::array<double, NumProbeLights>, 2> sums{};
-        std::array<double, 2> sizes{};
-        for (std::size_t i = 0; i < hits.emitters.size(); ++i) {
-            const std::size_t half = hits.directions[i] % 2;
-            sizes[half] += 1.0;
-            if (hits.emitters[i] != NoEmitter)
-                for (std::size_t light = 0; light < NumProbeLights; ++light)
-                    sums[half][light] += static_cast<double>(probes_[hits.emitters[i]][light]);
-        }
-        double worst = 0.0;
-        for (std::size_t light = 0; light < NumProbeLights; ++light) {
-            const double a = sizes[0] > 0.0 ? sums[0][light] / sizes[0] : 0.0;
-            const double b = sizes[1] > 0.0 ? sums[1][light] / sizes[1] : 0.0;
-            worst = std::max(worst, std::abs(a - b));
-        }
-        return 0.25 * closure * closure * worst * worst;
     }
 
     const mesh::TriangleMesh& mesh_;
@@ -236,47 +206,91 @@ BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh, const Receivers&
                                 BounceStatistics* statistics) {
     const auto start = std::chrono::steady_clock::now();
     require_options(mesh, receivers, transfer, probes, options);
-    const RowBuilder builder(mesh, receivers, transfer, probes, rays, options);
+    const Sampler sampler(mesh, receivers, transfer, probes, rays, options);
+    const std::size_t num_rows = transfer.num_receivers();
     const std::size_t num_blocks = transfer.counts.num_blocks();
-    std::vector<RowBuilder::Block> blocks(num_blocks);
+
+    // Two rounds over all blocks: the first finds how far surfaces are and how different samples,
+    // the second adds samples where those of similar receivers together are too few.
     std::size_t num_done = 0;
     std::mutex progress;
-    tbb::parallel_for(std::size_t{0}, num_blocks, [&](std::size_t block) {
+    const auto for_blocks = [&](const auto& work) {
+        tbb::parallel_for(std::size_t{0}, num_blocks, [&](std::size_t block) {
+            if (options.stop.stop_requested())
+                return;
+            work(block * BlockSize, std::min((block + 1) * BlockSize, num_rows), block);
+            const std::scoped_lock lock(progress);
+            ++num_done;
+            if (options.on_progress && num_done % 64 == 0)
+                options.on_progress(0.5 * static_cast<double>(num_done) /
+                                    static_cast<double>(num_blocks));
+        });
         if (options.stop.stop_requested())
-            return;
-        blocks[block] = builder.make(block);
-        const std::scoped_lock lock(progress);
-        ++num_done;
-        if (options.on_progress && (num_done % 64 == 0 || num_done == num_blocks))
-            options.on_progress(static_cast<double>(num_done) / static_cast<double>(num_blocks));
+            throw Cancelled();
+    };
+    std::vector<Samples> samples(num_rows);
+    std::vector<std::uint64_t> num_rays(num_blocks);
+    std::vector<glm::vec3> positions(num_rows);
+    std::vector<float> distances(num_rows);
+    for_blocks([&](std::size_t begin, std::size_t end, std::size_t block) {
+        for (std::size_t place = begin; place < end; ++place) {
+            num_rays[block] += sampler.look(place, options.min_directions, samples[place]);
+            positions[place] = receivers.positions[transfer.order[place]];
+            distances[place] = samples[place].num_hits() == 0 ? 0.0f : samples[place].distance();
+        }
     });
-    if (options.stop.stop_requested())
-        throw Cancelled();
 
     BounceMatrix result;
-    BounceStatistics found;
-    const std::size_t num_rows = transfer.num_receivers();
-    result.weights.reserve(num_rows);
-    result.row_begin.reserve(num_rows + 1);
-    double squared_error = 0.0;
-    for (std::size_t block = 0; block < num_blocks; ++block) {
-        RowBuilder::Block& made = blocks[block];
-        for (std::size_t i = 0; i < std::min(BlockSize, num_rows - block * BlockSize); ++i) {
-            result.weights.push_back(made.weights[i]);
-            result.columns.insert(result.columns.end(), made.columns[i].begin(),
-                                  made.columns[i].end());
-            result.row_begin.push_back(result.columns.size());
-            made.columns[i] = {};
+    result.averaged = similar_receivers(positions, transfer.normals, distances);
+    std::vector<double> squared_errors(num_blocks);
+    for_blocks([&](std::size_t begin, std::size_t end, std::size_t block) {
+        double error = 0.0;
+        for (std::size_t place = begin; place < end; ++place)
+            error +=
+                sampler.squared_error(place, samples[place]) / static_cast<double>(end - begin);
+        // The variance falls as the number of directions and of those who share them grows.
+        for (std::size_t place = begin; place < end; ++place) {
+            const double shared = error / static_cast<double>(result.averaged[place].size());
+            std::uint32_t factor = 1;
+            while (shared > factor * static_cast<double>(options.tolerance * options.tolerance) &&
+                   2 * factor * options.min_directions <= options.max_directions)
+                factor *= 2;
+            num_rays[block] += sampler.look(place, factor * options.min_directions, samples[place]);
+            squared_errors[block] += shared / factor;
         }
-        found.num_rays += made.num_rays;
-        found.num_hits += made.num_hits;
-        found.mean_closure += made.sum_closure;
-        squared_error += made.sum_squared_error;
+    });
+
+    BounceStatistics found;
+    for (std::size_t place = 0; place < num_rows; ++place) {
+        const double closure = sampler.closure_of(place);
+        double num_hits = 0.0, num_emitters = 0.0;
+        for (const std::uint32_t other : result.averaged[place]) {
+            num_hits += static_cast<double>(samples[other].num_hits());
+            num_emitters += static_cast<double>(samples[other].num_hits());
+            for (const std::vector<std::uint32_t>& half : samples[other].halves)
+                num_emitters -=
+                    static_cast<double>(std::count(half.begin(), half.end(), NoEmitter));
+        }
+        result.weights.push_back(num_emitters > 0.0 ? static_cast<float>(closure / num_hits)
+                                                    : 0.0f);
+        found.mean_closure += closure / static_cast<double>(num_rows);
+        found.num_hits += samples[place].num_hits();
+    }
+    for (Samples& each : samples) {
+        std::vector<std::uint32_t>& row = each.halves[0];
+        row.insert(row.end(), each.halves[1].begin(), each.halves[1].end());
+        std::erase(row, NoEmitter);
+        std::sort(row.begin(), row.end());
+        result.emitters.append(row);
+        each = {};
     }
     result.spectral_radius = spectral_radius(result);
-    found.num_columns = result.columns.size();
-    found.mean_closure /= static_cast<double>(num_rows);
-    found.rms_error = std::sqrt(squared_error / static_cast<double>(num_rows));
+    found.num_rays = std::accumulate(num_rays.begin(), num_rays.end(), std::uint64_t{0});
+    found.num_emitters = result.emitters.places.size();
+    found.mean_averaged =
+        static_cast<double>(result.averaged.places.size()) / static_cast<double>(num_rows);
+    found.rms_error = std::sqrt(std::accumulate(squared_errors.begin(), squared_errors.end(), 0.0) /
+                                static_cast<double>(num_rows));
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (statistics != nullptr)
         *statistics = found;

@@ -27,10 +27,10 @@ using ProbeRadiance = std::array<float, NumProbeLights>;
 
 struct BounceOptions {
     /// The limit of the standard error of one bounce under any probe light, as a radiance, for
-    /// albedo 1: RMS over the 16 receivers of a block.
-    float tolerance = 0.02f;
-    /// Directions that each receiver looks into at first. They are doubled until the tolerance
-    /// holds.
+    /// albedo 1. The samples of 16 neighbours tell how large it is.
+    float tolerance = 0.01f;
+    /// Directions that each receiver looks into at first. They are doubled as often as the
+    /// tolerance asks for.
     std::uint32_t min_directions = 64;
     /// A power of two times min_directions at which the doubling ends.
     std::uint32_t max_directions = 4096;
@@ -47,8 +47,10 @@ struct BounceOptions {
 struct BounceStatistics {
     std::uint64_t num_rays = 0;
     std::uint64_t num_hits = 0;
-    /// Entries of the matrix: hits on surfaces that face the ray.
-    std::uint64_t num_columns = 0;
+    /// Hits on surfaces that face the ray.
+    std::uint64_t num_emitters = 0;
+    /// Mean number of receivers that share their samples.
+    double mean_averaged = 0.0;
     /// Of all receivers: the part of the hemisphere that surfaces close.
     double mean_closure = 0.0;
     /// Estimated standard error of one bounce, RMS over all receivers, worst of the probe lights.
@@ -58,12 +60,13 @@ struct BounceStatistics {
 
 /// Finds the emitters of each vertex: cosine-distributed directions, without those in clusters that
 /// it sees whole, are traced to the first surface, and a vertex of the triangle is drawn by its
-/// barycentric weight, which is unbiased where the nearest is not. The row's sum is the closed part
-/// of the hemisphere, exact to the transfer's tolerance: 1 - B under a white sky.
+/// barycentric weight, which is unbiased where the nearest is not. Similar receivers share their
+/// samples (similar_receivers.h). A row's sum is the closed part of the hemisphere, exact to the
+/// transfer's tolerance: 1 - B under a white sky.
 ///
 /// Shape:   `probes` is [num_receivers] by place.
-/// Memory:  4 bytes per column, some 30 to 100 columns per receiver.
-/// Threads: parallel over blocks (TBB). A row depends on its block only, not on threads.
+/// Memory:  4 bytes per emitter and per similar receiver, some 100 to 400 bytes per receiver.
+/// Threads: parallel over blocks (TBB). A row depends on the receivers around it, not on threads.
 /// Throws:  std::invalid_argument where sizes differ, receivers are no vertices of the mesh, or
 ///          options are out of range; Cancelled.
 [[nodiscard]] BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh,

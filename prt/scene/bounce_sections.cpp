@@ -8,8 +8,9 @@ namespace relumine::prt {
 
 namespace {
 
-const std::string Radius = "bounce_radius", Weights = "bounce_weights", Sizes = "bounce_sizes",
-                  Columns = "bounce_columns";
+const std::string Radius = "bounce_radius", Weights = "bounce_weights",
+                  EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
+                  AveragedSizes = "bounce_near_size", Averaged = "bounce_near";
 
 /// Numbers below 2^7 take a byte, below 2^14 two, and so on: seven bits a byte, the lowest first,
 /// the eighth set where more follow.
@@ -35,7 +36,7 @@ public:
             if (byte < 0x80u && number <= 0xffffffffu)
                 return static_cast<std::uint32_t>(number);
         }
-        reader_.fail(section_, "columns of bounces");
+        reader_.fail(section_, "lists of receivers");
     }
     [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
     [[nodiscard]] std::size_t size() const { return bytes_.size(); }
@@ -47,24 +48,58 @@ private:
     std::size_t at_ = 0;
 };
 
+void add_lists(Sections& sections, const std::string& size_name, const std::string& name,
+               const PlaceLists& lists) {
+    std::vector<std::uint32_t> sizes;
+    std::vector<std::uint8_t> bytes;
+    for (std::size_t i = 0; i < lists.size(); ++i) {
+        sizes.push_back(static_cast<std::uint32_t>(lists[i].size()));
+        std::uint32_t before = 0;
+        for (const std::uint32_t place : lists[i]) {
+            append_number(bytes, place - before);
+            before = place;
+        }
+    }
+    sections[size_name] = bytes_of(sizes);
+    sections[name] = bytes_of(bytes);
+}
+
+PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
+                      const std::string& name, std::size_t num_receivers) {
+    PlaceLists lists;
+    const auto sizes = reader.elements<std::uint32_t>(size_name, num_receivers);
+    Numbers numbers(reader, name);
+    lists.begin.reserve(num_receivers + 1);
+    std::uint64_t num_places = 0;
+    for (const std::uint32_t size : sizes)
+        num_places += size;
+    // Each place takes a byte at least, so a size that lies allocates nothing.
+    if (num_places > numbers.size())
+        reader.fail(size_name, "as many receivers as there are");
+    lists.places.reserve(num_places);
+    for (const std::uint32_t size : sizes) {
+        std::uint32_t place = 0;
+        for (std::uint32_t i = 0; i < size; ++i) {
+            const std::uint32_t step = numbers.next();
+            if (step >= num_receivers - place)
+                reader.fail(name, "numbers of receivers");
+            place += step;
+            lists.places.push_back(place);
+        }
+        lists.begin.push_back(lists.places.size());
+    }
+    if (!numbers.at_end())
+        reader.fail(name, "an end after the last list");
+    return lists;
+}
+
 } // namespace
 
 void add_bounce_sections(Sections& sections, const BounceMatrix& matrix) {
     sections[Radius] = bytes_of(std::vector{matrix.spectral_radius});
     sections[Weights] = bytes_of(matrix.weights);
-    std::vector<std::uint32_t> sizes;
-    std::vector<std::uint8_t> columns;
-    for (std::size_t place = 0; place < matrix.num_rows(); ++place) {
-        const auto row = matrix.row(place);
-        sizes.push_back(static_cast<std::uint32_t>(row.size()));
-        std::uint32_t before = 0;
-        for (const std::uint32_t column : row) {
-            append_number(columns, column - before);
-            before = column;
-        }
-    }
-    sections[Sizes] = bytes_of(sizes);
-    sections[Columns] = bytes_of(columns);
+    add_lists(sections, EmitterSizes, Emitters, matrix.emitters);
+    add_lists(sections, AveragedSizes, Averaged, matrix.averaged);
 }
 
 std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_t num_receivers) {
@@ -73,31 +108,10 @@ std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_
     BounceMatrix matrix;
     matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
     matrix.weights = reader.elements<float>(Weights, num_receivers);
-    const auto sizes = reader.elements<std::uint32_t>(Sizes, num_receivers);
-    Numbers numbers(reader, Columns);
-    matrix.row_begin.reserve(num_receivers + 1);
-    std::uint64_t num_columns = 0;
-    for (const std::uint32_t size : sizes)
-        num_columns += size;
-    // Each column takes a byte at least, so a size that lies allocates nothing.
-    if (num_columns > numbers.size())
-        reader.fail(Sizes, "as many columns as there are");
-    matrix.columns.reserve(num_columns);
-    for (const std::uint32_t size : sizes) {
-        std::uint32_t column = 0;
-        for (std::uint32_t i = 0; i < size; ++i) {
-            const std::uint32_t step = numbers.next();
-            if (step >= num_receivers - column)
-                reader.fail(Columns, "columns that are receivers");
-            column += step;
-            matrix.columns.push_back(column);
-        }
-        matrix.row_begin.push_back(matrix.columns.size());
-    }
-    if (!numbers.at_end())
-        reader.fail(Columns, "an end after the last row");
+    matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers);
+    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers);
     try {
-        require_bounces(matrix, num_receivers, num_receivers);
+        require_bounces(matrix, num_receivers);
     } catch (const std::invalid_argument&) {
         reader.fail(Weights, "weights of bounces that keep at most all of the light");
     }

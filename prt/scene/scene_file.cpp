@@ -244,7 +244,7 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
         if (!on_vertices)
             throw std::invalid_argument(
                 fmt::format("{}: expected bounces of vertices only", path.string()));
-        require_bounces(*scene.bounces, num_receivers, num_receivers);
+        require_bounces(*scene.bounces, num_receivers);
         add_bounce_sections(sections, *scene.bounces);
     }
     return write_sections(path, sections);

@@ -1,27 +1,42 @@
 #include "relight/bounces/bounce_kernel.h"
 
+#include <algorithm>
 #include <cstdint>
 
 namespace relumine::relight {
 
-void gather_rows(const prt::BounceMatrix& matrix, std::span<const PaddedRgb> sent,
-                 std::size_t begin, std::size_t end, std::span<PaddedRgb> result) {
+void sum_lists(const prt::PlaceLists& lists, std::span<const PaddedRgb> values, std::size_t begin,
+               std::size_t end, std::span<PaddedRgb> sums) {
     // Several sums at a time, as an addition takes longer than the load that feeds it.
     constexpr std::size_t NumSums = 4;
     for (std::size_t place = begin; place < end; ++place) {
-        const std::span<const std::uint32_t> row = matrix.row(place);
-        std::array<PaddedRgb, NumSums> sums{};
+        const std::span<const std::uint32_t> list = lists[place];
+        std::array<PaddedRgb, NumSums> parts{};
         std::size_t i = 0;
-        for (; i + NumSums <= row.size(); i += NumSums)
+        for (; i + NumSums <= list.size(); i += NumSums)
             for (std::size_t k = 0; k < NumSums; ++k)
                 for (std::size_t c = 0; c < 4; ++c)
-                    sums[k].rgb[c] += sent[row[i + k]].rgb[c];
-        for (; i < row.size(); ++i)
+                    parts[k].rgb[c] += values[list[i + k]].rgb[c];
+        for (; i < list.size(); ++i)
             for (std::size_t c = 0; c < 4; ++c)
-                sums[0].rgb[c] += sent[row[i]].rgb[c];
+                parts[0].rgb[c] += values[list[i]].rgb[c];
         for (std::size_t c = 0; c < 4; ++c)
-            result[place].rgb[c] = matrix.weights[place] * ((sums[0].rgb[c] + sums[1].rgb[c]) +
-                                                            (sums[2].rgb[c] + sums[3].rgb[c]));
+            sums[place].rgb[c] =
+                (parts[0].rgb[c] + parts[1].rgb[c]) + (parts[2].rgb[c] + parts[3].rgb[c]);
+    }
+}
+
+void means_of_groups(std::span<const PaddedRgb> values, std::size_t group_size,
+                     std::span<PaddedRgb> means) {
+    for (std::size_t group = 0; group < means.size(); ++group) {
+        const std::size_t begin = group * group_size;
+        const std::size_t end = std::min(begin + group_size, values.size());
+        PaddedRgb sum;
+        for (std::size_t i = begin; i < end; ++i)
+            for (std::size_t c = 0; c < 4; ++c)
+                sum.rgb[c] += values[i].rgb[c];
+        for (std::size_t c = 0; c < 4; ++c)
+            means[group].rgb[c] = sum.rgb[c] / static_cast<float>(end - begin);
     }
 }
 

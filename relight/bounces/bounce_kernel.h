@@ -1,4 +1,4 @@
-// One bounce: sums over the columns of a matrix of bounces.
+// One bounce: sums over the lists of a matrix of bounces.
 #pragma once
 
 #include <array>
@@ -20,8 +20,13 @@ struct alignas(16) PaddedRgb {
     return {{value.x, value.y, value.z, 0.0f}};
 }
 
-/// Writes rows begin .. end - 1 of A sent to `result`. All arrays are by place.
-void gather_rows(const prt::BounceMatrix& matrix, std::span<const PaddedRgb> sent,
-                 std::size_t begin, std::size_t end, std::span<PaddedRgb> result);
+/// Writes, for the lists begin .. end - 1, the sum of the values of each list's places.
+void sum_lists(const prt::PlaceLists& lists, std::span<const PaddedRgb> values, std::size_t begin,
+               std::size_t end, std::span<PaddedRgb> sums);
+
+/// Writes the means of groups of `group_size` values that follow each other; the last group may be
+/// smaller.
+void means_of_groups(std::span<const PaddedRgb> values, std::size_t group_size,
+                     std::span<PaddedRgb> means);
 
 } // namespace relumine::relight

@@ -13,13 +13,14 @@
 #include <tbb/parallel_for.h>
 
 #include "relight/bounces/bounce_kernel.h"
+#include "relight/bounces/coarse_bounces.h"
 
 namespace relumine::relight {
 
 namespace {
 
 /// Differences of earlier iterates that an accelerated step combines.
-constexpr std::size_t AndersonDepth = 3;
+constexpr std::size_t AndersonDepth = 2;
 
 /// More products than any scene needs whose light does not grow for ever.
 constexpr std::uint32_t MaxBounces = 1000;
@@ -27,11 +28,9 @@ constexpr std::uint32_t MaxBounces = 1000;
 /// Rows that one task handles; sums over them are added in order, so that threads do not matter.
 constexpr std::size_t RowsPerTask = 1024;
 
-using Rgb = std::array<double, 3>;
-
-Rgb operator+(const Rgb& a, const Rgb& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
+/// Steps are assumed to shrink by no more than this, whatever the last ones did: light in narrow
+/// gaps is found late. The light that is left is then at least as large as the last step.
+constexpr double LeastRatio = 0.5;
 
 /// Solves the normal equations of up to AndersonDepth unknowns by Cholesky's method; a column that
 /// depends on those before gets the factor 0.
@@ -80,13 +79,10 @@ least_squares(std::array<std::array<double, AndersonDepth>, AndersonDepth> matri
 class BounceLight::Impl {
 public:
     Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
-        : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()), albedo_(size_),
-          direct_(size_), sent_(size_), indirect_(size_), next_(size_),
-          published_(size_, glm::vec3(0.0f)) {
-        if (matrix.num_rows() != size_)
-            throw std::invalid_argument(
-                fmt::format("expected bounces of {} receivers, got {}", size_, matrix.num_rows()));
-    }
+        : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()),
+          coarse_(checked(matrix, size_)), coarse_sent_(coarse_.num_groups()), albedo_(size_),
+          direct_(size_), sent_(size_), gathered_(size_), indirect_(size_), next_(size_),
+          published_(size_, glm::vec3(0.0f)) {}
 
     void set_albedo(std::span<const glm::vec3> albedo) {
         if (albedo.size() != size_)
@@ -109,6 +105,7 @@ public:
         contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
         for (std::size_t place = 0; place < size_; ++place)
             albedo_[place] = padded(albedo[transfer_.order[place]]);
+        coarse_.set_albedo(albedo_);
     }
 
     BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
@@ -119,16 +116,19 @@ public:
         forget_steps();
         const std::uint32_t last = limits.num_bounces.value_or(MaxBounces);
         while (report.num_bounces < last && contraction_ > 0.0) {
-            report.error = bounce();
+            bounce();
             ++report.num_bounces;
-            if (!limits.num_bounces && report.error <= limits.tolerance) {
+            if (limits.num_bounces) {
+                indirect_.swap(next_);
+                continue;
+            }
+            add_coarse_bounces();
+            report.error = error_after(step_size());
+            if (report.error <= limits.tolerance) {
                 indirect_.swap(next_);
                 break;
             }
-            if (limits.num_bounces)
-                indirect_.swap(next_);
-            else
-                accelerate();
+            accelerate();
         }
         publish();
         report.seconds = seconds_since(start);
@@ -139,9 +139,10 @@ public:
         const auto start = std::chrono::steady_clock::now();
         set_direct(direct);
         BounceReport report;
-        forget_steps();
         if (contraction_ > 0.0) {
-            report.error = bounce();
+            bounce();
+            add_coarse_bounces();
+            report.error = step_size();
             report.num_bounces = 1;
             indirect_.swap(next_);
         } else {
@@ -155,9 +156,16 @@ public:
     [[nodiscard]] std::span<const glm::vec3> indirect() const { return published_; }
 
 private:
+    static const prt::BounceMatrix& checked(const prt::BounceMatrix& matrix, std::size_t size) {
+        if (matrix.num_rows() != size)
+            throw std::invalid_argument(
+                fmt::format("expected bounces of {} receivers, got {}", size, matrix.num_rows()));
+        return matrix;
+    }
+
     void forget_steps() {
         history_size_ = 0;
-        last_residual_ = 0.0;
+        last_step_ = 0.0;
         largest_ratio_ = 0.0;
     }
 
@@ -189,116 +197,104 @@ private:
             });
     }
 
-    /// Sums Rgb over all rows in a fixed order.
-    template<typename Function>
-    [[nodiscard]] Rgb sum_over_rows(const Function& function) const {
-        std::vector<Rgb> parts((size_ + RowsPerTask - 1) / RowsPerTask);
+    /// Sums arrays of doubles over all rows in a fixed order.
+    template<std::size_t N, typename Function>
+    [[nodiscard]] std::array<double, N> sum_over_rows(const Function& function) const {
+        std::vector<std::array<double, N>> parts((size_ + RowsPerTask - 1) / RowsPerTask);
         for_rows([&](std::size_t begin, std::size_t end) {
             parts[begin / RowsPerTask] = function(begin, end);
         });
-        Rgb sum{};
-        for (const Rgb& part : parts)
-            sum = sum + part;
+        std::array<double, N> sum{};
+        for (const std::array<double, N>& part : parts)
+            for (std::size_t k = 0; k < N; ++k)
+                sum[k] += part[k];
         return sum;
     }
 
-    /// next_ = A rho (B + indirect_). Returns the estimated error of next_ over the light that
-    /// reaches the receivers.
-    double bounce() {
+    /// next_ = A rho (B + indirect_).
+    void bounce() {
         for_rows([&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t c = 0; c < 4; ++c)
                     sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
         });
-        std::vector<std::array<double, 2>> parts((size_ + RowsPerTask - 1) / RowsPerTask);
         for_rows([&](std::size_t begin, std::size_t end) {
-            gather_rows(matrix_, sent_, begin, end, next_);
-            std::array<double, 2>& part = parts[begin / RowsPerTask];
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const double residual = static_cast<double>(next_[i].rgb[c]) -
-                                            static_cast<double>(indirect_[i].rgb[c]);
-                    const double all = static_cast<double>(next_[i].rgb[c]) +
-                                       static_cast<double>(direct_[i].rgb[c]);
-                    part[0] += residual * residual;
-                    part[1] += all * all;
-                }
+            sum_lists(matrix_.emitters, sent_, begin, end, gathered_);
         });
-        double residuals = 0.0, all = 0.0;
-        for (const std::array<double, 2>& part : parts) {
-            residuals += part[0];
-            all += part[1];
-        }
-        const double residual = all > 0.0 ? std::sqrt(residuals / all) : 0.0;
-        // What further bounces of the residual add up to. The largest ratio seen is a lower bound
-        // of the factor from bounce to bounce, the eigenvalue of the darkest pocket an upper one.
-        double factor = contraction_;
-        if (last_residual_ > 0.0) {
-            largest_ratio_ = std::max(largest_ratio_, residual / last_residual_);
-            factor = std::sqrt(std::min(largest_ratio_, contraction_) * contraction_);
-        }
-        last_residual_ = residual;
-        factor = std::min(factor, MaxContraction);
-        return residual * factor / (1.0 - factor);
+        for_rows([&](std::size_t begin, std::size_t end) {
+            sum_lists(matrix_.averaged, gathered_, begin, end, next_);
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 4; ++c)
+                    next_[i].rgb[c] *= matrix_.weights[i];
+        });
     }
 
-    /// Takes the next iterate: next_, corrected by the least squares of the last residuals
-    /// [Anderson 1965], for each channel by itself.
+    /// Adds what the change next_ - indirect_ becomes in all further bounces, as the groups of
+    /// receivers tell. Places without any light stay black, whatever group they are in.
+    void add_coarse_bounces() {
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 4; ++c)
+                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (next_[i].rgb[c] - indirect_[i].rgb[c]);
+        });
+        means_of_groups(sent_, coarse_.group_size(), coarse_sent_);
+        const std::span<const PaddedRgb> more = coarse_.sum_of_bounces(coarse_sent_);
+        for_rows([&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 4; ++c)
+                    next_[i].rgb[c] +=
+                        next_[i].rgb[c] > 0.0f ? more[i / coarse_.group_size()].rgb[c] : 0.0f;
+        });
+    }
+
+    /// Returns |next_ - indirect_| over |B + next_|.
+    [[nodiscard]] double step_size() const {
+        const auto [steps, all] = sum_over_rows<2>([&](std::size_t begin, std::size_t end) {
+            std::array<double, 2> part{};
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    const double step = static_cast<double>(next_[i].rgb[c] - indirect_[i].rgb[c]);
+                    const double light = static_cast<double>(next_[i].rgb[c] + direct_[i].rgb[c]);
+                    part[0] += step * step;
+                    part[1] += light * light;
+                }
+            return part;
+        });
+        return all > 0.0 ? std::sqrt(steps / all) : 0.0;
+    }
+
+    /// Estimates the error after a step: steps become smaller by the largest ratio that was seen.
+    /// After the first one the factor of the matrix itself is all that is known.
+    double error_after(double step) {
+        double ratio = contraction_;
+        if (last_step_ > 0.0) {
+            largest_ratio_ = std::max({largest_ratio_, step / last_step_, LeastRatio});
+            ratio = largest_ratio_;
+        }
+        last_step_ = step;
+        ratio = std::min(ratio, MaxContraction);
+        return step * ratio / (1.0 - ratio);
+    }
+
+    /// Takes the next iterate: next_, corrected by the least squares of the last steps [Anderson
+    /// 1965], for each channel by itself.
     void accelerate() {
         Step& now = history_[newest_];
-        now.resize(size_);
         const std::size_t depth = history_size_;
-        // Differences to the residual and the iterate before.
+        now.change.resize(size_);
+        next_.swap(now.result);
+        next_.resize(size_);
         for_rows([&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    now.residual[i].rgb[c] = next_[i].rgb[c] - indirect_[i].rgb[c];
-                    now.result[i].rgb[c] = next_[i].rgb[c];
-                }
+                for (std::size_t c = 0; c < 4; ++c)
+                    now.change[i].rgb[c] = now.result[i].rgb[c] - indirect_[i].rgb[c];
         });
-        std::array<std::array<Rgb, AndersonDepth>, AndersonDepth> products{};
-        std::array<Rgb, AndersonDepth> right{};
-        for (std::size_t a = 0; a < depth; ++a) {
-            const Step& before = step_before(a);
-            right[a] = sum_over_rows([&](std::size_t begin, std::size_t end) {
-                Rgb sum{};
-                for (std::size_t i = begin; i < end; ++i)
-                    for (std::size_t c = 0; c < 3; ++c) {
-                        const double r = static_cast<double>(now.residual[i].rgb[c]);
-                        sum[c] += r * (r - static_cast<double>(before.residual[i].rgb[c]));
-                    }
-                return sum;
-            });
-            for (std::size_t b = 0; b <= a; ++b) {
-                const Step& other = step_before(b);
-                products[a][b] = sum_over_rows([&](std::size_t begin, std::size_t end) {
-                    Rgb sum{};
-                    for (std::size_t i = begin; i < end; ++i)
-                        for (std::size_t c = 0; c < 3; ++c) {
-                            const double r = static_cast<double>(now.residual[i].rgb[c]);
-                            sum[c] += (r - static_cast<double>(before.residual[i].rgb[c])) *
-                                      (r - static_cast<double>(other.residual[i].rgb[c]));
-                        }
-                    return sum;
-                });
-            }
-        }
-        std::array<std::array<float, 3>, AndersonDepth> factors{};
-        for (std::size_t c = 0; c < 3; ++c) {
-            std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix{};
-            std::array<double, AndersonDepth> vector{};
-            for (std::size_t a = 0; a < depth; ++a) {
-                vector[a] = right[a][c];
-                for (std::size_t b = 0; b <= a; ++b)
-                    matrix[a][b] = matrix[b][a] = products[a][b][c];
-            }
-            const auto solution = least_squares(matrix, vector, depth);
-            for (std::size_t a = 0; a < depth; ++a)
-                factors[a][c] = static_cast<float>(solution[a]);
-        }
+        std::array<std::array<float, 4>, AndersonDepth> factors{};
+        if (depth > 0)
+            factors = least_squares_of_changes(now, depth);
         for_rows([&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
+                for (std::size_t c = 0; c < 4; ++c) {
                     float value = now.result[i].rgb[c];
                     for (std::size_t a = 0; a < depth; ++a)
                         value -= factors[a][c] *
@@ -311,13 +307,50 @@ private:
     }
 
     struct Step {
-        std::vector<PaddedRgb> residual;
+        std::vector<PaddedRgb> change;
         std::vector<PaddedRgb> result;
-        void resize(std::size_t size) {
-            residual.resize(size);
-            result.resize(size);
-        }
     };
+
+    /// Returns the factors of the differences to the `depth` steps before that make the change
+    /// smallest.
+    [[nodiscard]] std::array<std::array<float, 4>, AndersonDepth>
+    least_squares_of_changes(const Step& now, std::size_t depth) const {
+        // Of each channel: products of each difference with the change, then with each other.
+        constexpr std::size_t NumSums = AndersonDepth * (1 + AndersonDepth);
+        const auto sums = sum_over_rows<3 * NumSums>([&](std::size_t begin, std::size_t end) {
+            std::array<double, 3 * NumSums> part{};
+            for (std::size_t i = begin; i < end; ++i)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    double* sum = part.data() + c * NumSums;
+                    const float change = now.change[i].rgb[c];
+                    std::array<double, AndersonDepth> differences{};
+                    for (std::size_t a = 0; a < depth; ++a)
+                        differences[a] =
+                            static_cast<double>(change - step_before(a).change[i].rgb[c]);
+                    for (std::size_t a = 0; a < depth; ++a) {
+                        sum[a] += static_cast<double>(change) * differences[a];
+                        for (std::size_t b = 0; b <= a; ++b)
+                            sum[AndersonDepth * (1 + a) + b] += differences[a] * differences[b];
+                    }
+                }
+            return part;
+        });
+        std::array<std::array<float, 4>, AndersonDepth> factors{};
+        for (std::size_t c = 0; c < 3; ++c) {
+            std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix{};
+            std::array<double, AndersonDepth> vector{};
+            for (std::size_t a = 0; a < depth; ++a) {
+                vector[a] = sums[c * NumSums + a];
+                for (std::size_t b = 0; b <= a; ++b)
+                    matrix[a][b] = matrix[b][a] = sums[c * NumSums + AndersonDepth * (1 + a) + b];
+            }
+            const auto solution = least_squares(matrix, vector, depth);
+            for (std::size_t a = 0; a < depth; ++a)
+                factors[a][c] = static_cast<float>(solution[a]);
+        }
+        return factors;
+    }
+
     /// The step `age` + 1 before history_[newest_], which is being made.
     [[nodiscard]] const Step& step_before(std::size_t age) const {
         return history_[(newest_ + history_.size() - 1 - age) % history_.size()];
@@ -340,17 +373,21 @@ private:
     std::size_t size_;
     /// Upper bound of the factor from one bounce to the next.
     double contraction_ = 0.0;
+    CoarseBounces coarse_;
+    /// [num_groups]
+    std::vector<PaddedRgb> coarse_sent_;
     /// All by place.
     std::vector<PaddedRgb> albedo_;
     std::vector<PaddedRgb> direct_;
     std::vector<PaddedRgb> sent_;
+    std::vector<PaddedRgb> gathered_;
     std::vector<PaddedRgb> indirect_;
     std::vector<PaddedRgb> next_;
     std::array<Step, AndersonDepth + 1> history_;
     std::size_t newest_ = 0;
     std::size_t history_size_ = 0;
     /// Relative to all light; of this iteration.
-    double last_residual_ = 0.0;
+    double last_step_ = 0.0;
     double largest_ratio_ = 0.0;
     /// [num_receivers] in the receivers' order.
     std::vector<glm::vec3> published_;

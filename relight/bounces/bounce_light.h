@@ -23,7 +23,7 @@ struct BounceLimits {
 
 /// The effect of a call that bounces light.
 struct BounceReport {
-    /// Products with the matrix.
+    /// Products with the matrix; without a number of bounces a product stands for several.
     std::uint32_t num_bounces = 0;
     /// Estimated relative error of what further bounces would add.
     double error = 0.0;
@@ -56,14 +56,15 @@ public:
     void set_albedo(std::span<const glm::vec3> albedo);
 
     /// Finds the bounces from nothing, so that equal light gives equal bits whatever came before.
-    /// Without a number of bounces the iteration is accelerated (Anderson 1965, with as many
-    /// vectors as AndersonDepth).
+    /// Without a number of bounces, each product with the matrix is followed by the bounces between
+    /// groups of receivers (coarse_bounces.h), and steps are combined [Anderson 1965].
     ///
     /// Shape:   `direct` is [num_receivers], Relighter::diffuse_radiance().
     /// Cost:    a product with the matrix for each bounce, milliseconds: docs/measurements.md.
     BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits = {});
 
-    /// Adds one bounce to the present state: for light that changes while it is looked at.
+    /// Goes one product on from the present state, with the bounces between groups: for light that
+    /// changes while it is looked at. The report's error is the size of the step.
     BounceReport step(std::span<const glm::vec3> direct);
 
     /// What other surfaces add to a receiver's direct light, for albedo 1.

@@ -59,38 +59,51 @@ std::vector<std::byte> png_of(const Picture& picture, float scale) {
     return encode_png(picture.width, picture.height, num_channels, bytes);
 }
 
+void require_pixels(const Picture& picture) {
+    if (picture.pixels.empty() ||
+        picture.pixels.size() != std::size_t{picture.width} * picture.height)
+        throw std::invalid_argument(fmt::format("picture: expected {} x {} pixels, got {}",
+                                                picture.width, picture.height,
+                                                picture.pixels.size()));
+    if (!picture.alpha.empty() && picture.alpha.size() != picture.pixels.size())
+        throw std::invalid_argument(
+            fmt::format("picture: expected one alpha per pixel, got {} for {}",
+                        picture.alpha.size(), picture.pixels.size()));
+}
+
 } // namespace
+
+std::vector<std::byte> png_file(const Picture& picture, const Development& development) {
+    require_pixels(picture);
+    const auto scale = static_cast<float>(std::exp2(development.exposure_ev));
+    return development.tone == ToneCurve::None
+               ? png_of(picture, scale)
+               : png_of(curved(picture, scale, development.tone), 1.0f);
+}
 
 void save_picture(const std::filesystem::path& path, const Picture& picture,
                   const Development& development) {
-    if (picture.pixels.empty() ||
-        picture.pixels.size() != std::size_t{picture.width} * picture.height)
-        throw std::invalid_argument(fmt::format("{}: expected {} x {} pixels, got {}",
-                                                path.string(), picture.width, picture.height,
-                                                picture.pixels.size()));
-    if (!picture.alpha.empty() && picture.alpha.size() != picture.pixels.size())
-        throw std::invalid_argument(fmt::format("{}: expected one alpha per pixel, got {} for {}",
-                                                path.string(), picture.alpha.size(),
-                                                picture.pixels.size()));
-    const auto scale = static_cast<float>(std::exp2(development.exposure_ev));
     std::vector<std::byte> bytes;
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    if (extension == ".png") {
-        bytes = development.tone == ToneCurve::None
-                    ? png_of(picture, scale)
-                    : png_of(curved(picture, scale, development.tone), 1.0f);
-    } else if (extension == ".exr") {
-        cubemap::EnvironmentImage image;
-        static_cast<Picture&>(image) = picture;
-        for (glm::vec3& pixel : image.pixels)
-            pixel *= scale;
-        bytes = cubemap::encode_exr(image);
-    } else {
+    try {
+        if (extension == ".png") {
+            bytes = png_file(picture, development);
+        } else if (extension == ".exr") {
+            require_pixels(picture);
+            cubemap::EnvironmentImage image;
+            static_cast<Picture&>(image) = picture;
+            for (glm::vec3& pixel : image.pixels)
+                pixel *= static_cast<float>(std::exp2(development.exposure_ev));
+            bytes = cubemap::encode_exr(image);
+        }
+    } catch (const std::invalid_argument& error) {
+        throw std::invalid_argument(fmt::format("{}: {}", path.string(), error.what()));
+    }
+    if (bytes.empty())
         throw std::invalid_argument(fmt::format("{}: expected .png or .exr, got '{}'",
                                                 path.string(), path.extension().string()));
-    }
     files::OutputFile file(path);
     file.write(bytes);
     file.commit();

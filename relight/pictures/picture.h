@@ -1,7 +1,9 @@
 // Pictures as files.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <vector>
 
 #include "cubemap/image/picture.h"
 #include "relight/pictures/tone_curve.h"
@@ -17,6 +19,13 @@ struct Development {
     /// Of .png; .exr is linear.
     ToneCurve tone = ToneCurve::None;
 };
+
+/// Returns a PNG file: exposed, through the tone curve, sRGB, 8 bit, with alpha where the picture
+/// has it.
+///
+/// Throws:  std::invalid_argument for a picture without pixels, or with too few.
+[[nodiscard]] std::vector<std::byte> png_file(const Picture& picture,
+                                              const Development& development = {});
 
 /// Writes .png (exposed, through the tone curve, sRGB, 8 bit) or .exr (exposed linear float). Alpha
 /// becomes a channel. Writes the file whole or not at all.

@@ -27,7 +27,7 @@ struct Settings {
     std::size_t samples = 500;
     std::uint32_t resolution = 128;
     std::vector<std::string> probes = {"beach_cross.hdr", "galileo_cross.hdr", "grace_cross.hdr",
-                                       "stpeters_cross.hdr", "uffizi_cross.hdr"};
+                                       "stpeters_cross.hdr", "kitchen_cross.hdr"};
 };
 
 void run(const Settings& settings, const bench::Inputs& inputs) {
@@ -42,13 +42,14 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
         {.tolerance = settings.tolerance, .bias = scene.settings.bias}, &found);
     fmt::print(
         "{} vertices: probe lights {:.2f} s, bounces {:.2f} s, {:.2f} M rays, {:.2f} M hits, "
-        "{:.2f} M columns ({:.1f} a row), closure {:.3f}, standard error {:.4f}, spectral "
+        "{:.2f} M emitters ({:.1f} a vertex, shared by {:.1f}), closure {:.3f}, standard error "
+        "{:.4f}, spectral "
         "radius {:.3f}\n",
         scene.receivers.size(), seconds_probes, found.seconds,
         1e-6 * static_cast<double>(found.num_rays), 1e-6 * static_cast<double>(found.num_hits),
-        1e-6 * static_cast<double>(found.num_columns),
-        static_cast<double>(found.num_columns) / static_cast<double>(matrix.num_rows()),
-        found.mean_closure, found.rms_error, matrix.spectral_radius);
+        1e-6 * static_cast<double>(found.num_emitters),
+        static_cast<double>(found.num_emitters) / static_cast<double>(matrix.num_rows()),
+        found.mean_averaged, found.mean_closure, found.rms_error, matrix.spectral_radius);
 
     relight::BounceLight bounces(matrix, scene.transfer);
     const std::vector<glm::vec3> albedo(scene.receivers.size(), glm::vec3(settings.albedo));

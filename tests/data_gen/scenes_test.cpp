@@ -1,10 +1,12 @@
 #include "data_gen/scenes.h"
 
 #include <cmath>
+#include <numbers>
 #include <ostream>
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -35,7 +37,10 @@ mesh::TriangleMesh objects(const mesh::TriangleMesh& scene) {
     return rest;
 }
 
-class SceneTest : public testing::TestWithParam<Scene> {};
+class SceneTest : public testing::TestWithParam<Scene> {
+protected:
+    static bool is_room() { return GetParam().name.ends_with("room"); }
+};
 
 INSTANTIATE_TEST_SUITE_P(All, SceneTest, testing::ValuesIn(scenes().begin(), scenes().end()),
                          [](const auto& scene) { return std::string(scene.param.name); });
@@ -84,6 +89,9 @@ TEST_P(SceneTest, HasSoundTrianglesAndUnitNormals) {
 }
 
 TEST_P(SceneTest, ObjectsAreClosedAndFaceOutwards) {
+    if (is_room()) {
+        GTEST_SKIP() << "rooms are sheets that face inwards";
+    }
     for (const std::size_t wish : {1'000u, 10'000u, 100'000u}) {
         const mesh::TriangleMesh solid = objects(GetParam().make(wish));
         EXPECT_EQ(num_open_edges(solid), 0u) << wish;
@@ -94,6 +102,9 @@ TEST_P(SceneTest, ObjectsAreClosedAndFaceOutwards) {
 }
 
 TEST_P(SceneTest, StandsOnAFloorOfAboutHalfTheVertices) {
+    if (is_room()) {
+        GTEST_SKIP() << "rooms have a floor like their walls";
+    }
     const mesh::TriangleMesh mesh = GetParam().make(50'000);
     std::set<std::uint32_t> floor;
     for (const mesh::Triangle& triangle : mesh.triangles) {
@@ -142,6 +153,48 @@ TEST(SphereTest, IsASphereWhereTheHeaderSays) {
             ASSERT_NEAR(glm::length(from_center), SphereRadius, 1e-5f);
             ASSERT_GT(glm::dot(mesh.normals[i], from_center / SphereRadius), 0.9999f);
         }
+    }
+}
+
+// The volume of a closed surface is that of its enclosed part, negative where it faces inwards. The
+// sheets of a room close but for its opening, which does not count for planes through the origin.
+TEST(RoomTest, SheetsFaceInwardsAndEncloseTheRoom) {
+    constexpr double Ball = 4.0 / 3.0 * std::numbers::pi;
+    const auto volume_of = [](const mesh::TriangleMesh& mesh) {
+        double volume = 0.0;
+        for (const mesh::Triangle& triangle : mesh.triangles) {
+            volume +=
+                glm::dot(glm::dvec3(mesh.positions[triangle[0]]), area_vector(mesh, triangle)) /
+                3.0;
+        }
+        return volume;
+    };
+    // Without its outer end, at x = -2.3, the shaft lacks a third of the end's area times 2.3. The
+    // floor has no cells under the box, whose bottom is there; both lie at y = 0.
+    const double window = 1.3 * 1.6;
+    const double room_volume = 4.0 * 2.8 * 5.0 + 0.3 * window - 0.9 * 0.7 * 0.9 -
+                               Ball * std::pow(0.4, 3) - 2.3 / 3.0 * window;
+    EXPECT_NEAR(volume_of(room(50'000)), -room_volume, 1e-3 * room_volume);
+    // The front at z = 2 is open.
+    const double painted_volume =
+        4.0 * 3.2 * 4.0 - 1.0 * 1.8 * 1.0 - Ball * std::pow(0.6, 3) - 2.0 / 3.0 * 4.0 * 3.2;
+    EXPECT_NEAR(volume_of(painted_room(50'000)), -painted_volume, 1e-3 * painted_volume);
+}
+
+TEST(RoomTest, WallsMeetToTheBitAndHaveColours) {
+    for (const mesh::TriangleMesh& mesh : {room(20'000), painted_room(20'000)}) {
+        ASSERT_EQ(mesh.colors.size(), mesh.num_vertices());
+        std::set<std::tuple<float, float, float>> colors;
+        std::size_t num_shared = 0;
+        for (const glm::vec3& color : mesh.colors) {
+            colors.emplace(color.r, color.g, color.b);
+        }
+        const std::vector<std::uint32_t> weld = welded(mesh);
+        for (std::uint32_t i = 0; i < weld.size(); ++i) {
+            num_shared += static_cast<std::size_t>(weld[i] != i);
+        }
+        EXPECT_GE(colors.size(), 2u);
+        EXPECT_GT(num_shared, 500u) << "along the edges of the room";
     }
 }
 

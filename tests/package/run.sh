@@ -33,6 +33,10 @@ deb)
         [ -s "$root/share/doc/$name/copyright" ] || fail "$package: no licence"
         # The program needs libraries to run, and nothing to compile with; compiling with ours needs GLM.
         case $name in
+        python3-relumine)
+            [[ "$depends" != *-dev* && "$depends" == *python3-numpy* && "$depends" == *libembree3* ]] ||
+                fail "$package: wrong dependencies"
+            ;;
         relumine) [[ "$depends" != *-dev* && "$depends" == *libembree3* ]] || fail "$package: wrong dependencies" ;;
         relumine-dev) [[ ", $depends," == *", libglm-dev,"* ]] || fail "$package: no libglm-dev" ;;
         *) fail "$package: unknown" ;;
@@ -48,6 +52,13 @@ esac
 if [ -e "$root/bin/relumine" ]; then
     "$root/bin/relumine" --version
 fi
+
+# So does the Python package.
+for python in "$root"/lib/python3*/dist-packages; do
+    [ -d "$python" ] && (cd "$work" && PYTHONPATH=$python /usr/bin/python3 -c '
+import relumine
+print(relumine.precompute([[0, 0, 0], [0, 0, 1], [1, 0, 0]], [[0, 1, 2]]))')
+done
 
 cmake -S "$source" -B "$work/build" -G Ninja -DCMAKE_PREFIX_PATH="$root" "$@" >"$work/configure.log" 2>&1 ||
     { cat "$work/configure.log" >&2; exit 1; }

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <stdexcept>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -10,17 +11,20 @@ namespace {
 
 constexpr std::size_t NumReceivers = 100'000;
 
-/// Rows of every kind: empty, with columns far apart, with the same column twice.
+/// Lists of every kind: empty, with places far apart, with the same place twice.
 BounceMatrix matrix_of_all_kinds() {
-    BounceMatrix matrix{.weights = std::vector(NumReceivers, 0.0f), .spectral_radius = 0.25f};
-    const std::vector<std::vector<std::uint32_t>> rows = {
+    BounceMatrix matrix{.weights = std::vector(NumReceivers, 0.0f),
+                        .emitters = {},
+                        .averaged = {},
+                        .spectral_radius = 0.25f};
+    const std::vector<std::vector<std::uint32_t>> emitters = {
         {0}, {}, {5, 5, 5}, {0, 127, 128, 255, 16'600, 99'999}, {99'999}};
+    const std::vector<std::vector<std::uint32_t>> averaged = {{0, 2}, {}, {2}, {3}, {0, 4}};
     for (std::size_t place = 0; place < NumReceivers; ++place) {
-        if (place < rows.size()) {
-            matrix.columns.insert(matrix.columns.end(), rows[place].begin(), rows[place].end());
-            matrix.weights[place] = rows[place].empty() ? 0.0f : 0.125f;
-        }
-        matrix.row_begin.push_back(matrix.columns.size());
+        const bool is_first = place < emitters.size();
+        matrix.emitters.append(is_first ? emitters[place] : std::vector<std::uint32_t>());
+        matrix.averaged.append(is_first ? averaged[place] : std::vector<std::uint32_t>());
+        matrix.weights[place] = is_first ? 0.125f : 0.0f;
     }
     return matrix;
 }
@@ -46,17 +50,20 @@ TEST(BounceSections, DamageIsRefused) {
         EXPECT_THROW(static_cast<void>(read_bounces(reader, NumReceivers)), std::runtime_error);
     };
     refuses([](Sections& s) { s["bounce_weights"].pop_back(); });
-    refuses([](Sections& s) { s["bounce_sizes"].pop_back(); });
-    refuses([](Sections& s) { s["bounce_sizes"][1] = std::byte{1}; });
-    refuses([](Sections& s) { s["bounce_columns"].pop_back(); });
-    refuses([](Sections& s) { s["bounce_columns"].push_back(std::byte{0}); });
-    refuses([](Sections& s) { s["bounce_columns"].back() = std::byte{0xff}; });
+    for (const std::string name : {"bounce_hits", "bounce_near"}) {
+        const std::string size = name + "_size";
+        refuses([&](Sections& s) { s[size].pop_back(); });
+        refuses([&](Sections& s) { s[size][4] = std::byte{1}; });
+        refuses([&](Sections& s) { s[name].pop_back(); });
+        refuses([&](Sections& s) { s[name].push_back(std::byte{0}); });
+        refuses([&](Sections& s) { s[name].back() = std::byte{0xff}; });
+        refuses([&](Sections& s) { s.erase(size); });
+        // A size that lies must not be believed.
+        refuses([&](Sections& s) { s[size][15] = std::byte{0xff}; });
+    }
     refuses([](Sections& s) { s["bounce_radius"].clear(); });
-    refuses([](Sections& s) { s.erase("bounce_sizes"); });
     refuses([](Sections& s) { s["bounce_radius"] = bytes_of(std::vector{-1.0f}); });
     refuses([](Sections& s) { s["bounce_weights"] = bytes_of(std::vector(NumReceivers, 2.0f)); });
-    // A size that lies must not be believed.
-    refuses([](Sections& s) { s["bounce_sizes"][3] = std::byte{0xff}; });
 }
 
 } // namespace

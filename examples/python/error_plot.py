@@ -1,0 +1,34 @@
+"""Error against tolerance: error_plot.py MESH ENVIRONMENT PLOT.png [SAMPLES]"""
+
+import sys
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+import relumine
+
+mesh_path, environment_path, output = sys.argv[1:4]
+samples = int(sys.argv[4]) if len(sys.argv) > 4 else 500
+mesh = relumine.Mesh.load(mesh_path)
+environment = relumine.Environment.load(environment_path)
+tolerances, errors, clusters = [0.16, 0.08, 0.04, 0.02], [], []
+for tolerance in tolerances:
+    relighter = relumine.Relighter(relumine.precompute(mesh, tolerance=tolerance))
+    relighter.set_environment(environment)
+    errors.append(100 * relighter.verify(samples).relative_l2)
+    clusters.append(relighter.scene.num_clusters)
+    print(f"tolerance {tolerance}: {clusters[-1]} clusters, {errors[-1]:.2f} %")
+
+figure, axes = plt.subplots(figsize=(6, 4), layout="constrained")
+axes.loglog(tolerances, errors, "o-")
+for point in zip(tolerances, errors, clusters):
+    axes.annotate(f"{point[2]} clusters", point[:2], (6, -12), textcoords="offset points")
+axes.set(xlabel="tolerance (1/sr)", ylabel="relative L2 error (%)",
+         title="Relighting against exact integration")  # fmt: skip
+axes.set_xticks(tolerances, [f"{t:g}" for t in tolerances])
+axes.minorticks_off()
+axes.set_xlim(0.015, 0.3)
+axes.grid(alpha=0.3)
+figure.savefig(output, dpi=120)

@@ -1,0 +1,129 @@
+#include "prt/bounces/similar_receivers.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
+
+namespace relumine::prt {
+
+namespace {
+
+/// A balanced tree of points: the middle of each range splits it along the axis at which it is
+/// widest.
+class PointTree {
+public:
+    explicit PointTree(std::span<const glm::vec3> points)
+        : points_(points), order_(points.size()), axes_(points.size()) {
+        std::iota(order_.begin(), order_.end(), 0u);
+        split(0, order_.size());
+    }
+
+    /// Calls visit(place, squared distance) for every point within the radius, which `visit`
+    /// returns anew, squared.
+    template<typename Visit>
+    void visit_near(const glm::vec3& center, float& squared_radius, const Visit& visit) const {
+        visit_range(0, order_.size(), center, squared_radius, visit);
+    }
+
+private:
+    void split(std::size_t begin, std::size_t end) {
+        if (end - begin < 2)
+            return;
+        glm::vec3 low = points_[order_[begin]], high = low;
+        for (std::size_t i = begin; i < end; ++i) {
+            low = glm::min(low, points_[order_[i]]);
+            high = glm::max(high, points_[order_[i]]);
+        }
+        const glm::vec3 size = high - low;
+        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const std::size_t middle = begin + (end - begin) / 2;
+        const auto at = [&](std::size_t i) {
+            return order_.begin() + static_cast<std::ptrdiff_t>(i);
+        };
+        std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t a, std::uint32_t b) {
+            return std::pair(points_[a][axis], a) < std::pair(points_[b][axis], b);
+        });
+        axes_[middle] = static_cast<std::uint8_t>(axis);
+        split(begin, middle);
+        split(middle + 1, end);
+    }
+
+    template<typename Visit>
+    void visit_range(std::size_t begin, std::size_t end, const glm::vec3& center,
+                     float& squared_radius, const Visit& visit) const {
+        if (begin == end)
+            return;
+        const std::size_t middle = begin + (end - begin) / 2;
+        const glm::vec3& point = points_[order_[middle]];
+        const glm::vec3 offset = point - center;
+        const float squared_distance = glm::dot(offset, offset);
+        if (squared_distance <= squared_radius)
+            visit(order_[middle], squared_distance);
+        if (end - begin == 1)
+            return;
+        const float across = center[axes_[middle]] - point[axes_[middle]];
+        const auto [near_begin, near_end] =
+            across < 0.0f ? std::pair(begin, middle) : std::pair(middle + 1, end);
+        visit_range(near_begin, near_end, center, squared_radius, visit);
+        if (across * across > squared_radius)
+            return;
+        const auto [far_begin, far_end] =
+            across < 0.0f ? std::pair(middle + 1, end) : std::pair(begin, middle);
+        visit_range(far_begin, far_end, center, squared_radius, visit);
+    }
+
+    std::span<const glm::vec3> points_;
+    std::vector<std::uint32_t> order_;
+    /// [n] of the point in the middle of a range.
+    std::vector<std::uint8_t> axes_;
+};
+
+} // namespace
+
+PlaceLists similar_receivers(std::span<const glm::vec3> positions,
+                             std::span<const glm::vec3> normals, std::span<const float> distances,
+                             const SimilarityLimits& limits) {
+    const std::size_t n = positions.size();
+    const PointTree tree(positions);
+    std::vector<std::vector<std::uint32_t>> lists(n);
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t place) {
+        // The nearest so far, the farthest of them first; equal distances by place.
+        std::vector<std::pair<float, std::uint32_t>> nearest;
+        const float radius = limits.max_error * distances[place];
+        float squared_radius = radius * radius;
+        const auto consider = [&](std::uint32_t other, float squared_distance) {
+            if (other == place)
+                return;
+            const float turn =
+                std::sqrt(std::max(0.0f, 1.0f - glm::dot(normals[place], normals[other])));
+            const float distance = std::min(distances[place], distances[other]);
+            if (!(std::sqrt(squared_distance) <= (limits.max_error - turn) * distance))
+                return;
+            nearest.emplace_back(squared_distance, other);
+            std::push_heap(nearest.begin(), nearest.end());
+            if (nearest.size() >= limits.max_size) {
+                std::pop_heap(nearest.begin(), nearest.end());
+                nearest.pop_back();
+            }
+            if (nearest.size() + 1 == limits.max_size)
+                squared_radius = std::min(squared_radius, nearest.front().first);
+        };
+        if (radius > 0.0f && limits.max_size > 1)
+            tree.visit_near(positions[place], squared_radius, consider);
+        std::vector<std::uint32_t>& list = lists[place];
+        list.push_back(static_cast<std::uint32_t>(place));
+        for (const auto& [distance, other] : nearest)
+            list.push_back(other);
+        std::sort(list.begin(), list.end());
+    });
+    PlaceLists result;
+    for (const std::vector<std::uint32_t>& list : lists)
+        result.append(list);
+    return result;
+}
+
+} // namespace relumine::prt

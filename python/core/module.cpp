@@ -1,0 +1,50 @@
+// relumine._core, the compiled part of the Python package. Its users are the Python sources beside
+// it, which check arguments and say what everything means.
+#include <memory>
+
+#include <pybind11/pybind11.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
+
+#include "arrays.h"
+#include "relumine/relumine.h"
+#include "run.h"
+#include "scene.h"
+
+namespace relumine::python {
+
+namespace {
+
+/// 0: all.
+void set_threads(unsigned count) {
+    static std::unique_ptr<tbb::global_control> control;
+    control.reset();
+    if (count != 0)
+        control = std::make_unique<tbb::global_control>(
+            tbb::global_control::max_allowed_parallelism, count);
+}
+
+} // namespace
+
+} // namespace relumine::python
+
+PYBIND11_MODULE(_core, module) {
+    using namespace relumine::python;
+    // pybind11 knows std::bad_alloc, std::invalid_argument (ValueError) and std::out_of_range
+    // (IndexError); all other exceptions are RuntimeErrors.
+    py::register_exception_translator([](std::exception_ptr error) {
+        try {
+            std::rethrow_exception(error);
+        } catch (const relumine::MemoryLimitExceeded& limit) {
+            PyErr_SetString(PyExc_MemoryError, limit.what());
+        }
+    });
+    bind_arrays(module);
+    bind_run(module);
+    bind_scenes(module);
+    bind_environments(module);
+    bind_lights(module);
+    bind_relighters(module);
+    module.def("set_threads", &set_threads);
+    module.attr("__version__") = RELUMINE_VERSION;
+}

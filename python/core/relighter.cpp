@@ -1,0 +1,397 @@
+// Scenes in light.
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "cubemap/layers/layer_file.h"
+#include "cubemap/layers/layer_list.h"
+#include "files/json_value.h"
+#include "lights.h"
+#include "options.h"
+#include "relight/pictures/picture.h"
+#include "relight/transfer_lights.h"
+#include "run.h"
+#include "scene.h"
+
+namespace relumine::python {
+
+namespace {
+
+using Path = std::filesystem::path;
+
+/// A LitScene that any thread may call, one after the other. Its radiance is copied after each
+/// change into memory that stays where it is as long as Python looks at it.
+class Lit {
+public:
+    Lit(std::shared_ptr<const Scene> scene, const LightOptions& options)
+        : lit_(std::move(scene), options), radiance_(lit_.scene().receivers.size()) {}
+
+    /// Returns `work(LitScene&)`; other threads wait. Called without Python's lock.
+    template<typename Work>
+    auto use(const Work& work) {
+        const std::lock_guard lock(mutex_);
+        return work(lit_);
+    }
+    /// The same for work that changes the light.
+    template<typename Work>
+    auto change(const Work& work) {
+        const std::lock_guard lock(mutex_);
+        const auto result = work(lit_);
+        const std::span<const glm::vec3> radiance = lit_.radiance();
+        std::copy(radiance.begin(), radiance.end(), radiance_.begin());
+        is_lit_ = true;
+        return result;
+    }
+    /// A progress function that calls back would wait for itself.
+    void refuse_reentry() const {
+        if (caller_ == std::this_thread::get_id())
+            throw std::runtime_error("relighter: expected no call from its own progress function");
+    }
+    [[nodiscard]] bool is_lit() const { return is_lit_; }
+    [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
+    [[nodiscard]] bool has_layers() const { return has_layers_; }
+    void set_has_layers() { has_layers_ = true; }
+
+    /// Marks the thread that waits for a job.
+    class Caller {
+    public:
+        explicit Caller(Lit& own) : own_(own), before_(own.caller_) {
+            own.caller_ = std::this_thread::get_id();
+        }
+        Caller(const Caller&) = delete;
+        Caller& operator=(const Caller&) = delete;
+        ~Caller() { own_.caller_ = before_; }
+
+    private:
+        Lit& own_;
+        std::thread::id before_;
+    };
+
+private:
+    std::mutex mutex_;
+    LitScene lit_;
+    std::vector<glm::vec3> radiance_;
+    std::atomic<bool> is_lit_ = false;
+    std::atomic<bool> has_layers_ = false;
+    std::atomic<std::thread::id> caller_ = std::thread::id();
+};
+
+using LitPointer = std::shared_ptr<Lit>;
+
+template<typename Work>
+auto quickly(Lit& own, const Work& work) {
+    own.refuse_reentry();
+    const Release release;
+    return own.use(work);
+}
+
+template<typename Work>
+auto change(Lit& own, const Work& work) {
+    own.refuse_reentry();
+    const Release release;
+    return own.change(work);
+}
+
+/// `work(LitScene&, reins)` owns all that it uses.
+template<typename Work>
+auto slowly(const LitPointer& own, const py::object& progress, Work work) {
+    own->refuse_reentry();
+    const Lit::Caller caller(*own);
+    return in_background(progress, [own, work = std::move(work)](const Reins& reins) {
+        return own->use([&](LitScene& lit) { return work(lit, reins); });
+    });
+}
+
+py::tuple tuple_of(const UpdateReport& report) {
+    return py::make_tuple(report.num_clusters, report.num_receivers, report.num_sharp_lights,
+                          report.seconds, report.seconds_trace, report.resummed);
+}
+
+py::tuple tuple_of(const RelightTimes& times) {
+    return py::make_tuple(times.seconds_bin, times.seconds_relight, times.seconds_trace,
+                          times.num_sharp_lights);
+}
+
+/// A JSON array of layers. Pictures that they name are looked for in the present folder.
+std::vector<cubemap::LightLayer> layers_of(const std::string& json) {
+    const files::JsonReader reader("layers");
+    const files::JsonValue list = reader.parse(std::as_bytes(std::span(json)));
+    return cubemap::read_layers(reader, list, {});
+}
+
+/// The same, with the error that belongs to arguments.
+std::vector<cubemap::LightLayer> checked_layers(const std::string& json) {
+    try {
+        return layers_of(json);
+    } catch (const std::runtime_error& error) {
+        throw std::invalid_argument(error.what());
+    }
+}
+
+py::tuple set_lights(Lit& own, const py::buffer& directions, const py::buffer& irradiances,
+                     const py::buffer& solid_angles) {
+    const auto list = lights_of(directions, irradiances, solid_angles);
+    return tuple_of(change(own, [&](LitScene& lit) { return lit.light(list); }));
+}
+
+py::tuple update_region(Lit& own, unsigned face, std::uint32_t x, std::uint32_t y,
+                        std::uint32_t width, std::uint32_t height, const py::buffer& radiance) {
+    if (face >= cubemap::NumFaces)
+        throw py::value_error("face: expected 0 to 5 (+x -x +y -y +z -z)");
+    const std::vector<glm::vec3> values = vec3s(radiance);
+    const cubemap::TexelRectangle rectangle{static_cast<cubemap::Face>(face), x, y, x + width,
+                                            y + height};
+    return tuple_of(
+        change(own, [&](LitScene& lit) { return lit.update_region(rectangle, values); }));
+}
+
+py::tuple set_layers(Lit& own, const std::string& json) {
+    const UpdateReport report =
+        change(own, [&](LitScene& lit) { return lit.set_layers(checked_layers(json)); });
+    own.set_has_layers();
+    return tuple_of(report);
+}
+
+/// `json`: a list with one layer.
+py::tuple set_layer(Lit& own, std::size_t index, const std::string& json) {
+    return tuple_of(change(
+        own, [&](LitScene& lit) { return lit.set_layer(index, checked_layers(json).at(0)); }));
+}
+
+std::string layers_text(Lit& own) {
+    if (!own.has_layers())
+        return R"({"layers": []})";
+    return quickly(own, [](LitScene& lit) {
+        const auto layers = lit.editor().layers();
+        return cubemap::json_text({.layers = {layers.begin(), layers.end()}});
+    });
+}
+
+void bind_editing(py::class_<Lit, LitPointer>& type) {
+    type.def("update_region", &update_region)
+        .def("set_layers", &set_layers)
+        .def("set_layer", &set_layer)
+        .def("layers", &layers_text)
+        .def("mark",
+             [](Lit& own) {
+                 own.set_has_layers();
+                 quickly(own, [](LitScene& lit) {
+                     lit.editor().mark();
+                     return true;
+                 });
+             })
+        .def("undo",
+             [](Lit& own) {
+                 return tuple_of(change(own, [](LitScene& lit) { return lit.editor().undo(); }));
+             })
+        .def("redo",
+             [](Lit& own) {
+                 return tuple_of(change(own, [](LitScene& lit) { return lit.editor().redo(); }));
+             })
+        .def("history", [](Lit& own) {
+            if (!own.has_layers())
+                return std::pair(false, false);
+            return quickly(own, [](LitScene& lit) {
+                return std::pair(lit.editor().can_undo(), lit.editor().can_redo());
+            });
+        });
+}
+
+py::dict verify(const LitPointer& own, std::size_t samples, std::uint64_t seed, std::uint32_t paths,
+                const py::object& progress) {
+    Verification found = slowly(own, progress, [=](LitScene& lit, const Reins& reins) {
+        return lit.verify({.num_samples = samples,
+                           .seed = seed,
+                           .num_paths = paths,
+                           .stop = reins.stop,
+                           .on_progress = reins.on_progress});
+    });
+    py::dict result;
+    result["relative_l2"] = found.error.relative_l2;
+    result["mean_abs"] = found.error.mean_abs;
+    result["max_abs"] = found.error.max_abs;
+    result["bias"] = found.error.bias;
+    result["mean_radiance"] = found.error.mean_radiance;
+    result["worst_receiver"] = found.error.worst_receiver;
+    result["noise"] = found.noise;
+    result["of_file"] = found.of_file;
+    result["receivers"] = owned(std::move(found.receivers));
+    return result;
+}
+
+py::tuple lit_by(const LitPointer& own, const std::string& json) {
+    const std::vector<cubemap::LightLayer> layers = checked_layers(json);
+    Share share =
+        slowly(own, py::none(), [region = layers.at(0).region](LitScene& lit, const Reins&) {
+            return lit.lit_by(region);
+        });
+    const auto r = static_cast<py::ssize_t>(share.environment.resolution);
+    return py::make_tuple(owned(std::move(share.radiance)),
+                          owned(std::move(share.environment.texels), {6, r, r}), share.share);
+}
+
+Array contribution_map(const LitPointer& own, const py::buffer& receivers) {
+    cubemap::CubeMap map =
+        slowly(own, py::none(), [chosen = uint32s(receivers)](LitScene& lit, const Reins&) {
+            return lit.contribution_map(chosen);
+        });
+    const auto r = static_cast<py::ssize_t>(map.resolution);
+    return owned(std::move(map.texels), {6, r, r});
+}
+
+LightArrays transfer_lights(const LitPointer& own, std::size_t number, const py::object& progress) {
+    return arrays_of(slowly(own, progress, [number](LitScene& lit, const Reins& reins) {
+        return relight::transfer_lights(lit.relighter(), number,
+                                        {.stop = reins.stop, .on_progress = reins.on_progress});
+    }));
+}
+
+void bind_questions(py::class_<Lit, LitPointer>& type) {
+    type.def("verify", &verify)
+        .def("lit_by", &lit_by)
+        .def("contribution_map", &contribution_map)
+        .def("transfer_lights", &transfer_lights);
+}
+
+/// Returns [height, width, 3 or 4] and the exposure that suits it.
+py::tuple draw(const LitPointer& own, const py::dict& given) {
+    const OutputOptions options = output_options(Options(given), own->scene());
+    auto [picture, exposure] = slowly(own, py::none(), [options](LitScene& lit, const Reins&) {
+        Painter painter(lit, options);
+        const Lighting lighting = lit.lighting();
+        Picture drawn = painter.draw(lighting);
+        return std::pair(std::move(drawn), painter.choose_exposure_ev(lighting));
+    });
+    const Shape size = {picture.height, picture.width};
+    if (picture.alpha.empty())
+        return py::make_tuple(owned(std::move(picture.pixels), size), exposure);
+    std::vector<float> rgba;
+    rgba.reserve(4 * picture.pixels.size());
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        rgba.insert(rgba.end(), {picture.pixels[i].r, picture.pixels[i].g, picture.pixels[i].b,
+                                 picture.alpha[i]});
+    return py::make_tuple(owned(std::move(rgba), {size[0], size[1], 4}), exposure);
+}
+
+void save_lit(const LitPointer& own, const Path& path, const py::dict& given) {
+    slowly(own, py::none(),
+           [path, options = output_options(Options(given), own->scene())](LitScene& lit,
+                                                                          const Reins&) {
+               lit.save(path, options);
+               return true;
+           });
+}
+
+/// A PNG or EXR file of an array.
+relight::Picture picture_of(const py::buffer& pixels, std::uint32_t width, std::uint32_t height,
+                            const py::object& alpha) {
+    relight::Picture result{.width = width, .height = height, .pixels = vec3s(pixels)};
+    if (!alpha.is_none()) {
+        const py::buffer_info info = alpha.cast<py::buffer>().request();
+        const auto* values = static_cast<const float*>(info.ptr);
+        if (info.format != "f" || info.itemsize != sizeof(float))
+            throw py::type_error("expected float32 alpha");
+        result.alpha.assign(values, values + info.size);
+    }
+    return result;
+}
+
+relight::Development development(double exposure, const std::string& tone) {
+    const auto curve = relight::tone_curve(tone);
+    if (!curve)
+        Options::refuse("tone_map", "neutral, agx, aces or none", py::str(tone));
+    return {.exposure_ev = exposure, .tone = *curve};
+}
+
+void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
+    type.def("draw", &draw).def("save", &save_lit);
+    module.def("picture_png",
+               [](const py::buffer& pixels, std::uint32_t width, std::uint32_t height,
+                  const py::object& alpha, double exposure, const std::string& tone) {
+                   const relight::Picture picture = picture_of(pixels, width, height, alpha);
+                   const relight::Development how = development(exposure, tone);
+                   std::vector<std::byte> file;
+                   {
+                       const Release release;
+                       file = relight::png_file(picture, how);
+                   }
+                   return py::bytes(reinterpret_cast<const char*>(file.data()), file.size());
+               });
+    module.def("save_picture", [](const Path& path, const py::buffer& pixels, std::uint32_t width,
+                                  std::uint32_t height, const py::object& alpha, double exposure,
+                                  const std::string& tone) {
+        const relight::Picture picture = picture_of(pixels, width, height, alpha);
+        const relight::Development how = development(exposure, tone);
+        const Release release;
+        relight::save_picture(path, picture, how);
+    });
+}
+
+py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py::dict& given) {
+    const OutputOptions options = output_options(Options(given), own.scene());
+    const BounceReport report = change(own, [&](LitScene& lit) {
+        return lit.bounce(picture_albedo(lit.scene(), options), {.num_bounces = bounces});
+    });
+    return py::make_tuple(report.num_bounces, report.error, report.seconds);
+}
+
+} // namespace
+
+void bind_relighters(py::module_& module) {
+    py::class_<Lit, LitPointer> type(module, "Relighter");
+    type.def(py::init([](const std::shared_ptr<Scene>& scene, bool clusters_only) {
+            return in_background(py::none(), [scene, clusters_only](const Reins&) {
+                return std::make_shared<Lit>(scene, LightOptions{.clusters_only = clusters_only});
+            });
+        }))
+        .def_property_readonly("is_lit", &Lit::is_lit)
+        .def_property_readonly("radiance",
+                               [](const LitPointer& own) { return view(own, own->radiance()); })
+        .def("set_environment",
+             [](Lit& own, const EnvironmentHandle& environment) {
+                 return tuple_of(
+                     change(own, [&](LitScene& lit) { return lit.light(environment.made); }));
+             })
+        .def("update_environment",
+             [](Lit& own, const EnvironmentHandle& environment) {
+                 own.set_has_layers();
+                 return tuple_of(
+                     change(own, [&](LitScene& lit) { return lit.update(environment.made); }));
+             })
+        .def("set_frame",
+             [](Lit& own, const EnvironmentHandle& environment) {
+                 change(own, [&](LitScene& lit) {
+                     lit.light(lit.bin(environment.made.map), environment.made.file);
+                     return true;
+                 });
+             })
+        .def("set_lights", &set_lights)
+        .def("bounce", &bounce)
+        .def("environment", [](Lit& own) {
+            cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return lit.environment(); });
+            const auto r = static_cast<py::ssize_t>(map.resolution);
+            return owned(std::move(map.texels), {6, r, r});
+        });
+    bind_editing(type);
+    bind_questions(type);
+    bind_pictures(module, type);
+    module.def("load_layers", [](const Path& path, const std::optional<double>& frame) {
+        const cubemap::LightLayers file = cubemap::load_layers(path);
+        return cubemap::json_text(
+            {.layers = frame ? cubemap::layers_at(file, *frame) : file.layers});
+    });
+    module.def("checked_layers", [](const std::string& json) {
+        return cubemap::json_text({.layers = checked_layers(json)});
+    });
+    module.def("save_layers", [](const Path& path, const std::string& json) {
+        cubemap::save_layers(path, {.layers = checked_layers(json)});
+    });
+}
+
+} // namespace relumine::python

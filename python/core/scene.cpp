@@ -1,0 +1,216 @@
+// Meshes and precomputed scenes.
+#include "scene.h"
+
+#include <atomic>
+#include <limits>
+#include <mutex>
+
+#include <pybind11/stl/filesystem.h>
+
+#include "arrays.h"
+#include "mesh/floor.h"
+#include "mesh/normals.h"
+#include "options.h"
+#include "run.h"
+
+namespace relumine::python {
+
+namespace {
+
+using Path = std::filesystem::path;
+using MeshPointer = std::shared_ptr<Mesh>;
+
+/// Optional arrays are None.
+MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_indices,
+                      const py::object& normals, const py::object& colors, const py::object& uvs,
+                      const py::dict& given) {
+    mesh::TriangleMesh geometry;
+    geometry.positions = vec3s(vertices);
+    geometry.triangles = triangles(triangle_indices);
+    if (!normals.is_none())
+        geometry.normals = vec3s(normals.cast<py::buffer>());
+    if (!colors.is_none())
+        geometry.colors = vec3s(colors.cast<py::buffer>());
+    if (!uvs.is_none())
+        geometry.uvs = vec2s(uvs.cast<py::buffer>());
+    const MeshOptions options = mesh_options(Options(given));
+    const Release release;
+    if (geometry.normals.empty())
+        geometry.normals = mesh::smooth_normals(geometry);
+    mesh::turn_up(geometry, options.up.value_or(mesh::UpAxis::Y));
+    auto result = std::make_shared<Mesh>(std::move(geometry));
+    if (options.floor_vertices) {
+        mesh::append_floor(result->geometry, *options.floor_vertices, options.floor_scale);
+        result->floor_vertices = *options.floor_vertices;
+    }
+    return result;
+}
+
+MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
+    return in_background(py::none(), [path, options = mesh_options(Options(given))](const Reins&) {
+        return MeshPointer(std::make_shared<Mesh>(load_mesh(path, options)));
+    });
+}
+
+py::dict report_of(const PrecomputeReport& report) {
+    py::dict result;
+    result["clusters"] = report.clusters.num_clusters;
+    result["directions"] = report.clusters.num_directions;
+    result["samples"] = report.clusters.num_samples;
+    result["rays"] = report.clusters.num_rays;
+    result["deepest_level"] = report.clusters.deepest_level;
+    result["bias"] = report.bias;
+    result["seconds_clustering"] = report.clusters.seconds;
+    result["highlights_left_out"] = report.num_highlights_left_out;
+    result["file_bytes"] = report.file_bytes;
+    return result;
+}
+
+/// Progress of all stages as one fraction.
+std::function<void(Stage, double)> joined(const std::function<void(double)>& on_progress,
+                                          const PrecomputeOptions& options) {
+    const bool has_highlights = options.view.has_value();
+    const int num_stages = 1 + static_cast<int>(has_highlights) +
+                           static_cast<int>(options.bounce_tolerance.has_value());
+    return [=](Stage stage, double fraction) {
+        const int before = stage == Stage::Clusters     ? 0
+                           : stage == Stage::Highlights ? 1
+                                                        : num_stages - 1;
+        on_progress(std::min(1.0, (before + fraction) / num_stages));
+    };
+}
+
+/// Returns the scene, figures and warnings.
+py::tuple precomputed(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
+    const Options options_given(given);
+    PrecomputeOptions options = precompute_options(options_given);
+    const std::vector<SurfaceMaterial> materials = materials_of(options_given);
+    std::vector<SurfaceMaterial> of_mesh;
+    for (const SurfaceMaterial& material : materials) {
+        if (material.group == "floor")
+            options.floor_surface = material.applied_to({});
+        else
+            of_mesh.push_back(material);
+    }
+    if (!of_mesh.empty())
+        options.surface = surface_override(of_mesh, mesh->geometry);
+
+    struct Result {
+        std::shared_ptr<Scene> scene;
+        PrecomputeReport report;
+        std::vector<std::string> warnings;
+    };
+    const Result result = in_background(progress, [mesh, options](const Reins& reins) mutable {
+        Result found;
+        options.stop = reins.stop;
+        options.on_progress = joined(reins.on_progress, options);
+        options.on_warning = [&](Warning, const std::string& text) {
+            found.warnings.push_back(text);
+        };
+        try {
+            found.scene = std::make_shared<Scene>(precompute(*mesh, options, &found.report));
+        } catch (const TooMuchWork& error) {
+            throw std::invalid_argument(
+                (error.cause == TooMuchWork::Cause::MinLevel ? "min_depth: " : "tolerance: ") +
+                std::string(error.what()));
+        }
+        return found;
+    });
+    return py::make_tuple(result.scene, report_of(result.report), result.warnings);
+}
+
+std::shared_ptr<Scene> load_prt(const Path& path) {
+    return in_background(py::none(), [path](const Reins&) {
+        return std::shared_ptr<Scene>(std::make_shared<Scene>(load_scene(path)));
+    });
+}
+
+std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
+    const Options options(given);
+    const SurfaceColors colors{.albedo = options.color("surface_albedo"),
+                               .specular = options.color("surface_specular")};
+    const Release release;
+    auto result = std::make_shared<Scene>(*scene);
+    set_colors(*result, colors);
+    return result;
+}
+
+py::dict settings_of(const Scene& scene) {
+    py::dict result;
+    result["tolerance"] = rms_tolerance(scene);
+    result["min_depth"] = scene.settings.min_level;
+    result["face_resolution"] = scene.settings.face_resolution;
+    result["bias"] = scene.settings.bias;
+    result["floor"] = scene.settings.floor_vertices;
+    result["source"] = scene.settings.source;
+    result["receivers"] = prt::description(scene.layout);
+    result["bounces"] = scene.bounces.has_value();
+    return result;
+}
+
+/// Calls `bind(name, member)` for the arrays of a mesh.
+template<typename Class, typename Geometry>
+void bind_mesh_arrays(Class& type, Geometry geometry) {
+    using Pointer = typename Class::holder_type;
+    type.def_property_readonly(
+        "vertices", [=](const Pointer& own) { return view(own, geometry(*own).positions); });
+    type.def_property_readonly("triangles", [=](const Pointer& own) {
+        return view(own, std::span<const mesh::Triangle>(geometry(*own).triangles));
+    });
+    type.def_property_readonly(
+        "normals", [=](const Pointer& own) { return view(own, geometry(*own).normals); });
+    type.def_property_readonly(
+        "colors", [=](const Pointer& own) { return view(own, geometry(*own).colors); });
+    type.def_property_readonly("uvs", [=](const Pointer& own) {
+        return view(own, std::span<const glm::vec2>(geometry(*own).uvs));
+    });
+    type.def_property_readonly("groups", [=](const Pointer& own) { return geometry(*own).groups; });
+}
+
+} // namespace
+
+void bind_scenes(py::module_& module) {
+    py::class_<Mesh, std::shared_ptr<Mesh>> mesh_type(module, "Mesh");
+    bind_mesh_arrays(
+        mesh_type, [](const Mesh& mesh) -> const auto& { return mesh.geometry; });
+    mesh_type.def_readonly("source", &Mesh::source)
+        .def_readonly("floor", &Mesh::floor_vertices)
+        .def_property_readonly("warnings", [](const Mesh& mesh) { return mesh.geometry.warnings; });
+
+    py::class_<Scene, std::shared_ptr<Scene>> scene_type(module, "Scene");
+    bind_mesh_arrays(
+        scene_type, [](const Scene& scene) -> const auto& { return scene.mesh; });
+    scene_type
+        .def_property_readonly("num_receivers",
+                               [](const Scene& scene) { return scene.receivers.size(); })
+        .def_property_readonly("num_clusters",
+                               [](const Scene& scene) { return scene.transfer.num_clusters(); })
+        .def_property_readonly("receiver_positions",
+                               [](const std::shared_ptr<Scene>& scene) {
+                                   return view(scene, scene->receivers.positions);
+                               })
+        .def_property_readonly("receiver_normals",
+                               [](const std::shared_ptr<Scene>& scene) {
+                                   return view(scene, scene->receivers.normals);
+                               })
+        .def_property_readonly("settings", &settings_of)
+        .def("nearest_receiver", [](const Scene& scene, const std::array<float, 3>& p) {
+            return nearest_receiver(scene, {p[0], p[1], p[2]});
+        });
+
+    module.def("make_mesh", &make_mesh);
+    module.def("load_mesh", &loaded_mesh);
+    module.def("precompute", &precomputed);
+    module.def("load_scene", &load_prt);
+    module.def("save_scene", [](const Path& path, const std::shared_ptr<Scene>& scene) {
+        return in_background(py::none(),
+                             [path, scene](const Reins&) { return save_scene(path, *scene); });
+    });
+    module.def("unclustered_scene", [](const MeshPointer& mesh) {
+        const Release release;
+        return std::make_shared<Scene>(unclustered_scene(*mesh));
+    });
+    module.def("recoloured", &recoloured);
+}
+
+} // namespace relumine::python

@@ -1,0 +1,74 @@
+"""Relumine relights 3D meshes under measured light.
+
+    scene = relumine.precompute(relumine.Mesh.load("bunny.ply", floor=193))
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(relumine.Environment.load("studio.exr"))
+    relighter.picture().save("bunny.png")
+
+precompute() finds once per mesh how much light reaches every vertex from every direction, with all
+shadows. A Relighter then lights it with any environment in milliseconds, and edits cost only what
+they touch. Options have the names of the command line. Arrays may have any type and order; what
+comes back is float32 in C order. The world is right-handed with +Y up; a direction points from the
+scene to the light; colours are linear RGB.
+
+Bad arguments raise ValueError that names them, files OSError with the file's name, too little
+memory MemoryError. Ctrl-C raises KeyboardInterrupt within a tenth of a second.
+"""
+
+import atexit as _atexit
+
+from . import _core
+from ._environment import Environment
+from ._files import FileError
+from ._layers import (
+    Disc,
+    Emit,
+    Gain,
+    Image,
+    Lasso,
+    Layer,
+    Rectangle,
+    Stroke,
+    load_layers,
+    save_layers,
+)
+from ._lights import LightList
+from ._mesh import Mesh, RelumineWarning
+from ._picture import Picture
+from ._relighter import (
+    FACES,
+    Bounces,
+    Frame,
+    Relighter,
+    RelightTimes,
+    Share,
+    Update,
+    Verification,
+)
+from ._scene import Blinn, Ggx, Lambert, Scene, precompute
+
+__version__: str = _core.__version__
+__all__ = [
+    "FACES", "Blinn", "Bounces", "Disc", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
+    "Image", "Lambert", "Lasso", "Layer", "LightList", "Mesh", "Picture", "Rectangle",
+    "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Stroke", "Update",
+    "Verification", "load_layers", "precompute", "save_layers", "set_threads",
+]  # fmt: skip
+
+
+def set_threads(count: int) -> None:
+    """Limits the threads that all calls use together; 0: all."""
+    if count < 0:
+        raise ValueError(f"count: expected 0 or more threads, got {count}")
+    _core.set_threads(count)
+
+
+# The modules below are an inner matter.
+for _name in __all__:
+    if callable(globals()[_name]):
+        globals()[_name].__module__ = __name__
+del _name
+
+# Work that Ctrl-C left behind ends before the process does.
+_atexit.register(_core.wait_for_jobs)
+

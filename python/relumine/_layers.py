@@ -1,0 +1,209 @@
+"""Light layers: what an artist puts over an environment."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, fields
+from typing import Any, ClassVar, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+
+import numpy as np
+
+from . import _core
+from ._files import Path, errors
+
+Direction = Sequence[float]
+Rgb = Sequence[float]
+
+
+@dataclass
+class Disc:
+    """All directions within an angle of a centre."""
+
+    direction: Direction
+    radius_degrees: float
+    softness: float = 0.0
+    type: ClassVar[str] = "disc"
+
+
+@dataclass
+class Rectangle:
+    """A soft box: a rectangle on the plane that touches the unit sphere at `direction`."""
+
+    direction: Direction
+    width_degrees: float
+    height_degrees: float
+    roll_degrees: float = 0.0
+    softness: float = 0.0
+    type: ClassVar[str] = "rectangle"
+
+
+@dataclass
+class Lasso:
+    """A polygon of great-circle arcs."""
+
+    points: Sequence[Direction]
+    softness_degrees: float = 0.0
+    type: ClassVar[str] = "lasso"
+
+
+@dataclass
+class Stroke:
+    """A brush stroke along great-circle arcs."""
+
+    points: Sequence[Direction]
+    radius_degrees: float
+    softness: float = 0.5
+    type: ClassVar[str] = "stroke"
+
+
+@dataclass
+class Emit:
+    """Adds radiance."""
+
+    radiance: Rgb
+    effect: ClassVar[str] = "emit"
+
+
+@dataclass
+class Gain:
+    """Multiplies the light below."""
+
+    factor: float = 1.0
+    tint: Rgb = (1.0, 1.0, 1.0)
+    effect: ClassVar[str] = "gain"
+
+
+@dataclass
+class Image:
+    """Places a picture, .exr or .hdr, on a Rectangle. `blend` is replace or add."""
+
+    path: str
+    blend: str = "replace"
+    effect: ClassVar[str] = "image"
+
+
+Region = Union[Disc, Rectangle, Lasso, Stroke]
+Effect = Union[Emit, Gain, Image]
+_REGIONS: Dict[str, Any] = {"disc": Disc, "rectangle": Rectangle, "lasso": Lasso, "stroke": Stroke}
+_EFFECTS: Dict[str, Any] = {"emit": Emit, "gain": Gain, "image": Image}
+
+
+@dataclass
+class Layer:
+    """A region, what happens in it, and how strongly: `gain_ev` in stops.
+
+    Directions point from the scene to the light, +Y up; colours are linear RGB. A layer is the same
+    as a dictionary of a layer file, and functions take both.
+
+    >>> key = relumine.Layer("key", relumine.Disc((1, 1, 1), 8), relumine.Emit((40, 38, 35)))
+    >>> key.to_dict()["type"]
+    'disc'
+    """
+
+    name: str
+    region: Region
+    effect: Effect
+    on: bool = True
+    gain_ev: float = 0.0
+
+    def to_dict(self) -> Dict[str, Any]:
+        """The layer as a layer file has it."""
+        return {
+            "name": self.name,
+            "on": self.on,
+            "gain_ev": self.gain_ev,
+            "type": self.region.type,
+            **asdict(self.region),
+            "effect": self.effect.effect,
+            **asdict(self.effect),
+        }
+
+    @classmethod
+    def from_dict(cls, values: Mapping[str, Any]) -> "Layer":
+        """The layer of a dictionary as layer files have them. Raises ValueError for any other."""
+        (layer,) = parsed(_core.checked_layers(text_of([values])))
+        return layer
+
+
+def parsed(text: str) -> List[Layer]:
+    """Layers of a text that the compiled part wrote."""
+    result = []
+    for values in json.loads(text)["layers"]:
+        region, effect = _REGIONS[values["type"]], _EFFECTS[values["effect"]]
+        result.append(
+            Layer(
+                values["name"],
+                region(**{f.name: values[f.name] for f in fields(region) if f.name in values}),
+                effect(**{f.name: values[f.name] for f in fields(effect) if f.name in values}),
+                values.get("on", True),
+                values.get("gain_ev", 0.0),
+            )
+        )
+    return result
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, (np.ndarray, np.generic)):
+        return value.tolist()
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    raise ValueError(f"layers: expected numbers and text, got {value!r}")
+
+
+def text_of(layers: Sequence[Union[Layer, Mapping[str, Any]]]) -> str:
+    """Layers as JSON, one a line: the line number in a message is the place of the layer."""
+    if isinstance(layers, (Layer, Mapping)):
+        raise ValueError("layers: expected a list of layers, got one")
+    lines = []
+    for layer in layers:
+        values = layer.to_dict() if isinstance(layer, Layer) else layer
+        try:
+            lines.append(json.dumps(dict(values), default=_plain, allow_nan=False))
+        except (TypeError, ValueError) as error:
+            raise ValueError(f"layers[{len(lines)}]: {error}") from None
+    return "[" + ",\n".join(lines) + "]"
+
+
+@contextmanager
+def naming_layers() -> Iterator[None]:
+    """Names the layer in messages by its place: layers:3: becomes layers[2]:."""
+    try:
+        yield
+    except ValueError as error:
+        match = re.match(r"layers:(\d+): ", str(error))
+        if match is None:
+            raise
+        text = f"layers[{int(match[1]) - 1}]: {str(error)[match.end():]}"
+        raise ValueError(text) from None
+
+
+def region_text(region: Union[Region, Mapping[str, Any]]) -> str:
+    """A region as the layer that has it."""
+    values: Dict[str, Any]
+    if isinstance(region, Mapping):
+        values = dict(region)
+    else:
+        values = {"type": region.type, **asdict(region)}
+    return text_of([{"name": "region", "effect": "emit", "radiance": [1, 1, 1], **values}])
+
+
+def load_layers(path: Path, *, frame: Optional[float] = None) -> List[Layer]:
+    """Reads a layer file. With `frame`, the layers at a frame of its key frames.
+
+    Raises OSError with the file's name.
+    """
+    with errors(path):
+        layers = parsed(_core.load_layers(os.fspath(path), frame))
+    for layer in layers:
+        if isinstance(layer.effect, Image):  # relative to the file
+            layer.effect.path = os.path.join(os.path.dirname(os.fspath(path)), layer.effect.path)
+    return layers
+
+
+def save_layers(path: Path, layers: Sequence[Union[Layer, Mapping[str, Any]]]) -> None:
+    """Writes a layer file that `relumine edit` and load_layers() read."""
+    with errors(path), naming_layers():
+        _core.save_layers(os.fspath(path), text_of(layers))

@@ -1,0 +1,146 @@
+"""Meshes."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import List, Optional
+
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._arrays import Floats, Indices, floats, indices, view
+from ._files import Path, errors, in_python
+
+
+class RelumineWarning(UserWarning):
+    """What a user should know about an input: a mesh, an environment, a precompute."""
+
+
+def warn(texts: List[str]) -> None:
+    for text in texts:
+        warnings.warn(in_python(text), RelumineWarning, stacklevel=3)
+
+
+class Mesh:
+    """A triangle mesh. Vertices keep their order and their number; +Y is up.
+
+    vertices   (N, 3), in any unit
+    triangles  (M, 3) indices of vertices, counter-clockwise seen from outside
+    normals    (N, 3) of unit length; computed from the triangles where not given
+    colors     (N, 3) linear RGB
+    uvs        (N, 2), for lightmaps
+    up         "x", "y" or "z": the axis of the arrays that points up
+    floor      n: adds a floor of n x n vertices under the mesh, after its own vertices
+    floor_scale  side of the floor over the mesh's width
+
+    Arrays may have any numeric type, order and byte order; they are converted once. Raises
+    ValueError for other shapes, numbers that are not finite, and indices out of range.
+
+    >>> mesh = relumine.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    >>> mesh
+    <relumine.Mesh: 3 vertices, 1 triangles>
+    """
+
+    def __init__(
+        self,
+        vertices: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        normals: Optional[ArrayLike] = None,
+        colors: Optional[ArrayLike] = None,
+        uvs: Optional[ArrayLike] = None,
+        up: str = "y",
+        floor: Optional[int] = None,
+        floor_scale: float = 4.0,
+    ) -> None:
+        points = floats("vertices", vertices, None, 3)
+        count = len(points)
+        corners = indices("triangles", triangles, count, None, 3)
+        self._core = _core.make_mesh(
+            points,
+            corners,
+            None if normals is None else floats("normals", normals, count, 3),
+            None if colors is None else floats("colors", colors, count, 3),
+            None if uvs is None else floats("uvs", uvs, count, 2),
+            {"up": up, "floor": floor, "floor_scale": floor_scale},
+        )
+
+    @classmethod
+    def load(
+        cls,
+        path: Path,
+        *,
+        up: Optional[str] = None,
+        normals: str = "file",
+        floor: Optional[int] = None,
+        floor_scale: float = 4.0,
+    ) -> "Mesh":
+        """Reads an .obj, .gltf, .glb, .ply, .off or .stl file.
+
+        up       the file's axis that points up; by default "z" for .stl, "y" for all others
+        normals  "file": the file's where it has them; "smooth": always from the faces
+
+        Raises OSError with the file's name.
+
+        >>> relumine.Mesh.load("boulder.ply", floor=20)
+        <relumine.Mesh: 7312 vertices, 14070 triangles, floor of 20 x 20>
+        """
+        options = {"up": up, "normals": normals, "floor": floor, "floor_scale": floor_scale}
+        with errors(path):
+            core = _core.load_mesh(os.fspath(path), options)
+        warn(core.warnings)
+        return cls._of(core)
+
+    @classmethod
+    def _of(cls, core: _core.Mesh) -> "Mesh":
+        mesh = cls.__new__(cls)
+        mesh._core = core
+        return mesh
+
+    @property
+    def vertices(self) -> Floats:
+        """(N, 3) float32, read-only, the floor's included."""
+        result: Floats = view(self._core.vertices)
+        return result
+
+    @property
+    def triangles(self) -> Indices:
+        """(M, 3) uint32, read-only."""
+        result: Indices = view(self._core.triangles)
+        return result
+
+    @property
+    def normals(self) -> Floats:
+        """(N, 3) float32, read-only; zero for a vertex without a face."""
+        result: Floats = view(self._core.normals)
+        return result
+
+    @property
+    def colors(self) -> Floats:
+        """(N, 3) float32, read-only, or (0, 3)."""
+        result: Floats = view(self._core.colors)
+        return result
+
+    @property
+    def uvs(self) -> Floats:
+        """(N, 2) float32, read-only, or (0, 2)."""
+        result: Floats = view(self._core.uvs)
+        return result
+
+    @property
+    def groups(self) -> List[str]:
+        """Names of the file's objects or groups."""
+        return self._core.groups
+
+    @property
+    def floor(self) -> int:
+        """n of a floor of n x n vertices, 0 without one."""
+        return self._core.floor
+
+    def __repr__(self) -> str:
+        floor = f", floor of {self.floor} x {self.floor}" if self.floor else ""
+        return (
+            f"<relumine.Mesh: {len(self.vertices)} vertices, "
+            f"{len(self.triangles)} triangles{floor}>"
+        )

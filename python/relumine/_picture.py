@@ -1,0 +1,76 @@
+"""Pictures."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Optional, Tuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._arrays import Floats, floats
+from ._files import Path, errors
+
+
+class Picture(np.ndarray[Any, np.dtype[np.float32]]):
+    """Linear RGB radiance as an array: (H, W, 3), or (H, W, 4) with alpha multiplied in.
+
+    Notebooks show it. `exposure` in stops is what suits it; png() and save() apply it.
+
+    >>> picture = relighter.picture(size=(64, 48))
+    >>> picture.shape, picture.dtype
+    ((48, 64, 3), dtype('float32'))
+    """
+
+    #: Stops that suit what is seen.
+    exposure: float
+    tone_map: str
+
+    def __new__(
+        cls, pixels: ArrayLike, *, exposure: float = 0.0, tone_map: str = "neutral"
+    ) -> "Picture":
+        channels = 4 if np.shape(pixels)[-1:] == (4,) else 3
+        picture = floats("pixels", pixels, None, None, channels).view(cls)
+        picture.exposure = exposure
+        picture.tone_map = tone_map
+        return picture
+
+    def __array_finalize__(self, source: Any) -> None:
+        self.exposure = getattr(source, "exposure", 0.0)
+        self.tone_map = getattr(source, "tone_map", "neutral")
+
+    def _parts(self) -> Tuple[Floats, int, int, Optional[Floats]]:
+        channels = 4 if self.ndim == 3 and self.shape[2] == 4 else 3
+        array = floats("picture", np.asarray(self), None, None, channels)
+        height, width, _ = array.shape
+        alpha = np.ascontiguousarray(array[..., 3]) if channels == 4 else None
+        return np.ascontiguousarray(array[..., :3]), width, height, alpha
+
+    def png(self, *, exposure: Optional[float] = None, tone_map: Optional[str] = None) -> bytes:
+        """A PNG file: exposed, through the tone curve (neutral, agx, aces or none), sRGB.
+
+        >>> picture.png()[1:4]
+        b'PNG'
+        """
+        return _core.picture_png(
+            *self._parts(),
+            self.exposure if exposure is None else exposure,
+            self.tone_map if tone_map is None else tone_map,
+        )
+
+    def save(
+        self, path: Path, *, exposure: Optional[float] = None, tone_map: Optional[str] = None
+    ) -> None:
+        """Writes .png as png(), or .exr: linear, without exposure unless it is given."""
+        name = os.fspath(path)
+        if exposure is None:
+            exposure = 0.0 if name.lower().endswith(".exr") else self.exposure
+        with errors(path):
+            _core.save_picture(
+                name, *self._parts(), exposure, self.tone_map if tone_map is None else tone_map
+            )
+
+    def _repr_png_(self) -> Optional[bytes]:
+        is_picture = self.ndim == 3 and self.shape[2] in (3, 4) and self.size > 0
+        return self.png() if is_picture else None

@@ -1,0 +1,450 @@
+"""Scenes in light."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Dict, Iterator, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._arrays import Floats, Indices, floats, indices, view
+from ._environment import Environment, _options
+from ._files import Path, errors
+from ._layers import Layer, Region, naming_layers, parsed, region_text, text_of
+from ._lights import LightList
+from ._mesh import warn
+from ._picture import Picture
+from ._scene import Color, Progress, Scene
+
+#: Names of the cube's faces, in the order of `Environment.cube`.
+FACES = ("+x", "-x", "+y", "-y", "+z", "-z")
+
+
+class RelightTimes(NamedTuple):
+    """What a relight took."""
+
+    seconds_bin: float
+    seconds_relight: float
+    seconds_trace: float
+    sharp_lights: int
+
+
+class Update(NamedTuple):
+    """What an edit changed, and what it took."""
+
+    clusters: int
+    receivers: int
+    sharp_lights: int
+    seconds: float
+    seconds_trace: float
+    #: All clusters were summed, because that was less work.
+    resummed: bool
+
+
+class Bounces(NamedTuple):
+    """What bouncing light took."""
+
+    bounces: int
+    error: float
+    seconds: float
+
+
+class Verification(NamedTuple):
+    """How far the radiance is from exact integration; errors are relative to the mean radiance."""
+
+    relative_l2: float
+    mean_abs: float
+    max_abs: float
+    bias: float
+    mean_radiance: float
+    worst_receiver: int
+    #: The part of relative_l2 that is noise of the paths that bounces are compared with.
+    noise: float
+    #: The file's pixels were integrated, not the cube map's texels.
+    of_file: bool
+    #: The receivers that were looked at.
+    receivers: Indices
+
+
+class Share(NamedTuple):
+    """What a part of the environment gives."""
+
+    #: (num_receivers, 3)
+    radiance: Floats
+    #: (6, R, R, 3): the environment, black outside of the region
+    environment: Floats
+    #: The part of all reflected light, 0 to 1.
+    share: float
+
+
+class Frame(NamedTuple):
+    """One frame of an animation."""
+
+    number: int
+    path: str
+    #: (num_receivers, 3), a copy that stays as it is
+    radiance: Floats
+
+
+class Relighter:
+    """A scene under light, which may change.
+
+    clusters_only  lights the sun through its cluster too, without shadow rays: faster, softer
+    surface_albedo, surface_specular  as Scene.recolored()
+
+    Calls release Python's lock, so that threads relight at the same time; two threads on one
+    Relighter take turns.
+
+    >>> relighter = relumine.Relighter(scene)
+    >>> relighter.set_environment(environment).seconds_relight < 1
+    True
+    >>> relighter.radiance.shape
+    (6912, 3)
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        clusters_only: bool = False,
+        surface_albedo: Optional[Color] = None,
+        surface_specular: Optional[Color] = None,
+    ) -> None:
+        if surface_albedo is not None or surface_specular is not None:
+            scene = scene.recolored(
+                surface_albedo=surface_albedo, surface_specular=surface_specular
+            )
+        self._scene = scene
+        self._lit: Optional[_core.Relighter] = _core.Relighter(scene._core, clusters_only)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene that is lit."""
+        return self._scene
+
+    @property
+    def _core(self) -> _core.Relighter:
+        if self._lit is None:
+            raise RuntimeError("expected a relighter that is open, got one that was closed")
+        return self._lit
+
+    def close(self) -> None:
+        """Frees the memory. A `with` statement does so at its end."""
+        self._lit = None
+
+    def __enter__(self) -> "Relighter":
+        return self
+
+    def __exit__(self, *details: object) -> None:
+        self.close()
+
+    # Light
+
+    def set_environment(self, environment: Environment) -> RelightTimes:
+        """Lights the scene with an environment. Layers stay over it."""
+        return RelightTimes(*self._core.set_environment(environment._core))
+
+    def update_environment(self, environment: Environment) -> Update:
+        """Replaces the environment by one of the same resolution, and updates what differs."""
+        return Update(*self._core.update_environment(environment._core))
+
+    def set_lights(self, lights: LightList) -> RelightTimes:
+        """Lights the scene with distant lights alone, each with a shadow ray per receiver."""
+        return RelightTimes(*self._core.set_lights(*lights._arrays()))
+
+    def update_region(
+        self, face: Union[int, str], x: int, y: int, radiance: ArrayLike
+    ) -> Update:
+        """Replaces a rectangle of the environment's texels, and updates what depends on it.
+
+        face      0 to 5, or "+x", "-x", "+y", "-y", "+z", "-z"
+        x, y      column and row of the first texel
+        radiance  (height, width, 3)
+
+        >>> relighter.update_region("+x", 4, 4, np.full((2, 3, 3), 5.0)).clusters > 0
+        True
+        """
+        if isinstance(face, str):
+            if face not in FACES:
+                raise ValueError(f"face: expected {', '.join(FACES)}, got {face!r}")
+            face = FACES.index(face)
+        values = floats("radiance", radiance, None, None, 3)
+        height, width, _ = values.shape
+        if face < 0 or x < 0 or y < 0:
+            raise ValueError("face, x, y: expected numbers that are not negative")
+        return Update(*self._core.update_region(face, x, y, width, height, values))
+
+    @property
+    def radiance(self) -> Floats:
+        """(num_receivers, 3) float32: outgoing radiance, for albedo 1 unless there are materials.
+
+        A read-only view without a copy: it shows the light of the present, after the next change
+        too. radiance.copy() keeps it.
+        """
+        if not self._core.is_lit:
+            raise RuntimeError("expected a scene that is lit, got one without light")
+        result: Floats = view(self._core.radiance)
+        return result
+
+    @property
+    def environment(self) -> Floats:
+        """(6, R, R, 3) float32: what lights the scene, layers included. A copy."""
+        result: Floats = view(self._core.environment())
+        return result
+
+    def bounce(
+        self,
+        bounces: Optional[int] = None,
+        *,
+        albedo: Union[Color, str, None] = None,
+        floor_albedo: Optional[Color] = None,
+    ) -> Bounces:
+        """Adds the light that surfaces send to each other, for the present light.
+
+        bounces  how often light goes on; None: until the rest is below 0.1 %
+        albedo   of the surfaces, as in picture()
+
+        Raises ValueError for a scene that was made without `bounces`.
+        """
+        options = {"albedo": albedo, "floor_albedo": floor_albedo}
+        return Bounces(*self._core.bounce(bounces, options))
+
+    # Layers
+
+    @property
+    def layers(self) -> List[Layer]:
+        """The light layers over the environment, the lowest first. Copies."""
+        return parsed(self._core.layers())
+
+    def set_layers(self, layers: Sequence[Union[Layer, Mapping[str, Any]]]) -> Update:
+        """Replaces all layers; only what differs is relit.
+
+        >>> key = relumine.Layer("key", relumine.Disc((1, 1, 1), 20), relumine.Emit((4, 4, 4)))
+        >>> relighter.set_layers([key]).clusters > 0
+        True
+        """
+        with naming_layers():
+            return Update(*self._core.set_layers(text_of(layers)))
+
+    def set_layer(self, index: int, layer: Union[Layer, Mapping[str, Any]]) -> Update:
+        """Replaces one layer, as while it is dragged."""
+        if index < 0:
+            raise IndexError(f"index: expected the place of a layer, got {index}")
+        with naming_layers():
+            return Update(*self._core.set_layer(index, text_of([layer])))
+
+    def mark(self) -> None:
+        """Marks the present layers and environment as a state that undo() comes back to."""
+        self._core.mark()
+
+    def undo(self) -> Update:
+        """Goes back to the mark before. The radiance is bit by bit what it was."""
+        return Update(*self._core.undo())
+
+    def redo(self) -> Update:
+        """Goes to the mark after."""
+        return Update(*self._core.redo())
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a mark before the present one."""
+        return self._core.history()[0]
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a mark after the present one."""
+        return self._core.history()[1]
+
+    # Questions
+
+    def verify(
+        self,
+        samples: int = 2000,
+        *,
+        seed: int = 1,
+        paths: int = 256,
+        progress: Optional[Progress] = None,
+    ) -> Verification:
+        """Compares the radiance with exact integration, every shadow ray traced.
+
+        samples  receivers chosen at random; 0: all
+
+        >>> relighter.verify(20).relative_l2 < 0.2
+        True
+        """
+        found = self._core.verify(samples, seed, paths, progress)
+        found["receivers"] = view(found["receivers"])
+        return Verification(**found)
+
+    def contribution_map(self, receivers: ArrayLike) -> Floats:
+        """What lights these receivers: (6, R, R, 3), radiance per sr.
+
+        The environment, each texel weighted by how much of it they reflect. Its integral over the
+        sphere is the mean of their radiance.
+
+        >>> relighter.contribution_map(scene.nearest_receiver((0, 1, 0))).ndim
+        4
+        """
+        chosen = np.atleast_1d(np.asarray(receivers))
+        places = indices("receivers", chosen, self._scene.num_receivers, None)
+        result: Floats = view(self._core.contribution_map(places))
+        return result
+
+    def lit_by(self, region: Union[Region, Mapping[str, Any]]) -> Share:
+        """What a region gives to the scene, as if the rest of the environment were black.
+
+        >>> 0 < relighter.lit_by(relumine.Disc((0, 1, 0), 60)).share < 1
+        True
+        """
+        with naming_layers():
+            radiance, environment, share = self._core.lit_by(region_text(region))
+        return Share(view(radiance), view(environment), share)
+
+    def transfer_lights(
+        self, number: int = 64, *, progress: Optional[Progress] = None
+    ) -> LightList:
+        """Lights chosen for this scene: they light it nearly as the whole environment does.
+
+        Takes about a minute for 64 lights; fewer come back where more would not help.
+        """
+        w, e, a = self._core.transfer_lights(number, progress)
+        return LightList(view(w), view(e), view(a), method="transfer")
+
+    # Outputs
+
+    def picture(
+        self,
+        *,
+        size: Tuple[int, int] = (1024, 768),
+        albedo: Union[Color, str, None] = None,
+        floor_albedo: Optional[Color] = None,
+        floor_fade: float = 0.6,
+        exposure: Optional[float] = None,
+        tone_map: str = "neutral",
+        camera: Optional[Sequence[float]] = None,
+        front: Optional[str] = None,
+        eye: Optional[Sequence[float]] = None,
+        target: Optional[Sequence[float]] = None,
+        fov: Optional[float] = None,
+        background: Union[Color, str] = "sharp",
+        blur: Optional[float] = None,
+        sun: str = "pixel",
+        gutter: int = 16,
+    ) -> Picture:
+        """The lit scene as an array of linear radiance, which notebooks show.
+
+        size        (width, height); scenes of pixels and texels have their own
+        albedo      a number, (r, g, b) or "mesh"; by default the mesh's own, else 0.5
+        exposure    stops that png() and save() apply; by default what suits what is seen
+        camera      (azimuth, elevation[, distance]) in degrees; or eye and target (x, y, z)
+        fov         vertical, degrees (35)
+        background  "sharp" (the environment), "none" (alpha), a number or (r, g, b)
+        blur        the environment out of focus, by so many degrees
+
+        The other options are those of `relumine relight`.
+        """
+        options = _output(
+            albedo, floor_albedo, floor_fade, exposure, tone_map, camera, front, eye, target, fov,
+            size, background, blur, sun, gutter,
+        )  # fmt: skip
+        pixels, suitable = self._core.draw(options)
+        chosen = suitable if exposure is None else exposure
+        return Picture(view(pixels), exposure=chosen, tone_map=tone_map)
+
+    def save(
+        self,
+        path: Path,
+        *,
+        size: Tuple[int, int] = (1024, 768),
+        albedo: Union[Color, str, None] = None,
+        floor_albedo: Optional[Color] = None,
+        floor_fade: float = 0.6,
+        exposure: Optional[float] = None,
+        tone_map: str = "neutral",
+        camera: Optional[Sequence[float]] = None,
+        front: Optional[str] = None,
+        eye: Optional[Sequence[float]] = None,
+        target: Optional[Sequence[float]] = None,
+        fov: Optional[float] = None,
+        background: Union[Color, str] = "sharp",
+        blur: Optional[float] = None,
+        sun: str = "pixel",
+        gutter: int = 16,
+    ) -> None:
+        """Writes the lit scene, whole or not at all, with the options of picture().
+
+        .png and .exr: a picture. .ply and .glb: the mesh with vertex colours. .npy: numbers.
+        """
+        options = _output(
+            albedo, floor_albedo, floor_fade, exposure, tone_map, camera, front, eye, target, fov,
+            size, background, blur, sun, gutter,
+        )  # fmt: skip
+        with errors(path):
+            self._core.save(os.fspath(path), options)
+
+    def _repr_png_(self) -> Optional[bytes]:
+        return self.picture(size=(640, 480)).png() if self._core.is_lit else None
+
+    def animate(
+        self,
+        environments: str,
+        *,
+        frames: Optional[str] = None,
+        layout: Optional[str] = None,
+        convention: str = "openexr",
+        face_resolution: int = 0,
+        fix_env: bool = False,
+        flip: Optional[str] = None,
+        tilt: float = 0.0,
+        rotate: float = 0.0,
+    ) -> Iterator[Frame]:
+        """Lights the scene with one environment after the other, the next one read ahead.
+
+        environments  sky.%04d.exr, sky.####.exr or a glob
+        frames        "10-200" or "10-200x5"; by default all
+
+        After each frame the relighter is in its light, so that save() and picture() show it.
+
+        >>> [frame.number for frame in relighter.animate("sky.%d.exr")]
+        [1, 2, 3]
+        """
+        options = _options(layout, convention, face_resolution, fix_env, flip, tilt, rotate)
+        with errors(environments):
+            sequence = _core.Frames(os.fspath(environments), frames, options)
+        for index in range(len(sequence)):
+            path = os.fspath(sequence.path(index))
+            with errors(path):
+                environment = sequence.load(index)
+            warn(environment.warnings)
+            self._core.set_frame(environment)
+            yield Frame(sequence.number(index), path, self.radiance.copy())
+
+    def __repr__(self) -> str:
+        if self._lit is None:
+            return "<relumine.Relighter: closed>"
+        return (
+            f"<relumine.Relighter: {self._scene.num_receivers} receivers, "
+            f"{self._scene.num_clusters} clusters, {'lit' if self._core.is_lit else 'no light'}>"
+        )
+
+
+def _output(
+    albedo: Union[Color, str, None],
+    floor_albedo: Optional[Color],
+    floor_fade: float,
+    exposure: Optional[float],
+    tone_map: str,
+    camera: Optional[Sequence[float]],
+    front: Optional[str],
+    eye: Optional[Sequence[float]],
+    target: Optional[Sequence[float]],
+    fov: Optional[float],
+    size: Tuple[int, int],
+    background: Union[Color, str],
+    blur: Optional[float],
+    sun: str,
+    gutter: int,
+) -> Dict[str, Any]:
+    return dict(locals())

@@ -1,0 +1,267 @@
+"""Precomputed scenes."""
+
+from __future__ import annotations
+
+import os
+import re
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+
+from numpy.typing import ArrayLike
+
+from . import _core
+from ._arrays import Floats, Indices, view
+from ._core import Scene as CoreScene
+from ._files import Path, errors
+from ._mesh import Mesh, warn
+
+Color = Union[float, Sequence[float]]
+Progress = Callable[[float], object]
+
+
+class Ggx(NamedTuple):
+    """A metallic-roughness surface, as in glTF. Colours that are None stay the mesh's."""
+
+    roughness: float
+    albedo: Optional[Color] = None
+    f0: Optional[Color] = None
+
+
+class Blinn(NamedTuple):
+    """A normalised Blinn-Phong surface."""
+
+    exponent: float
+    ks: Color
+    kd: Optional[Color] = None
+
+
+class Lambert(NamedTuple):
+    """A matt surface."""
+
+    albedo: Optional[Color] = None
+
+
+Material = Union[Ggx, Blinn, Lambert]
+
+
+def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Tuple[Any, ...]]:
+    if material is None:
+        return []
+    if isinstance(material, (Ggx, Blinn, Lambert)):
+        material = {"": material}
+    result: List[Tuple[Any, ...]] = []
+    for group, surface in material.items():
+        if isinstance(surface, Ggx):
+            if not 0.0 <= surface.roughness <= 1.0:
+                raise ValueError(f"material: expected a roughness of 0 to 1, got {surface}")
+            result.append((group, 1, surface.roughness, surface.albedo, surface.f0))
+        elif isinstance(surface, Blinn):
+            if not 0.0 <= surface.exponent <= 1e6:
+                raise ValueError(f"material: expected an exponent of 0 to 1e6, got {surface}")
+            result.append((group, 2, surface.exponent, surface.kd, surface.ks))
+        elif isinstance(surface, Lambert):
+            result.append((group, 0, 0.0, surface.albedo, None))
+        else:
+            raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
+    return result
+
+
+def _receivers(text: str) -> Tuple[str, int, int, int]:
+    match = re.fullmatch(r"(pixels|texels):(\d+)x(\d+)(?::(\d+))?", text)
+    if text == "vertices":
+        return ("vertices", 0, 0, 0)
+    if match is None or (match[1] == "texels" and match[4]):
+        raise ValueError(
+            f"receivers: expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got {text!r}"
+        )
+    size = (int(match[2]), int(match[3]))
+    samples = int(match[4] or 1)
+    if not all(1 <= side <= 16384 for side in size) or not 1 <= samples <= 64:
+        raise ValueError(
+            f"receivers: expected 1 to 16384 a side and 1 to 64 samples, got {text!r}"
+        )
+    return (match[1], *size, samples)
+
+
+def precompute(
+    mesh: Union[Mesh, ArrayLike],
+    triangles: Optional[ArrayLike] = None,
+    *,
+    tolerance: Optional[float] = None,
+    epsilon: Optional[float] = None,
+    min_depth: Optional[int] = None,
+    face_resolution: Optional[int] = None,
+    bias: Optional[float] = None,
+    engine: str = "beam",
+    receivers: str = "vertices",
+    view: Any = None,
+    material: Union[Material, Mapping[str, Material], None] = None,
+    glossy_tolerance: Optional[float] = None,
+    bounces: Union[bool, float, None] = None,
+    two_sided: bool = False,
+    max_memory: Optional[int] = None,
+    output: Optional[Path] = None,
+    checkpoint_seconds: float = 20.0,
+    resume: bool = False,
+    progress: Optional[Progress] = None,
+) -> "Scene":
+    """Finds how much light from every direction reaches every receiver: once per mesh.
+
+    mesh       a Mesh, or an array of vertices (N, 3) with `triangles` (M, 3)
+    tolerance  RMS error of the transfer allowed within a cluster, in 1/sr (0.0135)
+    epsilon    the paper's form of it; excludes `tolerance`
+    receivers  "vertices"; "pixels:WxH[:N]", what a fixed camera sees; "texels:WxH", a lightmap
+    view       the eye of highlights and the camera of pixels: "auto", (eye, target) or
+               (eye, target, fov)
+    material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
+               "floor" is the added floor
+    bounces    light goes on from surface to surface: True, or its standard error (0.02)
+    max_memory bytes; work that would take more is refused with MemoryError
+    output     the .prt file to write as soon as the scene is ready, with checkpoints on the way
+               that `resume` goes on from
+    progress   called with a fraction in [0, 1], in this thread
+
+    The other options are those of `relumine precompute`. Ctrl-C raises KeyboardInterrupt.
+
+    >>> scene = relumine.precompute(relumine.Mesh.load("boulder.ply"), tolerance=0.05)
+    >>> scene
+    <relumine.Scene: vertices, 6912 receivers, 384 clusters>
+    """
+    if not isinstance(mesh, Mesh):
+        if triangles is None:
+            raise ValueError("triangles: expected an array beside an array of vertices, got None")
+        mesh = Mesh(mesh, triangles)
+    elif triangles is not None:
+        raise ValueError("triangles: expected none beside a Mesh, got an array")
+    if tolerance is not None and epsilon is not None:
+        raise ValueError("epsilon: expected either tolerance or epsilon, got both")
+    options: Dict[str, Any] = {
+        "tolerance": tolerance,
+        "epsilon": epsilon,
+        "min_depth": min_depth,
+        "face_resolution": face_resolution,
+        "bias": bias,
+        "engine": engine,
+        "receivers": _receivers(receivers),
+        "view": view,
+        "material": _materials(material),
+        "glossy_tolerance": glossy_tolerance,
+        "bounces": 0.02 if bounces is True else (bounces or None),
+        "two_sided": two_sided,
+        "max_memory": max_memory,
+        "output": None if output is None else os.fspath(output),
+        "checkpoint_seconds": checkpoint_seconds,
+        "resume": resume,
+    }
+    with errors(output or "", only=True):
+        core, report, warnings = _core.precompute(mesh._core, options, progress)
+    warn(warnings)
+    scene = Scene._of(core)
+    scene.report = report
+    return scene
+
+
+class Scene:
+    """A mesh with its precomputed light transfer: the `.prt` file. It never changes.
+
+    Made by precompute() and Scene.load(). Any number of Relighters share one scene.
+    """
+
+    _core: CoreScene
+    #: Figures of the precompute; empty for a scene that was loaded.
+    report: Dict[str, Any]
+
+    @classmethod
+    def _of(cls, core: CoreScene) -> "Scene":
+        scene = cls.__new__(cls)
+        scene._core = core
+        scene.report = {}
+        return scene
+
+    @classmethod
+    def load(cls, path: Path) -> "Scene":
+        """Reads a .prt file and checks all of it. Raises OSError with the file's name.
+
+        >>> relumine.Scene.load("boulder.prt").num_receivers
+        6912
+        """
+        with errors(path):
+            return cls._of(_core.load_scene(os.fspath(path)))
+
+    @classmethod
+    def unclustered(cls, mesh: Mesh) -> "Scene":
+        """A scene without a precompute: light lists light it, environments cannot."""
+        return cls._of(_core.unclustered_scene(mesh._core))
+
+    def save(self, path: Path) -> int:
+        """Writes a .prt file, whole or not at all. Returns its size in bytes."""
+        with errors(path):
+            return _core.save_scene(os.fspath(path), self._core)
+
+    @property
+    def num_receivers(self) -> int:
+        """How many points are lit."""
+        return self._core.num_receivers
+
+    @property
+    def num_clusters(self) -> int:
+        """Clusters of light; 0 for an unclustered scene."""
+        return self._core.num_clusters
+
+    @property
+    def positions(self) -> Floats:
+        """(num_receivers, 3) float32, read-only: the points that are lit."""
+        result: Floats = view(self._core.receiver_positions)
+        return result
+
+    @property
+    def normals(self) -> Floats:
+        """(num_receivers, 3) float32, read-only: the receivers' normals."""
+        result: Floats = view(self._core.receiver_normals)
+        return result
+
+    @property
+    def vertices(self) -> Floats:
+        """(N, 3) float32, read-only: the mesh."""
+        result: Floats = view(self._core.vertices)
+        return result
+
+    @property
+    def triangles(self) -> Indices:
+        """(M, 3) uint32, read-only: the mesh."""
+        result: Indices = view(self._core.triangles)
+        return result
+
+    @property
+    def colors(self) -> Floats:
+        """(N, 3) float32, read-only, or (0, 3): the mesh."""
+        result: Floats = view(self._core.colors)
+        return result
+
+    @property
+    def settings(self) -> Dict[str, Any]:
+        """How the scene was made: tolerance, bias, floor, source, receivers, bounces."""
+        return self._core.settings
+
+    def nearest_receiver(self, position: Sequence[float]) -> int:
+        """The index of the receiver nearest to a point (x, y, z)."""
+        x, y, z = position
+        return self._core.nearest_receiver((float(x), float(y), float(z)))
+
+    def recolored(
+        self,
+        *,
+        surface_albedo: Optional[Color] = None,
+        surface_specular: Optional[Color] = None,
+    ) -> "Scene":
+        """A copy with other colours of all surfaces but the floor's: no precompute is needed.
+
+        Raises ValueError for a scene without materials.
+        """
+        colors = {"surface_albedo": surface_albedo, "surface_specular": surface_specular}
+        return Scene._of(_core.recoloured(self._core, colors))
+
+    def __repr__(self) -> str:
+        return (
+            f"<relumine.Scene: {self.settings['receivers']}, {self.num_receivers} receivers, "
+            f"{self.num_clusters} clusters>"
+        )

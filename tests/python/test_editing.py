@@ -1,0 +1,124 @@
+"""Edits: regions, layers, undo, and questions about the light."""
+
+import numpy as np
+import pytest
+
+import relumine
+
+KEY = relumine.Layer("key", relumine.Disc((1, 1, 1), 20), relumine.Emit((4, 3, 2)))
+
+
+def test_update_region_equals_a_new_environment(relighter, sky):
+    changed = sky.cube.copy()
+    changed[0, 3:7, 5:9] = 2.5
+    update = relighter.update_region("+x", 5, 3, np.full((4, 4, 3), 2.5))
+    assert 0 < update.clusters
+    edited = relighter.radiance.copy()
+    relighter.set_environment(relumine.Environment(changed))
+    assert np.linalg.norm(relighter.radiance - edited) < 1e-5 * np.linalg.norm(edited)
+
+
+def test_environment_of_layers(relighter, sky):
+    relighter.set_layers([KEY])
+    difference = relighter.environment - sky.cube
+    assert difference.max() == pytest.approx(4.0, rel=1e-5)
+    assert difference.min() == 0.0
+
+
+def test_dictionaries_are_layers(relighter):
+    relighter.set_layers([KEY])
+    as_object = relighter.radiance.copy()
+    relighter.set_layers([])
+    relighter.set_layers(
+        [
+            {"name": "key", "type": "disc", "effect": "emit", "direction": np.array([1, 1, 1]),
+             "radius_degrees": np.float32(20), "radiance": (4, 3, 2)}
+        ]  # fmt: skip
+    )
+    assert (relighter.radiance == as_object).all()
+    assert relighter.layers == [relumine.Layer.from_dict(KEY.to_dict())]
+
+
+def test_a_drag_and_its_undo(relighter):
+    relighter.set_layers([KEY])
+    relighter.mark()
+    before = relighter.radiance.copy()
+    for x in np.linspace(1, -1, 8):
+        relighter.set_layer(0, relumine.Layer("key", relumine.Disc((x, 1, 1), 20), KEY.effect))
+    relighter.mark()
+    after = relighter.radiance.copy()
+    assert relighter.can_undo and not relighter.can_redo
+    relighter.undo()
+    assert (relighter.radiance == before).all() and relighter.can_redo
+    assert relighter.layers[0].region.direction == [1.0, 1.0, 1.0]
+    relighter.redo()
+    assert (relighter.radiance == after).all()
+    relighter.undo()
+    relighter.undo()
+    assert relighter.layers == [] and not relighter.can_undo
+
+
+@pytest.mark.parametrize(
+    "layer, message",
+    [
+        ({"name": "a"}, r"^layers\[1\]: expected .*type"),
+        ({**KEY.to_dict(), "name": "a", "radus": 3}, r"^layers\[1\]: expected .*radus"),
+        ({**KEY.to_dict(), "name": "a", "radius_degrees": -1}, r"^layers\[1\]: .*radius"),
+        ({**KEY.to_dict(), "name": "a", "radius_degrees": np.nan}, r"^layers\[1\]: "),
+        ({**KEY.to_dict(), "name": "a", "direction": object()}, r"^layers\[1\]: "),
+        ({**KEY.to_dict()}, r"^layers\[1\]: expected layers of different names"),
+    ],
+)
+def test_wrong_layers_are_named_and_change_nothing(relighter, layer, message):
+    before = relighter.radiance.copy()
+    with pytest.raises(ValueError, match=message):
+        relighter.set_layers([KEY, layer])
+    assert (relighter.radiance == before).all() and relighter.layers == []
+    with pytest.raises(ValueError, match="^layers: expected a list"):
+        relighter.set_layers(KEY)
+    with pytest.raises(IndexError):
+        relighter.set_layer(3, KEY)
+
+
+def test_contribution_is_the_transpose(relighter):
+    receiver = relighter.scene.nearest_receiver((0, 1, 0))
+    who = relighter.contribution_map(receiver)
+    n = who.shape[1]
+    s = 2 * (np.arange(n) + 0.5) / n - 1
+    angle = (2 / n) ** 2 / (1 + s[:, None] ** 2 + s**2) ** 1.5  # of texels, nearly
+    total = (who * angle[None, :, :, None]).sum(axis=(0, 1, 2))
+    assert total == pytest.approx(relighter.radiance[receiver], rel=0.01)
+
+
+def test_parts_add_up(relighter):
+    up = relighter.lit_by(relumine.Disc((0, 1, 0), 90))
+    down = relighter.lit_by({"type": "disc", "direction": [0, -1, 0], "radius_degrees": 90})
+    assert up.share + down.share == pytest.approx(1.0, abs=2e-3)
+    total = up.radiance + down.radiance
+    assert np.linalg.norm(total - relighter.radiance) < 2e-3 * np.linalg.norm(total)
+    assert up.environment[3].max() == 0.0
+
+
+def test_verify(relighter):
+    found = relighter.verify(40, seed=2)
+    assert found.relative_l2 < 0.05 and found.of_file and len(found.receivers) == 40
+    again = relighter.verify(40, seed=2)
+    assert (again.receivers == found.receivers).all()
+    assert again.relative_l2 == found.relative_l2
+
+
+def test_animate(relighter, sky, folder):
+    for number in range(3):
+        sky.turned(rotate=30 * number).save(f"sky.{number:04}.exr")
+    frames = list(relighter.animate("sky.%04d.exr"))
+    assert [frame.number for frame in frames] == [0, 1, 2]
+    for frame in frames:
+        relighter.set_environment(relumine.Environment.load(frame.path))
+        error = np.linalg.norm(relighter.radiance - frame.radiance)
+        assert error < 1e-5 * np.linalg.norm(frame.radiance)
+    assert [frame.number for frame in relighter.animate("sky.%04d.exr", frames="1-2")] == [1, 2]
+    (folder / "sky.0001.exr").write_bytes(b"damaged")
+    frames = relighter.animate("sky.%04d.exr")
+    with pytest.raises(OSError) as error:
+        list(frames)
+    assert "sky.0001.exr" in error.value.filename or "sky.0001.exr" in str(error.value)

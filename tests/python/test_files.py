@@ -1,0 +1,137 @@
+"""Files in and out, and the errors that name them."""
+
+import errno
+import os
+
+import numpy as np
+import pytest
+
+import relumine
+
+
+def test_scenes_come_back(scene, sky, folder):
+    size = scene.save("boulder.prt")
+    assert size == os.path.getsize("boulder.prt")
+    again = relumine.Scene.load(folder / "boulder.prt")
+    assert again.num_clusters == scene.num_clusters
+    assert again.settings == scene.settings
+    one, other = relumine.Relighter(scene), relumine.Relighter(again)
+    one.set_environment(sky)
+    other.set_environment(sky)
+    assert (one.radiance == other.radiance).all()
+
+
+def test_precompute_writes_its_output(arrays, folder):
+    scene = relumine.precompute(*arrays, tolerance=0.1, output="boulder.prt")
+    assert relumine.Scene.load("boulder.prt").num_clusters == scene.num_clusters
+    assert scene.report["file_bytes"] == os.path.getsize("boulder.prt")
+    assert not os.path.exists("boulder.prt.checkpoint")
+
+
+def test_meshes_come_from_files(relighter, folder, arrays):
+    relighter.save("boulder.ply", exposure=0, albedo=1)
+    mesh = relumine.Mesh.load("boulder.ply", floor=10)
+    assert mesh.floor == 10
+    assert (mesh.vertices[:-100] == arrays[0].astype(np.float32)).all()
+    assert (mesh.triangles[: len(arrays[1])] == arrays[1]).all()
+    assert mesh.colors[:-100] == pytest.approx(relighter.radiance, abs=1e-6)
+
+
+def missing(path):
+    return pytest.raises(FileNotFoundError, match=f"No such file.*{path}")
+
+
+def test_missing_files(folder):
+    calls = {
+        "a.ply": relumine.Mesh.load,
+        "a.prt": relumine.Scene.load,
+        "a.exr": relumine.Environment.load,
+        "a.json": relumine.LightList.load,
+        "b.json": relumine.load_layers,
+    }
+    for path, call in calls.items():
+        with missing(path) as error:
+            call(path)
+        assert error.value.filename == path
+        assert error.value.errno == errno.ENOENT
+
+
+def test_files_of_other_content(folder):
+    (folder / "text").write_text("not what it should be\n")
+    for suffix, call in {
+        "ply": relumine.Mesh.load,
+        "prt": relumine.Scene.load,
+        "exr": relumine.Environment.load,
+        "json": relumine.LightList.load,
+    }.items():
+        path = folder / f"text.{suffix}"
+        path.write_text("not what it should be\n")
+        with pytest.raises(relumine.FileError) as error:
+            call(path)
+        assert error.value.filename == str(path)
+        assert isinstance(error.value, OSError)
+        assert str(error.value).count(str(path)) == 1
+        assert "expected" in str(error.value) and "\n" not in str(error.value)
+
+
+def test_places_that_cannot_be_written(relighter, folder):
+    for path in ("nowhere/out.png", "nowhere/out.npy"):
+        with pytest.raises(FileNotFoundError):
+            relighter.save(path, size=(8, 8))
+    with pytest.raises(FileNotFoundError):
+        relighter.scene.save("nowhere/out.prt")
+    with pytest.raises(FileNotFoundError):
+        relighter.picture(size=(8, 8)).save("nowhere/out.png")
+    with pytest.raises(ValueError, match="extension|ends in|expected"):
+        relighter.save("out.jpeg")
+    assert os.listdir() == []
+
+
+def test_layer_files(folder, relighter):
+    layers = [
+        relumine.Layer("key", relumine.Disc((1, 1, 1), 8, 0.2), relumine.Emit((40, 38, 35))),
+        relumine.Layer("dim", relumine.Lasso([(-1, 0.2, 0.3), (-1, 0.9, 0.3), (-1, 0.9, -0.4)]),
+                       relumine.Gain(0.25, (1, 0.9, 0.8)), gain_ev=-1.0, on=False),
+        relumine.Layer("box", relumine.Rectangle((-1, 0.5, 0.2), 50, 30, 10, 0.3),
+                       relumine.Emit((6, 6, 6.5))),
+        relumine.Layer("glow", relumine.Stroke([(-1, 0, -1), (0, 0.1, -1)], 3),
+                       relumine.Emit((2, 1, 0.5))),
+    ]  # fmt: skip
+    relumine.save_layers("layers.json", layers)
+    again = relumine.load_layers("layers.json")
+    assert [layer.name for layer in again] == ["key", "dim", "box", "glow"]
+    assert [a.to_dict() for a in again] == [relumine.Layer.from_dict(b.to_dict()).to_dict()
+                                            for b in layers]  # fmt: skip
+    once = relighter.set_layers(layers)
+    assert once.clusters > 0
+    assert relighter.set_layers(again).clusters == 0
+
+
+def test_pictures_in_layers(folder, relighter):
+    os.mkdir("looks")
+    relumine.Picture(np.full((4, 4, 3), 3.0)).save("looks/window.exr")
+    layer = relumine.Layer(
+        "window", relumine.Rectangle((1, 0.3, 0), 40, 40), relumine.Image("looks/window.exr")
+    )
+    dark = relighter.radiance.mean()
+    relighter.set_layers([layer])
+    assert relighter.radiance.mean() > dark
+    (folder / "looks/layers.json").write_text(
+        '{"version": 1, "layers": [{"name": "w", "type": "rectangle", "effect": "image", '
+        '"direction": [1, 0.3, 0], "width_degrees": 40, "height_degrees": 40, '
+        '"path": "window.exr"}]}'
+    )
+    bright = relighter.radiance.mean()
+    relighter.set_layers(relumine.load_layers("looks/layers.json"))
+    assert relighter.radiance.mean() == pytest.approx(bright)
+
+
+def test_key_frames(folder):
+    (folder / "layers.json").write_text(
+        '{"version": 1, "layers": [{"name": "k", "type": "disc", "effect": "emit", '
+        '"direction": [1, 0, 0], "radius_degrees": 5, "radiance": [1, 1, 1]}], "frames": ['
+        '{"frame": 0, "layers": {"k": {"gain_ev": 0}}}, '
+        '{"frame": 10, "layers": {"k": {"gain_ev": 4}}}]}'
+    )
+    (layer,) = relumine.load_layers("layers.json", frame=5)
+    assert layer.gain_ev == 2.0

@@ -1,0 +1,172 @@
+"""From arrays to radiance and pictures, held to closed forms and to the command line."""
+
+import numpy as np
+import pytest
+
+import relumine
+
+
+def test_white_furnace():
+    """A convex solid under a white sky reflects 1 at albedo 1: nothing is in the way."""
+    vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    scene = relumine.precompute(vertices, triangles)
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    assert relighter.radiance == pytest.approx(1.0, abs=2e-3)
+    assert relighter.verify(0).relative_l2 < 2e-3
+
+
+def test_a_lit_plane_and_the_orientation_of_arrays():
+    """Light from +Y alone lights a plane that faces +Y by L, and from -Y not at all."""
+    plane = ([[0, 0, 0], [0, 0, 1], [1, 0, 0]], [[0, 1, 2]])
+    relighter = relumine.Relighter(relumine.precompute(*plane))
+    above, below = np.zeros((6, 16, 16, 3)), np.zeros((6, 16, 16, 3))
+    above[[0, 1, 4, 5], :8] = above[2] = 1.0  # faces +X -X +Y -Y +Z -Z, rows from the top
+    below[[0, 1, 4, 5], 8:] = below[3] = 1.0
+    relighter.set_environment(relumine.Environment(above))
+    assert relighter.radiance == pytest.approx(1.0, abs=2e-3)
+    relighter.set_environment(relumine.Environment(below))
+    assert relighter.radiance == pytest.approx(0.0, abs=1e-4)
+    lat_long = np.zeros((16, 32, 3))
+    lat_long[:8] = 1.0
+    relighter.set_environment(relumine.Environment(lat_long))
+    assert relighter.radiance == pytest.approx(1.0, abs=1e-2)
+
+
+def test_faces_and_lat_long_agree(relighter, sky):
+    as_lat_long = relighter.radiance.copy()
+    relighter.set_environment(relumine.Environment(sky.cube))
+    assert np.linalg.norm(relighter.radiance - as_lat_long) < 1e-5 * np.linalg.norm(as_lat_long)
+
+
+def test_relighting_is_linear(relighter, sky):
+    once = relighter.radiance.copy()
+    relighter.set_environment(relumine.Environment(2 * sky.cube))
+    assert relighter.radiance == pytest.approx(2 * once, rel=1e-4, abs=1e-6)
+
+
+def test_bounces(arrays):
+    scene = relumine.precompute(*arrays, tolerance=0.05, bounces=True)
+    assert scene.settings["bounces"]
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    direct = relighter.radiance.copy()
+    done = relighter.bounce(albedo=1.0)
+    assert done.bounces > 1
+    # White surfaces under a white sky reflect 1 everywhere, however they stand.
+    assert np.mean(np.abs(relighter.radiance - 1)) < 0.02 < np.mean(np.abs(direct - 1))
+    relighter.bounce(1, albedo=0.5)
+    assert (relighter.radiance >= direct).all()
+    relighter.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    assert (relighter.radiance == direct).all()
+
+
+def test_scenes_without_bounces_say_so(relighter):
+    with pytest.raises(ValueError, match="bounces"):
+        relighter.bounce()
+
+
+def test_pixels_and_texels(arrays, sky):
+    vertices, triangles = arrays
+    scene = relumine.precompute(
+        vertices, triangles, tolerance=0.1, receivers="pixels:64x48", view="auto"
+    )
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(sky)
+    assert relighter.picture().shape == (48, 64, 3)
+    assert relighter.picture(background="none").shape == (48, 64, 4)
+    uvs = vertices[:, [0, 2]] * 0.1 + 0.5
+    mesh = relumine.Mesh(vertices, triangles, uvs=uvs)
+    with pytest.warns(relumine.RelumineWarning):  # the ball's charts overlap
+        scene = relumine.precompute(mesh, tolerance=0.1, receivers="texels:32x32")
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(sky)
+    assert relighter.picture().shape[:2] == (32, 32)
+
+
+def test_materials(arrays, sky):
+    scene = relumine.precompute(
+        *arrays, tolerance=0.1, material=relumine.Lambert((0.5, 0.25, 0.125))
+    )
+    relighter = relumine.Relighter(scene)
+    relighter.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    ratio = relighter.radiance[:, 0] / np.maximum(relighter.radiance[:, 1], 1e-9)
+    assert np.median(ratio) == pytest.approx(2.0, rel=1e-4)
+    grey = relumine.Relighter(scene, surface_albedo=0.5)
+    grey.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
+    assert grey.radiance[:, 1] == pytest.approx(relighter.radiance[:, 0], abs=1e-5)
+    shiny = relumine.precompute(
+        *arrays, tolerance=0.1, material=relumine.Ggx(0.4, f0=0.5), view=((0, 1, 5), (0, 0, 0), 40)
+    )
+    assert relumine.Relighter(shiny).set_environment(sky).seconds_relight > 0
+    with pytest.raises(ValueError, match="^material: expected a roughness"):
+        relumine.precompute(*arrays, material=relumine.Ggx(2.0))
+    with pytest.raises(ValueError, match="group"):
+        relumine.precompute(*arrays, material={"hat": relumine.Lambert()})
+
+
+def test_pictures(relighter):
+    picture = relighter.picture(size=(80, 60), background="none", camera=(30, 25))
+    assert picture.shape == (60, 80, 4) and picture.dtype == np.float32
+    assert 0 < picture[..., 3].mean() < 1
+    assert picture._repr_png_().startswith(b"\x89PNG")
+    assert relighter._repr_png_().startswith(b"\x89PNG")
+    assert (picture * 2).exposure == picture.exposure
+    assert picture[..., 0]._repr_png_() is None
+    black = relighter.picture(size=(80, 60), albedo=0, background=(0, 0, 1))
+    assert (black[..., :2] == 0).all() and black[..., 2].max() == 1
+    with pytest.raises(ValueError, match="^size: expected"):
+        relighter.picture(size=(0, 3))
+    with pytest.raises(ValueError, match="^tone_map: expected neutral, agx, aces or none"):
+        relighter.picture(tone_map="filmic")
+    with pytest.raises(ValueError, match="^background: expected"):
+        relighter.picture(background="sharpish")
+    with pytest.raises(ValueError, match="^camera: expected"):
+        relighter.picture(camera=(1,))
+
+
+def test_equals_the_command_line(relighter, sky, folder, command_line):
+    relighter.scene.save("boulder.prt")
+    sky.save("sky.exr", layout="cube")
+    environment = relumine.Environment.load("sky.exr", rotate=30, face_resolution=16)
+    relighter.set_environment(environment)
+    command_line(
+        "relight", "boulder.prt", "sky.exr", "--rotate", 30, "--face-resolution", 16,
+        "-o", "out.npy", "--albedo", 1,
+    )  # fmt: skip
+    assert (np.load("out.npy") == relighter.radiance).all()
+    relighter.save("own.npy", albedo=1)
+    assert (np.load("own.npy") == relighter.radiance).all()
+    relighter.save("own.png", size=(160, 120))
+    command_line(
+        "relight", "boulder.prt", "sky.exr", "--rotate", 30, "--face-resolution", 16,
+        "-o", "out.png", "--size", "160x120",
+    )  # fmt: skip
+    assert (folder / "own.png").read_bytes() == (folder / "out.png").read_bytes()
+    picture = relighter.picture(size=(160, 120))
+    assert picture.png() == (folder / "out.png").read_bytes()
+
+
+def test_what_is_closed_is_closed(scene, sky):
+    with relumine.Relighter(scene) as relighter:
+        relighter.set_environment(sky)
+        radiance = relighter.radiance
+    assert repr(relighter) == "<relumine.Relighter: closed>"
+    assert np.isfinite(radiance).all()
+    with pytest.raises(RuntimeError, match="closed"):
+        relighter.set_environment(sky)
+
+
+def test_order_of_calls(scene):
+    relighter = relumine.Relighter(scene)
+    for call in (lambda: relighter.radiance, relighter.verify, relighter.picture):
+        with pytest.raises(RuntimeError, match="lit"):
+            call()
+    with pytest.raises(ValueError, match="environment"):
+        relighter.set_layers([])
+    with pytest.raises(ValueError, match="precomputed"):
+        mesh = relumine.Mesh(scene.vertices, scene.triangles)
+        relumine.Relighter(relumine.Scene.unclustered(mesh)).set_environment(
+            relumine.Environment(np.ones((6, 2, 2, 3)))
+        )
