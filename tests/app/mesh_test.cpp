@@ -57,9 +57,9 @@ TEST_F(MeshCommand, RepairMendsOnce) {
     const nlohmann::json mended = info("mended.ply")["diagnosis"];
     EXPECT_EQ(mended["closed"], true);
     EXPECT_EQ(mended["repeated_sides"], 0);
-    EXPECT_NE(succeed({"mesh", "repair", "mended.ply", "-o", "again.ply"})
-                  .out.find("nothing to repair"),
-              std::string::npos);
+    EXPECT_NE(
+        succeed({"mesh", "repair", "mended.ply", "-o", "again.ply"}).out.find("nothing to repair"),
+        std::string::npos);
     EXPECT_EQ(info("again.ply")["triangles"], 12);
     EXPECT_EQ(
         succeed({"mesh", "repair", "open.obj", "-o", "whole.obj", "--fill-holes", "4", "--json"})
@@ -109,18 +109,16 @@ TEST_F(MeshCommand, CreasesAndSimpler) {
 
 TEST_F(MeshCommand, RefinedFloorsHaveShadows) {
     const auto surface_error = [&](const std::vector<std::string>& more) {
-        std::vector<std::string> arguments = {"precompute",  "box.obj",     "-o",
-                                              "scene.prt",   "--crease",    "40",
-                                              "--floor",     "2",           "--tolerance",
-                                              "0.03",        "--min-depth", "2",
-                                              "--face-resolution", "64",    "--json"};
+        std::vector<std::string> arguments = {
+            "precompute",        "box.obj", "-o",          "scene.prt", "--crease",    "40",
+            "--floor",           "2",       "--tolerance", "0.03",      "--min-depth", "2",
+            "--face-resolution", "64",      "--json"};
         arguments.insert(arguments.end(), more.begin(), more.end());
         const nlohmann::json report = succeed(arguments).json();
         EXPECT_EQ(report.contains("refine"), !more.empty());
-        const nlohmann::json verified =
-            succeed({"verify", "scene.prt", "lamp.hdr", "--samples", "20", "--surface", "500",
-                     "--json"})
-                .json();
+        const nlohmann::json verified = succeed({"verify", "scene.prt", "lamp.hdr", "--samples",
+                                                 "20", "--surface", "500", "--json"})
+                                            .json();
         EXPECT_EQ(verified["surface"]["points"], 500);
         return verified["surface"]["relative_l2"].get<double>();
     };
@@ -168,7 +166,8 @@ TEST_F(MeshCommand, SimplifiedReceiversHaveTheShadowsOfAll) {
 }
 
 TEST_F(MeshCommand, WindingThatMakesBlackIsWarnedOf) {
-    const Result sound = succeed({"precompute", "box.obj", "-o", "a.prt", "--face-resolution", "8"});
+    const Result sound =
+        succeed({"precompute", "box.obj", "-o", "a.prt", "--face-resolution", "8"});
     EXPECT_EQ(sound.err.find("wound"), std::string::npos) << sound.described();
     std::string inside_out = box_obj();
     inside_out.replace(inside_out.find("f 5 8 7 6"), 9, "f 6 7 8 5");
@@ -182,8 +181,9 @@ TEST_F(MeshCommand, WindingThatMakesBlackIsWarnedOf) {
 TEST_F(MeshCommand, LimitsThatContradictEachOtherAreRefused) {
     misuse({"precompute", "box.obj", "-o", "a.prt", "--max-vertices", "100"}, "--max-vertices");
     misuse({"precompute", "box.obj", "-o", "a.prt", "--curved"}, "--curved");
-    misuse({"precompute", "box.obj", "-o", "a.prt", "--refine", "--max-edge", "1", "--min-edge", "2"},
-           "--min-edge");
+    misuse(
+        {"precompute", "box.obj", "-o", "a.prt", "--refine", "--max-edge", "1", "--min-edge", "2"},
+        "--min-edge");
     misuse({"precompute", "box.obj", "-o", "a.prt", "--refine", "2"}, "--refine");
     misuse({"precompute", "box.obj", "-o", "a.prt", "--refine", "--view", "auto", "--receivers",
             "pixels:8x8"},

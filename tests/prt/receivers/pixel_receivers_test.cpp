@@ -58,8 +58,8 @@ TEST(PixelReceivers, CoverASpheresSilhouette) {
 TEST(PixelReceivers, FacetsDoNotShadeACoarseSphereWhereLightGrazes) {
     const mesh::TriangleMesh sphere = scenes::icosphere(2, 1.0f, glm::vec3(0.0f));
     const RayScene rays(sphere);
-    const PixelReceivers pixels = pixel_receivers(
-        sphere, rays, {.camera = {.eye = {0, 0, 6}}, .width = 60, .height = 60});
+    const PixelReceivers pixels =
+        pixel_receivers(sphere, rays, {.camera = {.eye = {0, 0, 6}}, .width = 60, .height = 60});
     const glm::vec3 light = glm::normalize(glm::vec3(1.0f, 0.13f, 0.07f));
     std::size_t num_grazed = 0, num_shaded = 0, num_shaded_flat = 0;
     for (std::size_t i = 0; i < pixels.receivers.size(); ++i) {
