@@ -356,6 +356,14 @@ Option Option::excludes(const std::string& name) {
     return *this;
 }
 
+std::vector<std::string> Command::given_options() const {
+    std::vector<std::string> names;
+    for (const auto& option : data_->options)
+        if (option->option->count() > 0)
+            names.push_back(option->option->get_name());
+    return names;
+}
+
 bool Option::is_given() const {
     return data_ != nullptr && data_->option->count() > 0;
 }

@@ -100,6 +100,9 @@ public:
     /// The command's work, in place of an earlier one.
     void on_run(std::function<void()> work);
 
+    /// The names of the options and arguments that the line that was read has: "--output", "MESH".
+    [[nodiscard]] std::vector<std::string> given_options() const;
+
     /// The command of that name below this one. Throws std::out_of_range where there is none.
     [[nodiscard]] Command command(const std::string& name) const;
 

@@ -12,6 +12,8 @@
 namespace relumine::app {
 
 void add_precompute(Command& program, Session& session);
+void add_plan(Command& program, Session& session);
+void add_join(Command& program, Session& session);
 void add_relight(Command& program, Session& session);
 void add_animate(Command& program, Session& session);
 void add_edit(Command& program, Session& session);

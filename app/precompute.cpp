@@ -15,6 +15,7 @@
 #include "app/commands.h"
 #include "app/memory_option.h"
 #include "app/output_options.h"
+#include "app/plan_option.h"
 #include "app/receiver_options.h"
 #include "app/refine_options.h"
 #include "app/surface_options.h"
@@ -32,6 +33,9 @@ struct Options {
     /// Of the mesh; empty: as is the custom of its format
     std::string up;
     std::string engine = "beam";
+    /// `relumine plan`: choose the clusters and leave the rest to the parts.
+    bool is_plan = false;
+    PlanOption parts;
     MeshOptions mesh_options;
     /// 0: all vertices stay
     std::uint32_t simplify = 0;
@@ -222,10 +226,37 @@ void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
             path, num_black, mesh.num_triangles(), first));
 }
 
-void run(const Options& options, Session& session) {
+/// What there is to say of a plan.
+void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch,
+                Session& session) {
+    PrecomputeReport facts;
+    plan(std::move(mesh), work, &facts);
+    session.end_progress();
+    const double seconds = watch.total();
+    session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
+                            work.output.string(), facts.num_receivers, facts.clusters.num_clusters,
+                            seconds, static_cast<double>(facts.file_bytes) * 1e-6));
+    session.report({{"vertices", facts.num_vertices},
+                    {"receivers", facts.num_receivers},
+                    {"triangles", facts.num_triangles},
+                    {"clusters", facts.clusters.num_clusters},
+                    {"rays", facts.clusters.num_rays},
+                    {"bias", facts.bias},
+                    {"peak_bytes", peak_bytes()},
+                    {"file_bytes", facts.file_bytes},
+                    {"seconds", seconds}});
+}
+
+void run(const Options& options, const Command& command, Session& session) {
+    if (options.parts.is_given())
+        return options.parts.run(command, options.output,
+                                 options.engine == "beam" ? Engine::Beams : Engine::Embree,
+                                 session);
+    if (options.mesh.empty())
+        throw UsageError("MESH", "expected a mesh, got none");
     Stopwatch watch;
     // Found out now, not after a minute of work.
-    require_extension("--output", options.output, {".prt"});
+    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
     check_output(options.output, {options.mesh});
     options.receivers.check();
     options.surfaces.check();
@@ -262,6 +293,8 @@ void run(const Options& options, Session& session) {
         mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
 
     const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
+    if (options.is_plan)
+        return write_plan(std::move(mesh), work, watch, session);
     PrecomputeReport facts;
     const Scene scene = [&] {
         const Patience for_checkpoints;
@@ -291,18 +324,8 @@ void run(const Options& options, Session& session) {
     session.report(report);
 }
 
-} // namespace
-
-void add_precompute(Command& program, Session& session) {
-    Command command =
-        program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
-    auto options = std::make_shared<Options>();
-    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
-        .file()
-        .required();
-    command.add_option("-o,--output", options->output, "the scene file to write, .prt")
-        .file()
-        .required();
+/// Everything that decides which light reaches what.
+void add_work_options(Command& command, const std::shared_ptr<Options>& options) {
     command
         .add_option(
             "--floor",
@@ -357,29 +380,6 @@ void add_precompute(Command& program, Session& session) {
         .between(0.0, 1e6)
         .excludes("--tolerance");
     command
-        .add_option(
-            "--bounces",
-            [options](const std::string& text) {
-                const float standard = prt::BounceOptions{}.tolerance;
-                const std::optional<double> tolerance =
-                    text.empty() ? std::optional<double>(standard) : parse_number(text);
-                if (!tolerance || !(*tolerance >= 1e-4 && *tolerance <= 1.0))
-                    throw UsageError(
-                        "--bounces",
-                        fmt::format("expected a standard error of 0.0001 to 1, got '{0}'; the mesh "
-                                    "goes first: relumine precompute {0} --bounces",
-                                    text));
-                options->precompute.bounce_tolerance = static_cast<float>(*tolerance);
-            },
-            "light goes on from surface to surface, between vertices; the standard error of one "
-            "bounce under a sun or a white sky of radiance 1, 0.01 when it is not given")
-        .value_is_optional()
-        .type_name("[ERROR]");
-    command
-        .add_flag("--two-sided", options->precompute.two_sided_bounces,
-                  "surfaces send bounced light from their backs, too")
-        .needs("--bounces");
-    command
         .add_option("--min-depth", options->precompute.min_level,
                     "every cell is split at least this often")
         .between(0, prt::MaxLevel)
@@ -402,10 +402,70 @@ void add_precompute(Command& program, Session& session) {
         .show_default();
     options->receivers.add_to(command);
     options->surfaces.add_to(command);
-    options->checkpoint.add_to(command);
     options->memory.add_to(command);
+}
+
+void add_bounce_options(Command& command, const std::shared_ptr<Options>& options) {
+    command
+        .add_option(
+            "--bounces",
+            [options](const std::string& text) {
+                const float standard = prt::BounceOptions{}.tolerance;
+                const std::optional<double> tolerance =
+                    text.empty() ? std::optional<double>(standard) : parse_number(text);
+                if (!tolerance || !(*tolerance >= 1e-4 && *tolerance <= 1.0))
+                    throw UsageError(
+                        "--bounces",
+                        fmt::format("expected a standard error of 0.0001 to 1, got '{0}'; the mesh "
+                                    "goes first: relumine precompute {0} --bounces",
+                                    text));
+                options->precompute.bounce_tolerance = static_cast<float>(*tolerance);
+            },
+            "light goes on from surface to surface, between vertices; the standard error of one "
+            "bounce under a sun or a white sky of radiance 1, 0.01 when it is not given")
+        .value_is_optional()
+        .type_name("[ERROR]");
+    command
+        .add_flag("--two-sided", options->precompute.two_sided_bounces,
+                  "surfaces send bounced light from their backs, too")
+        .needs("--bounces");
+}
+
+} // namespace
+
+void add_precompute(Command& program, Session& session) {
+    Command command =
+        program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
+    auto options = std::make_shared<Options>();
+    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl").file();
+    command
+        .add_option("-o,--output", options->output,
+                    "the scene file to write, .prt; with --plan the part")
+        .file()
+        .required();
+    options->parts.add_to(command);
+    add_work_options(command, options);
+    add_bounce_options(command, options);
+    options->checkpoint.add_to(command);
     session.add_common_options(command);
-    command.on_run([options, &session] { run(*options, session); });
+    command.on_run([options, command, &session] { run(*options, command, session); });
+}
+
+void add_plan(Command& program, Session& session) {
+    Command command = program.add_command(
+        "plan", "plan a precompute in parts, for many machines: MESH -> SCENE.plan");
+    auto options = std::make_shared<Options>();
+    options->is_plan = true;
+    options->precompute.checkpoint_seconds = 0.0;
+    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
+        .file()
+        .required();
+    command.add_option("-o,--output", options->output, "the plan to write, .plan")
+        .file()
+        .required();
+    add_work_options(command, options);
+    session.add_common_options(command);
+    command.on_run([options, command, &session] { run(*options, command, session); });
 }
 
 } // namespace relumine::app

@@ -8,6 +8,8 @@ namespace relumine::app {
 void add_commands(CommandLine& line, Session& session) {
     Command program = line.root();
     add_precompute(program, session);
+    add_plan(program, session);
+    add_join(program, session);
     add_relight(program, session);
     add_animate(program, session);
     add_edit(program, session);

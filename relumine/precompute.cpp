@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "prt/parts/part_file.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
@@ -44,6 +45,14 @@ public:
                        .on_progress = progress(Stage::Clusters)};
     }
 
+    /// Chooses the clusters and leaves the counts to the parts.
+    void run_plan() {
+        is_plan_ = true;
+        check_options();
+        compute();
+        report_.file_bytes = prt::save_plan(options_.output, scene_);
+    }
+
     Scene run() {
         check_options();
         try {
@@ -68,9 +77,12 @@ private:
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance > 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces > 0, got {}",
                                                     *options_.bounce_tolerance));
-        if (!options_.output.empty() && options_.output.extension() != ".prt")
-            throw std::invalid_argument(
-                fmt::format("{}: expected a name that ends in .prt", options_.output.string()));
+        const char* const extension = is_plan_ ? ".plan" : ".prt";
+        if (!options_.output.empty() && options_.output.extension() != extension)
+            throw std::invalid_argument(fmt::format("{}: expected a name that ends in {}",
+                                                    options_.output.string(), extension));
+        if (is_plan_ && options_.bounce_tolerance)
+            throw std::invalid_argument("expected a plan without bounces, which have no parts yet");
         if (options_.output.empty() && options_.resume)
             throw std::invalid_argument("expected an output to resume the work of, got none");
         if (!(options_.checkpoint_seconds >= 0.0))
@@ -95,6 +107,9 @@ private:
         set_surfaces();
         poll();
         const bool has_highlights = prt::has_highlights(scene_.receivers);
+        if (is_plan_ && has_highlights)
+            throw std::invalid_argument(
+                prefix_ + "expected a plan without highlights, which have no parts yet");
         open_checkpoint(has_highlights);
         keep_settings();
         try {
@@ -280,7 +295,7 @@ private:
     }
 
     void open_checkpoint(bool has_highlights) {
-        const bool is_wanted = options_.checkpoint_seconds > 0.0 || options_.resume;
+        const bool is_wanted = !is_plan_ && (options_.checkpoint_seconds > 0.0 || options_.resume);
         if (options_.output.empty() || !is_wanted)
             return;
         constexpr double Never = 1e9;
@@ -326,7 +341,9 @@ private:
                              megabytes(report_.memory->peak_bytes), report_.memory->num_clusters));
         try {
             scene_.transfer =
-                prt::precompute(scene_.receivers, blockers, clustering_, &report_.clusters);
+                is_plan_
+                    ? prt::plan_clusters(scene_.receivers, blockers, clustering_, &report_.clusters)
+                    : prt::precompute(scene_.receivers, blockers, clustering_, &report_.clusters);
         } catch (const prt::TooManyClusters& error) {
             throw limit_.stopped(error);
         }
@@ -410,6 +427,7 @@ private:
     }
 
     const PrecomputeOptions& options_;
+    bool is_plan_ = false;
     PrecomputeReport& report_;
     std::string prefix_;
     MemoryLimit limit_;
@@ -425,6 +443,40 @@ Scene precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* 
     PrecomputeReport& facts = report != nullptr ? *report : local;
     facts = {};
     return Precompute(std::move(mesh), options, facts).run();
+}
+
+void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
+    PrecomputeReport local;
+    PrecomputeReport& facts = report != nullptr ? *report : local;
+    facts = {};
+    if (options.output.empty())
+        throw std::invalid_argument("expected a file for the plan, got none");
+    Precompute(std::move(mesh), options, facts).run_plan();
+}
+
+void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics) {
+    const prt::Plan plan = prt::load_plan(options.plan);
+    const prt::Scene& scene = plan.scene;
+    const mesh::TriangleMesh& triangles = scene.blockers ? *scene.blockers : scene.mesh;
+    const prt::RayScene rays(triangles);
+    std::optional<prt::BeamScene> beams;
+    if (options.engine == Engine::Beams)
+        beams.emplace(triangles, rays);
+    const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
+    const prt::VisibleCounts counts =
+        prt::part_counts(scene.receivers, scene.transfer, blockers,
+                         {.face_resolution = scene.settings.face_resolution,
+                          .bias = scene.settings.bias,
+                          .stop = options.stop,
+                          .on_progress = options.on_progress},
+                         options.part, statistics);
+    beams.reset();
+    prt::save_part(options.output, plan, options.part, counts);
+}
+
+std::uint64_t join(std::span<const std::filesystem::path> parts,
+                   const std::filesystem::path& output) {
+    return prt::save_scene(output, prt::join_parts(parts));
 }
 
 prt::SurfaceOverride everywhere(const prt::Surface& surface) {

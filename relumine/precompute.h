@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <stop_token>
 #include <string>
@@ -15,6 +16,7 @@
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/memory_estimate.h"
+#include "prt/parts/parts.h"
 #include "prt/precompute.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
@@ -209,6 +211,45 @@ struct MemoryLimitExceeded : std::runtime_error {
 /// Threads: parallel inside; the result is the same bit by bit for any number of threads.
 [[nodiscard]] Scene precompute(Mesh mesh, const PrecomputeOptions& options = {},
                                PrecomputeReport* report = nullptr);
+
+/// Plans a precompute that is done in parts, by any number of processes on any number of machines:
+/// chooses the clusters from a sample of the receivers and writes the plan, a file that ends in
+/// .plan, to options.output. There are no checkpoints.
+///
+/// Cost:    a sixteenth of a precompute where receivers are many; see prt::plan_clusters().
+/// Throws:  as precompute() does; std::invalid_argument for highlights and bounces, which have no
+///          parts.
+void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report = nullptr);
+
+/// One part of a plan.
+struct PartOptions {
+    /// A file that plan() wrote
+    std::filesystem::path plan = {};
+    prt::Part part = {};
+    /// The file of the part to write
+    std::filesystem::path output = {};
+    Engine engine = Engine::Beams;
+    /// Polled a few times a second
+    std::stop_token stop = {};
+    /// Estimated fraction in [0, 1], never falling; one call at a time
+    std::function<void(double)> on_progress = {};
+};
+
+/// Does one part of a plan and writes its file. Parts know nothing of each other: they run in any
+/// order, anywhere, and again if one is lost.
+///
+/// Memory:  the mesh and all receivers, and the part's share of the counts twice.
+/// Throws:  std::runtime_error "path: expected X, got Y"; std::invalid_argument for a part that is
+///          none; Cancelled.
+void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics = nullptr);
+
+/// Puts all parts of a plan together, in any order, and writes the scene. The file is the same byte
+/// by byte for any number of parts. Returns its size in bytes.
+///
+/// Throws:  std::runtime_error that names the part that is missing, given twice, damaged or of
+///          another plan.
+std::uint64_t join(std::span<const std::filesystem::path> parts,
+                   const std::filesystem::path& output);
 
 /// One surface for the whole mesh: PrecomputeOptions{.surface = everywhere({.albedo = ...})}.
 [[nodiscard]] prt::SurfaceOverride everywhere(const prt::Surface& surface);

@@ -52,10 +52,6 @@ std::uint64_t bytes_of(const LeafColumn& column, double scale) {
     return OverheadOfCluster + static_cast<std::uint64_t>(scale * static_cast<double>(bytes));
 }
 
-double part_of_sphere(const Cell& cell) {
-    return cell.size() * cell.size() / cubemap::NumFaces;
-}
-
 /// Returns a key for the depth-first order of cells of any level: by face, then along the Z curve.
 std::uint64_t depth_first_key(const Cell& cell) {
     std::uint64_t key = static_cast<std::uint64_t>(cell.face);
@@ -94,7 +90,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
     : options_(options), context_(context), order_(spatial_order(receivers)),
       progress_(options.stop, options.on_progress),
       max_level_(texel_level(options.face_resolution)),
-      allowed_(allowed_squared_distance(options, receivers.size())) {
+      allowed_(allowed_squared_distance(options, receivers.size())), estimate_(max_level_) {
     ordered_normals_.reserve(order_.size());
     origins_.reserve(order_.size());
     for (const std::uint32_t receiver : order_) {
@@ -148,7 +144,6 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
 }
 
 void Clustering::add_cluster(Cluster&& cluster) {
-    settled_ += part_of_sphere(cluster.cell);
     column_bytes_ += bytes_of(cluster.column, context_.column_scale);
     deepest_ = std::max<std::uint32_t>(deepest_, cluster.cell.level);
     clusters_.push_back(std::move(cluster));
@@ -191,13 +186,21 @@ void Clustering::take_batch() {
                       });
 }
 
+/// Sets the part of the progress that tracing the batch takes: time, not cells.
+void Clustering::start_progress() {
+    WorkEstimate::Counts cells{};
+    for (std::uint32_t level = 0; level <= max_level_; ++level)
+        cells[level] = pending_.size(level);
+    const std::uint32_t level = batch_.front().level;
+    cells[level] += batch_.size();
+    const double done = estimate_.seconds();
+    const double all = done + estimate_.seconds_of(cells);
+    const double batch = static_cast<double>(batch_.size()) * estimate_.seconds_of_cell(level);
+    progress_.start_stage(done / all, (done + batch) / all);
+}
+
 void Clustering::trace_batch() {
-    double area = 0.0;
-    for (const Cell& cell : batch_)
-        area += part_of_sphere(cell);
-    // Most of the time goes into the deepest levels. So a batch's share of the progress is the part
-    // of the sphere that it may settle.
-    progress_.start_stage(settled_, settled_ + 0.5 * area);
+    start_progress();
     TraceSteps steps;
     if (options_.checkpoint != nullptr) {
         steps.samples_per_step =
@@ -297,8 +300,15 @@ void Clustering::work() {
     while (!batch_.empty() || !pending_.empty()) {
         if (batch_.empty())
             take_batch();
+        const auto start = std::chrono::steady_clock::now();
+        const std::uint32_t level = batch_.front().level;
+        const std::size_t num_cells = batch_.size();
+        const std::size_t num_clusters = clusters_.size();
         trace_batch();
         decide_batch();
+        estimate_.add(
+            level, num_cells, num_cells - (clusters_.size() - num_clusters),
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
             save_checkpoint();
     }

@@ -15,6 +15,7 @@
 #include "prt/clusters/clustering_state.h"
 #include "prt/clusters/pending_cells.h"
 #include "prt/clusters/visibility_planes.h"
+#include "prt/clusters/work_estimate.h"
 #include "prt/precompute.h"
 #include "prt/precompute_context.h"
 #include "prt/progress.h"
@@ -48,6 +49,7 @@ private:
     void resume(const Checkpoint::Saved& saved);
     void work();
     void take_batch();
+    void start_progress();
     void trace_batch();
     void decide_batch();
     void save_checkpoint();
@@ -77,8 +79,8 @@ private:
     std::vector<Cell> batch_;
     PendingCells pending_;
     std::vector<Cluster> clusters_;
-    /// Fraction of the cube's surface that is clustered.
-    double settled_ = 0.0;
+    /// For the progress
+    WorkEstimate estimate_;
     /// Clusters in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t column_bytes_ = 0;

@@ -22,6 +22,7 @@ public:
 
     [[nodiscard]] bool empty() const { return size_ == 0; }
     [[nodiscard]] std::size_t size() const { return size_; }
+    [[nodiscard]] std::size_t size(std::uint32_t level) const { return levels_[level].size(); }
     void push(const Cell& cell);
 
     /// Takes cells of one level from the front of its queue: at least one, and more while

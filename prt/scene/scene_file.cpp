@@ -58,14 +58,21 @@ public:
     SceneReader(const std::filesystem::path& path, Sections&& sections, std::uint32_t version)
         : reader_(path, std::move(sections)), version_(version) {}
 
-    Scene scene() const {
+    /// A plan has no counts.
+    Scene scene(bool is_plan) const {
+        if (!is_plan && reader_.has("plan"))
+            throw std::runtime_error(fmt::format(
+                "{}: expected a scene, got {}", reader_.path().string(),
+                reader_.has("part") ? "a part of one" : "a plan of one, which has no light yet"));
         Scene scene;
         scene.mesh = mesh();
         scene.blockers = blockers();
         scene.settings = settings();
         scene.layout = read_layout(reader_);
         scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
-        scene.transfer = transfer(scene.receivers, scene.settings);
+        scene.transfer = clusters(scene.receivers);
+        if (!is_plan)
+            read_light(scene.transfer, scene.receivers, scene.settings);
         if (std::holds_alternative<VertexLayout>(scene.layout))
             scene.bounces = read_bounces(reader_, scene.receivers.size());
         check_scene(scene, reader_.path());
@@ -156,7 +163,8 @@ private:
         }
     }
 
-    Transfer transfer(const Receivers& receivers, const SceneSettings& settings) const {
+    /// Returns a transfer without counts.
+    Transfer clusters(const Receivers& receivers) const {
         Transfer transfer;
         const std::size_t num_receivers = receivers.size();
         transfer.quadtree = quadtree();
@@ -168,7 +176,12 @@ private:
             seen[receiver] = true;
             transfer.normals.push_back(receivers.normals[receiver]);
         }
-        transfer.counts.num_receivers = num_receivers;
+        return transfer;
+    }
+
+    void read_light(Transfer& transfer, const Receivers& receivers,
+                    const SceneSettings& settings) const {
+        transfer.counts.num_receivers = receivers.size();
         transfer.counts.num_leaves = transfer.quadtree.num_leaves();
         transfer.counts.visible = reader_.elements<std::uint64_t>("visible");
         transfer.counts.mixed = reader_.elements<std::uint64_t>("mixed");
@@ -190,7 +203,6 @@ private:
             transfer.glossy = read_glossy(reader_, transfer.counts.num_blocks());
         }
         set_surfaces(transfer, receivers);
-        return transfer;
     }
 
     SectionReader reader_;
@@ -199,7 +211,7 @@ private:
 
 } // namespace
 
-std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
+Sections sections_without_light(const std::filesystem::path& path, const Scene& scene) {
     const bool on_vertices = std::holds_alternative<VertexLayout>(scene.layout);
     if (on_vertices && scene.receivers.size() != 0 &&
         scene.receivers.size() != scene.mesh.num_vertices())
@@ -216,7 +228,6 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
                         path.string(), num_receivers, scene.mesh.num_vertices(),
                         scene.transfer.num_receivers(), scene.mesh.normals.size()));
     check_scene(scene, path);
-    const VisibleCounts& counts = scene.transfer.counts;
     Sections sections;
     sections["settings"] = settings_json(scene.settings);
     sections["positions"] = bytes_of(scene.mesh.positions);
@@ -235,16 +246,25 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
     add_receiver_sections(sections, scene.receivers, scene.layout);
     sections["order"] = bytes_of(scene.transfer.order);
     sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
+    return sections;
+}
+
+void add_counts(Sections& sections, const VisibleCounts& counts) {
     sections["visible"] = bytes_of(counts.visible);
     sections["mixed"] = bytes_of(counts.mixed);
     sections["counts"] = bytes_of(counts.counts);
+}
+
+std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
+    Sections sections = sections_without_light(path, scene);
+    add_counts(sections, scene.transfer.counts);
     if (scene.transfer.glossy)
         add_glossy_sections(sections, *scene.transfer.glossy);
     if (scene.bounces) {
-        if (!on_vertices)
+        if (!std::holds_alternative<VertexLayout>(scene.layout))
             throw std::invalid_argument(
                 fmt::format("{}: expected bounces of vertices only", path.string()));
-        require_bounces(*scene.bounces, num_receivers);
+        require_bounces(*scene.bounces, scene.transfer.num_receivers());
         add_bounce_sections(sections, *scene.bounces);
     }
     return write_sections(path, sections);
@@ -257,7 +277,11 @@ Scene load_scene(const std::filesystem::path& path) {
 }
 
 Scene scene_of(const std::filesystem::path& path, Sections&& sections, std::uint32_t version) {
-    return SceneReader(path, std::move(sections), version).scene();
+    return SceneReader(path, std::move(sections), version).scene(false);
+}
+
+Scene plan_of(const std::filesystem::path& path, Sections&& sections) {
+    return SceneReader(path, std::move(sections), SceneFileVersion).scene(true);
 }
 
 std::uint64_t file_hash(const std::filesystem::path& path) {

@@ -16,4 +16,16 @@ namespace relumine::prt {
 [[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections,
                              std::uint32_t version = SceneFileVersion);
 
+/// Does the same for a scene whose counts are missing, as sections_without_light() makes it.
+[[nodiscard]] Scene plan_of(const std::filesystem::path& path, Sections&& sections);
+
+/// Returns the sections of a scene without counts, highlights and bounces.
+///
+/// Throws: as save_scene() does.
+[[nodiscard]] Sections sections_without_light(const std::filesystem::path& path,
+                                              const Scene& scene);
+
+/// Adds the sections of the counts.
+void add_counts(Sections& sections, const VisibleCounts& counts);
+
 } // namespace relumine::prt

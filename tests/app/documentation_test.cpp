@@ -57,9 +57,9 @@ protected:
     }
 
     [[nodiscard]] std::vector<std::string> commands() const {
-        return {"precompute", "relight",    "animate",  "edit",  "verify",
-                "lights",     "info",       "generate", "env",   "mesh",
-                "view",       "completion", "man",      "serve", "help"};
+        return {"precompute", "plan",   "join",  "relight",  "animate", "edit",
+                "verify",     "lights", "info",  "generate", "env",     "mesh",     "view",
+                "completion", "man",    "serve", "help"};
     }
 };
 
