@@ -11,7 +11,8 @@ pictures=${3:-}
 mkdir -p "$folder"
 cd "$folder"
 
-field() { sed -n "s/^ *\"$2\": \([^,]*\),\{0,1\}$/\1/p" "$1" | head -n 1; }
+# Of the report itself, not of the objects in it.
+field() { sed -n "s/^  \"$2\": \([^,]*\),\{0,1\}$/\1/p" "$1" | head -n 1; }
 
 "$relumine" generate colonnade -o . --vertices 5000 -q
 for environment in sun_sky soft_boxes; do

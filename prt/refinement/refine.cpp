@@ -84,11 +84,20 @@ private:
                      1.0 - std::exp2(-0.25 * static_cast<double>(report_.num_rounds))));
     }
 
-    /// Of edges too long, the longest first where there is a limit.
+    /// Splits edges that are too long, in each round those nearly as long as the longest: so edges
+    /// are even also where the limit of vertices ends the work.
     bool split_long_edges() {
+        constexpr float NearlyAsLong = 0.7f;
+        float longest = 0.0f;
+        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+            if (!split_.is_split(edge))
+                longest = std::max(longest, split_.length(edge));
+        const float least = std::max(*options_.max_edge, NearlyAsLong * longest);
+        if (!(longest > *options_.max_edge))
+            return false;
         std::vector<std::uint32_t> edges;
         for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-            if (!split_.is_split(edge) && split_.length(edge) > *options_.max_edge)
+            if (!split_.is_split(edge) && split_.length(edge) > least)
                 edges.push_back(edge);
         std::stable_sort(edges.begin(), edges.end(), [&](std::uint32_t a, std::uint32_t b) {
             return split_.length(a) > split_.length(b);
