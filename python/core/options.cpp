@@ -234,7 +234,12 @@ PrecomputeOptions precompute_options(const Options& given) {
     }
     result.view = view_of(given);
     given.take("glossy_tolerance", result.glossy_tolerance);
-    given.take("bounces", result.bounce_tolerance);
+    if (const py::object bounces = given.given("bounces"); py::isinstance<py::bool_>(bounces)) {
+        if (bounces.cast<bool>())
+            result.bounce_tolerance = prt::BounceOptions{}.tolerance;
+    } else {
+        given.take("bounces", result.bounce_tolerance);
+    }
     given.take("two_sided", result.two_sided_bounces);
     given.take("max_memory", result.max_memory);
     if (const auto output = given.find<std::string>("output"))

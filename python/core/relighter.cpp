@@ -373,6 +373,13 @@ void bind_relighters(py::module_& module) {
              })
         .def("set_lights", &set_lights)
         .def("bounce", &bounce)
+        .def("bounced",
+             [](Lit& own) {
+                 return owned(quickly(own, [](LitScene& lit) {
+                     const std::span<const glm::vec3> bounced = lit.bounced();
+                     return std::vector<glm::vec3>(bounced.begin(), bounced.end());
+                 }));
+             })
         .def("environment", [](Lit& own) {
             cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return lit.environment(); });
             const auto r = static_cast<py::ssize_t>(map.resolution);
