@@ -64,7 +64,8 @@ std::optional<View> view_of(const Options& given) {
             return View{};
         Options::refuse("view", "'auto' or (eye, target) or (eye, target, fov)", value);
     }
-    const py::tuple parts = py::tuple(value);
+    const py::tuple parts =
+        py::isinstance<py::sequence>(value) ? py::tuple(value) : py::make_tuple();
     if (parts.size() != 2 && parts.size() != 3)
         Options::refuse("view", "'auto' or (eye, target) or (eye, target, fov)", value);
     Camera camera{.eye = vec3_of("view", parts[0]), .target = vec3_of("view", parts[1])};

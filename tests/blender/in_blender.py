@@ -170,6 +170,18 @@ def test():
     up = [(s.matrix_world.to_3x3() @ addon.Vector((0, 0, 1))).z for s in suns]
     assert max(up) > 0.5 > -0.5 > min(up)
 
+    # Blender's own undo.
+    bpy.ops.ed.undo_push(message="before")
+    strength = scene.world.node_tree.nodes["Background"].inputs["Strength"]
+    strength.default_value = 5.0
+    bpy.context.view_layer.update()
+    bpy.ops.ed.undo_push(message="after")
+    close(colors(head), 2 * before, "brighter")
+    bpy.ops.ed.undo()
+    scene, head = bpy.context.scene, bpy.data.objects["Suzanne"]
+    assert head["relumine_prt"] == os.path.abspath("scene.prt")
+    close(colors(head), before, "undone")
+
     # Errors are told, not raised.
     scene.world.node_tree.nodes["Mapping"].inputs["Rotation"].default_value[0] = 1.0
     bpy.context.view_layer.update()
