@@ -92,8 +92,9 @@ glm::dmat3 world_from_image(cubemap::Layout layout, const EnvironmentOptions& op
 
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                              const EnvironmentOptions& options) {
-    const std::uint32_t resolution =
-        options.face_resolution != 0 ? options.face_resolution : cubemap::natural_resolution(image);
+    const std::uint32_t resolution = options.face_resolution != 0
+                                         ? options.face_resolution
+                                         : cubemap::automatic_resolution(image);
     return cubemap::turned(cubemap::resample(image, resolution),
                            world_from_image(image.layout, options));
 }
