@@ -1,7 +1,8 @@
 """Builds the compiled part of the Python package with CMake. The packages of packages.txt and
-packages-python.txt must be there."""
+packages-python.txt must be there. The environment variable CMAKE_ARGS may hold more options."""
 
 import os
+import shlex
 import subprocess
 import sys
 
@@ -24,7 +25,8 @@ class BuildWithCMake(build_ext):
             ),
         }
         definitions = [f"-D{name}={value}" for name, value in options.items()]
-        subprocess.check_call(["cmake", "-S", source, "-B", folder, "-G", "Ninja", *definitions])
+        subprocess.check_call(["cmake", "-S", source, "-B", folder, "-G", "Ninja", *definitions,
+                               *shlex.split(os.environ.get("CMAKE_ARGS", ""))])  # fmt: skip
         subprocess.check_call(["cmake", "--build", folder, "--target", "relumine_python"])
 
 

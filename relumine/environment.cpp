@@ -90,12 +90,16 @@ glm::dmat3 world_from_image(cubemap::Layout layout, const EnvironmentOptions& op
            convention_of(options).world_from(layout);
 }
 
+cubemap::CubeMap unturned_cube_map_of(const cubemap::EnvironmentImage& image,
+                                      const EnvironmentOptions& options) {
+    return cubemap::resample(image, options.face_resolution != 0
+                                        ? options.face_resolution
+                                        : cubemap::automatic_resolution(image));
+}
+
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                              const EnvironmentOptions& options) {
-    const std::uint32_t resolution = options.face_resolution != 0
-                                         ? options.face_resolution
-                                         : cubemap::automatic_resolution(image);
-    return cubemap::turned(cubemap::resample(image, resolution),
+    return cubemap::turned(unturned_cube_map_of(image, options),
                            world_from_image(image.layout, options));
 }
 
@@ -121,8 +125,20 @@ Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> imag
                            const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    Environment result{.map = cube_map_of(*image, options),
-                       .file = {.image = image, .turn = world_from_image(image->layout, options)},
+    const cubemap::CubeMap resampled = unturned_cube_map_of(*image, options);
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    Environment result = environment_of(std::move(image), resampled, options);
+    result.seconds_resample += seconds;
+    return result;
+}
+
+Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                           const cubemap::CubeMap& resampled, const EnvironmentOptions& options) {
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point start = Clock::now();
+    const glm::dmat3 turn = world_from_image(image->layout, options);
+    Environment result{.map = cubemap::turned(resampled, turn),
+                       .file = {.image = image, .turn = turn},
                        .assumptions = image->assumptions};
     result.num_fixed_pixels = image->fixed ? image->bad_pixels.count() : 0;
     result.warnings = warnings_about(*image, cubemap::light_from_below(result.map));

@@ -75,7 +75,11 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
 [[nodiscard]] glm::dmat3 world_from_image(cubemap::Layout layout,
                                           const EnvironmentOptions& options = {});
 
-/// Resamples an image to a cube map and turns it. Keeps the energy of every pixel.
+/// Resamples an image to a cube map. Keeps the energy of every pixel.
+[[nodiscard]] cubemap::CubeMap unturned_cube_map_of(const cubemap::EnvironmentImage& image,
+                                                    const EnvironmentOptions& options = {});
+
+/// Resamples an image to a cube map and turns it.
 [[nodiscard]] cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,
                                            const EnvironmentOptions& options = {});
 
@@ -89,6 +93,11 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
 
 /// Resamples and turns an image. Only load_environment() fills `seconds_load`.
 [[nodiscard]] Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                         const EnvironmentOptions& options = {});
+
+/// The same for a picture that turns: `resampled` is the image as a cube map that was not turned.
+[[nodiscard]] Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+                                         const cubemap::CubeMap& resampled,
                                          const EnvironmentOptions& options = {});
 
 /// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.

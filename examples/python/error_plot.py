@@ -11,11 +11,13 @@ import relumine
 
 mesh_path, environment_path, output = sys.argv[1:4]
 samples = int(sys.argv[4]) if len(sys.argv) > 4 else 500
-mesh = relumine.Mesh.load(mesh_path)
+mesh = relumine.Mesh.load(mesh_path, floor=49)
 environment = relumine.Environment.load(environment_path)
 tolerances, errors, clusters = [0.16, 0.08, 0.04, 0.02], [], []
 for tolerance in tolerances:
-    relighter = relumine.Relighter(relumine.precompute(mesh, tolerance=tolerance))
+    scene = relumine.precompute(mesh, tolerance=tolerance)
+    # Without shadow rays of the sun's own, so that the clusters alone are measured.
+    relighter = relumine.Relighter(scene, clusters_only=True)
     relighter.set_environment(environment)
     errors.append(100 * relighter.verify(samples).relative_l2)
     clusters.append(relighter.scene.num_clusters)

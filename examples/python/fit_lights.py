@@ -1,4 +1,4 @@
-"""Finds the lights of a picture: fit_lights.py SCENE.prt OUT.png
+"""Finds the lights of a picture: fit_lights.py MESH OUT.png
 
 Relighting is linear: a picture is the sum of the pictures of its lights, each times an intensity.
 So the intensities that come nearest to a target picture are one small least-squares problem, solved
@@ -14,7 +14,9 @@ import numpy as np
 import relumine
 
 path, output = sys.argv[1:]
-relighter = relumine.Relighter(relumine.Scene.load(path))
+mesh = relumine.Mesh.load(path, floor=33)
+scene = relumine.precompute(mesh, tolerance=0.05, receivers="pixels:320x240", view="auto")
+relighter = relumine.Relighter(scene, clusters_only=True)  # soft boxes need no shadow rays
 relighter.set_environment(relumine.Environment(np.zeros((6, 64, 64, 3))))
 
 # Twelve soft boxes: two rings and one above.
@@ -33,16 +35,17 @@ def boxes(intensities):
 
 
 def picture():
-    return relighter.picture(size=(320, 240), background="none", albedo=0.6)
+    return relighter.picture(background="none", albedo=0.6)
 
 
 def non_negative_fit(basis, target):
-    """Least squares with x >= 0: lights that came out negative are left out, one by one."""
-    used = list(range(basis.shape[1]))
+    """Least squares with x >= 0: lights that come out negative are left out, one by one."""
+    products, right = basis.T @ basis, basis.T @ target
+    used = list(range(len(right)))
     while True:
-        x = np.linalg.lstsq(basis[:, used], target, rcond=None)[0]
+        x = np.linalg.solve(products[np.ix_(used, used)], right[used])
         if not used or x.min() >= 0:
-            result = np.zeros(basis.shape[1])
+            result = np.zeros(len(right))
             result[used] = x
             return result
         del used[int(np.argmin(x))]

@@ -70,9 +70,27 @@ EnvironmentPointer turned_anew(const EnvironmentHandle& own, const py::dict& giv
     turned.from = own.from;
     turned.options.layout = own.options.layout;
     turned.options.fix_bad_pixels = own.options.fix_bad_pixels;
-    return in_background(py::none(), [image = own.made.file.image, turned](const Reins&) {
-        return made_of(image, turned);
-    });
+    return in_background(py::none(),
+                         [image = own.made.file.image, resampled = own.resampled,
+                          is_same = turned.options.face_resolution == own.made.map.resolution,
+                          turned](const Reins&) {
+                             if (!is_same)
+                                 return made_of(image, turned);
+                             std::shared_ptr<const cubemap::CubeMap> map;
+                             {
+                                 const std::lock_guard lock(resampled->mutex);
+                                 if (!resampled->map)
+                                     resampled->map = std::make_shared<const cubemap::CubeMap>(
+                                         unturned_cube_map_of(*image, turned.get()));
+                                 map = resampled->map;
+                             }
+                             auto result = std::make_shared<EnvironmentHandle>();
+                             result->made = environment_of(image, *map, turned.get());
+                             result->resampled = resampled;
+                             result->from = turned.from;
+                             result->options = turned.options;
+                             return result;
+                         });
 }
 
 /// `env convert`.

@@ -64,7 +64,8 @@ std::optional<View> view_of(const Options& given) {
             return View{};
         Options::refuse("view", "'auto' or (eye, target) or (eye, target, fov)", value);
     }
-    const py::tuple parts = py::tuple(value);
+    const py::tuple parts =
+        py::isinstance<py::sequence>(value) ? py::tuple(value) : py::make_tuple();
     if (parts.size() != 2 && parts.size() != 3)
         Options::refuse("view", "'auto' or (eye, target) or (eye, target, fov)", value);
     Camera camera{.eye = vec3_of("view", parts[0]), .target = vec3_of("view", parts[1])};
@@ -234,7 +235,12 @@ PrecomputeOptions precompute_options(const Options& given) {
     }
     result.view = view_of(given);
     given.take("glossy_tolerance", result.glossy_tolerance);
-    given.take("bounces", result.bounce_tolerance);
+    if (const py::object bounces = given.given("bounces"); py::isinstance<py::bool_>(bounces)) {
+        if (bounces.cast<bool>())
+            result.bounce_tolerance = prt::BounceOptions{}.tolerance;
+    } else {
+        given.take("bounces", result.bounce_tolerance);
+    }
     given.take("two_sided", result.two_sided_bounces);
     given.take("max_memory", result.max_memory);
     if (const auto output = given.find<std::string>("output"))

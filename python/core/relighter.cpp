@@ -55,8 +55,14 @@ public:
     [[nodiscard]] bool is_lit() const { return is_lit_; }
     [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
     [[nodiscard]] const Scene& scene() const { return lit_.scene(); }
-    [[nodiscard]] bool has_layers() const { return has_layers_; }
-    void set_has_layers() { has_layers_ = true; }
+    /// Only an environment has layers and a history. Questions about them must not make an editor,
+    /// which would take the light of a list away.
+    [[nodiscard]] bool has_environment() const { return has_environment_; }
+    [[nodiscard]] bool has_editor() const { return has_editor_; }
+    void set_kind(bool has_environment, bool has_editor) {
+        has_environment_ = has_environment;
+        has_editor_ = has_editor;
+    }
 
     /// Marks the thread that waits for a job.
     class Caller {
@@ -78,7 +84,8 @@ private:
     LitScene lit_;
     std::vector<glm::vec3> radiance_;
     std::atomic<bool> is_lit_ = false;
-    std::atomic<bool> has_layers_ = false;
+    std::atomic<bool> has_environment_ = false;
+    std::atomic<bool> has_editor_ = false;
     std::atomic<std::thread::id> caller_ = std::thread::id();
 };
 
@@ -137,7 +144,9 @@ std::vector<cubemap::LightLayer> checked_layers(const std::string& json) {
 py::tuple set_lights(Lit& own, const py::buffer& directions, const py::buffer& irradiances,
                      const py::buffer& solid_angles) {
     const auto list = lights_of(directions, irradiances, solid_angles);
-    return tuple_of(change(own, [&](LitScene& lit) { return lit.light(list); }));
+    const RelightTimes times = change(own, [&](LitScene& lit) { return lit.light(list); });
+    own.set_kind(false, false);
+    return tuple_of(times);
 }
 
 py::tuple update_region(Lit& own, unsigned face, std::uint32_t x, std::uint32_t y,
@@ -154,7 +163,7 @@ py::tuple update_region(Lit& own, unsigned face, std::uint32_t x, std::uint32_t 
 py::tuple set_layers(Lit& own, const std::string& json) {
     const UpdateReport report =
         change(own, [&](LitScene& lit) { return lit.set_layers(checked_layers(json)); });
-    own.set_has_layers();
+    own.set_kind(true, true);
     return tuple_of(report);
 }
 
@@ -165,7 +174,7 @@ py::tuple set_layer(Lit& own, std::size_t index, const std::string& json) {
 }
 
 std::string layers_text(Lit& own) {
-    if (!own.has_layers())
+    if (!own.has_editor())
         return R"({"layers": []})";
     return quickly(own, [](LitScene& lit) {
         const auto layers = lit.editor().layers();
@@ -180,7 +189,9 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
         .def("layers", &layers_text)
         .def("mark",
              [](Lit& own) {
-                 own.set_has_layers();
+                 if (!own.has_environment())
+                     throw py::value_error("mark: expected an environment, got none");
+                 own.set_kind(true, true);
                  quickly(own, [](LitScene& lit) {
                      lit.editor().mark();
                      return true;
@@ -188,14 +199,18 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
              })
         .def("undo",
              [](Lit& own) {
+                 if (!own.has_editor())
+                     return tuple_of(UpdateReport{});
                  return tuple_of(change(own, [](LitScene& lit) { return lit.editor().undo(); }));
              })
         .def("redo",
              [](Lit& own) {
+                 if (!own.has_editor())
+                     return tuple_of(UpdateReport{});
                  return tuple_of(change(own, [](LitScene& lit) { return lit.editor().redo(); }));
              })
         .def("history", [](Lit& own) {
-            if (!own.has_layers())
+            if (!own.has_editor())
                 return std::pair(false, false);
             return quickly(own, [](LitScene& lit) {
                 return std::pair(lit.editor().can_undo(), lit.editor().can_redo());
@@ -355,14 +370,17 @@ void bind_relighters(py::module_& module) {
                                [](const LitPointer& own) { return view(own, own->radiance()); })
         .def("set_environment",
              [](Lit& own, const EnvironmentHandle& environment) {
-                 return tuple_of(
-                     change(own, [&](LitScene& lit) { return lit.light(environment.made); }));
+                 const RelightTimes times =
+                     change(own, [&](LitScene& lit) { return lit.light(environment.made); });
+                 own.set_kind(true, own.has_editor());
+                 return tuple_of(times);
              })
         .def("update_environment",
              [](Lit& own, const EnvironmentHandle& environment) {
-                 own.set_has_layers();
-                 return tuple_of(
-                     change(own, [&](LitScene& lit) { return lit.update(environment.made); }));
+                 const UpdateReport report =
+                     change(own, [&](LitScene& lit) { return lit.update(environment.made); });
+                 own.set_kind(true, true);
+                 return tuple_of(report);
              })
         .def("set_frame",
              [](Lit& own, const EnvironmentHandle& environment) {
@@ -370,9 +388,17 @@ void bind_relighters(py::module_& module) {
                      lit.light(lit.bin(environment.made.map), environment.made.file);
                      return true;
                  });
+                 own.set_kind(true, own.has_editor());
              })
         .def("set_lights", &set_lights)
         .def("bounce", &bounce)
+        .def("bounced",
+             [](Lit& own) {
+                 return owned(quickly(own, [](LitScene& lit) {
+                     const std::span<const glm::vec3> bounced = lit.bounced();
+                     return std::vector<glm::vec3>(bounced.begin(), bounced.end());
+                 }));
+             })
         .def("environment", [](Lit& own) {
             cubemap::CubeMap map = quickly(own, [](LitScene& lit) { return lit.environment(); });
             const auto r = static_cast<py::ssize_t>(map.resolution);

@@ -61,6 +61,15 @@ py::dict report_of(const PrecomputeReport& report) {
     result["deepest_level"] = report.clusters.deepest_level;
     result["bias"] = report.bias;
     result["seconds_clustering"] = report.clusters.seconds;
+    if (report.bounces) {
+        py::dict bounces;
+        bounces["rays"] = report.bounces->num_rays;
+        bounces["emitters"] = report.bounces->num_emitters;
+        bounces["closure"] = report.bounces->mean_closure;
+        bounces["standard_error"] = report.bounces->rms_error;
+        bounces["seconds"] = report.bounces->seconds;
+        result["bounces"] = std::move(bounces);
+    }
     result["highlights_left_out"] = report.num_highlights_left_out;
     result["file_bytes"] = report.file_bytes;
     return result;

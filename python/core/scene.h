@@ -2,6 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <mutex>
+#include <string>
 
 #include <pybind11/pybind11.h>
 
@@ -9,9 +11,17 @@
 
 namespace relumine::python {
 
+/// An image as a cube map that was not turned, once a turn has asked for it.
+struct Resampled {
+    std::mutex mutex;
+    std::shared_ptr<const cubemap::CubeMap> map;
+};
+
 /// An image and what was made of it. Never changes.
 struct EnvironmentHandle {
     Environment made;
+    /// Shared with all turns of one resolution.
+    std::shared_ptr<Resampled> resampled = std::make_shared<Resampled>();
     /// As the image had it, for turns anew.
     std::string from;
     EnvironmentOptions options;

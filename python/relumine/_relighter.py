@@ -206,10 +206,22 @@ class Relighter:
         bounces  how often light goes on; None: until the rest is below 0.1 %
         albedo   of the surfaces, as in picture()
 
+        The command line adds all bounces where the scene was made for them; here they are asked
+        for. Every change of the light takes them away again.
+
         Raises ValueError for a scene that was made without `bounces`.
         """
         options = {"albedo": albedo, "floor_albedo": floor_albedo}
         return Bounces(*self._core.bounce(bounces, options))
+
+    @property
+    def bounced(self) -> Floats:
+        """(num_receivers, 3) float32: the part of `radiance` that bounce() added. A copy.
+
+        (0, 3) where no bounces were added to the present light.
+        """
+        result: Floats = view(self._core.bounced())
+        return result
 
     # Layers
 

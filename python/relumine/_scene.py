@@ -114,7 +114,7 @@ def precompute(
                (eye, target, fov)
     material   Ggx, Blinn or Lambert in place of the mesh's materials, or {group: material};
                "floor" is the added floor
-    bounces    light goes on from surface to surface: True, or its standard error (0.02)
+    bounces    light goes on from surface to surface: True, or its standard error
     max_memory bytes; work that would take more is refused with MemoryError
     output     the .prt file to write as soon as the scene is ready, with checkpoints on the way
                that `resume` goes on from
@@ -145,7 +145,7 @@ def precompute(
         "view": view,
         "material": _materials(material),
         "glossy_tolerance": glossy_tolerance,
-        "bounces": 0.02 if bounces is True else (bounces or None),
+        "bounces": bounces,
         "two_sided": two_sided,
         "max_memory": max_memory,
         "output": None if output is None else os.fspath(output),

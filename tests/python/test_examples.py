@@ -31,7 +31,7 @@ def files(tmp_path_factory):
     [
         (["relight.py", "boulder.ply", "sky.exr", "out.png"], (640, 480)),
         (["turntable.py", "boulder.prt", "sky.exr", "out.png", "2"], (480, 360)),
-        (["fit_lights.py", "boulder.prt", "out.png"], (640, 240)),
+        (["fit_lights.py", "boulder.ply", "out.png"], (640, 240)),
         (["error_plot.py", "boulder.ply", "sky.exr", "out.png", "20"], (720, 480)),
     ],
     ids=lambda value: value[0] if isinstance(value[0], str) else "",

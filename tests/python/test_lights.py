@@ -54,6 +54,19 @@ def test_many_lights_are_the_environment(relighter, sky):
     assert many < 0.06 < few
 
 
+def test_questions_about_layers_keep_a_light_list(relighter, sky):
+    key = relumine.Layer("key", relumine.Disc((1, 1, 1), 20), relumine.Emit((4, 3, 2)))
+    relighter.set_layers([key])
+    relighter.set_lights(sky.place_lights(8))
+    lit = relighter.radiance.copy()
+    assert relighter.layers == [] and not relighter.can_undo and not relighter.can_redo
+    relighter.undo()
+    with pytest.raises(ValueError, match="^mark: expected an environment"):
+        relighter.mark()
+    assert (relighter.radiance == lit).all()
+    assert relighter.picture(size=(8, 8), background="none")[..., 3].max() > 0
+
+
 def test_light_lists_without_a_precompute(arrays):
     """One light from straight above lights what faces it by its irradiance over pi."""
     mesh = relumine.Mesh([[0, 0, 0], [0, 0, 1], [1, 0, 0]], [[0, 1, 2]])

@@ -58,8 +58,9 @@ def test_bounces(arrays):
     assert np.mean(np.abs(relighter.radiance - 1)) < 0.02 < np.mean(np.abs(direct - 1))
     relighter.bounce(1, albedo=0.5)
     assert (relighter.radiance >= direct).all()
+    assert relighter.bounced == pytest.approx(relighter.radiance - direct, abs=1e-6)
     relighter.set_environment(relumine.Environment(np.ones((6, 8, 8, 3))))
-    assert (relighter.radiance == direct).all()
+    assert (relighter.radiance == direct).all() and relighter.bounced.shape == (0, 3)
 
 
 def test_scenes_without_bounces_say_so(relighter):

@@ -114,6 +114,7 @@ def test_too_little_memory(arrays):
         ({"receivers": "pixels:3"}, "^receivers: expected vertices, pixels"),
         ({"engine": "cuda"}, "^engine: expected beam, embree, got 'cuda'"),
         ({"view": "front"}, "^view: expected 'auto'"),
+        ({"view": 3}, "^view: expected 'auto'"),
     ],
 )
 def test_wrong_options_are_named(arrays, options, message):
