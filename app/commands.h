@@ -2,8 +2,12 @@
 // read.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "app/command_line.h"
 #include "app/session.h"
+#include "relumine/mesh.h"
 
 namespace relumine::app {
 
@@ -17,8 +21,15 @@ void add_verify(Command& program, Session& session);
 void add_lights(Command& program, Session& session);
 void add_info(Command& program, Session& session);
 void add_generate(Command& program, Session& session);
+void add_mesh(Command& program, Session& session);
 void add_env(Command& program, Session& session);
 void add_view(Command& program, Session& session);
 void add_serve(Command& program, Session& session);
+
+/// --crease, for every command that reads a mesh to light or to write it.
+void add_crease_option(Command& command, std::optional<float>& degrees);
+
+/// Keeps so many vertices of a mesh, its floor not counted, and says how many it became.
+[[nodiscard]] Mesh simplified_to(Mesh mesh, std::uint32_t num_vertices, const Session& session);
 
 } // namespace relumine::app

@@ -11,10 +11,10 @@
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/info_environment.h"
+#include "app/info_mesh.h"
 #include "app/output_options.h"
 #include "app/receiver_options.h"
 #include "files/output_file.h"
-#include "mesh/load.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::app {
@@ -93,109 +93,15 @@ void describe_scene(const Options& options, const Session& session) {
     session.report(result);
 }
 
-/// Model and numbers of a material, as the file has them.
-std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
-    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
-        if (!slot)
-            return std::string();
-        const mesh::Texture& image = mesh.textures[slot->texture];
-        return fmt::format(" x {} ({} x {})", image.name, image.width, image.height);
-    };
-    const glm::vec3& base = material.base_color;
-    if (material.model == mesh::MaterialModel::MetallicRoughness)
-        return fmt::format("metallic-roughness, base {} {} {}{}, metallic {}, roughness {}{}",
-                           base.r, base.g, base.b, texture(material.base_color_texture),
-                           material.metallic, material.roughness,
-                           texture(material.metallic_roughness_texture));
-    if (material.model == mesh::MaterialModel::SpecularGlossiness)
-        return fmt::format("specular-glossiness, diffuse {} {} {}{}, F0 {} {} {}{}, roughness {}{}",
-                           base.r, base.g, base.b, texture(material.base_color_texture),
-                           material.specular.r, material.specular.g, material.specular.b,
-                           texture(material.specular_texture), material.roughness,
-                           texture(material.metallic_roughness_texture));
-    const std::string diffuse =
-        fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
-    if (material.specular == glm::vec3(0.0f))
-        return fmt::format("Lambert, {}", diffuse);
-    return fmt::format("Blinn-Phong, {}, Ks {} {} {}, Ns {}", diffuse, material.specular.r,
-                       material.specular.g, material.specular.b, material.exponent);
-}
-
-Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
-    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
-        return slot ? Report(mesh.textures[slot->texture].name) : Report(nullptr);
-    };
-    using Model = mesh::MaterialModel;
-    const Model model = material.model;
-    Report result = {{"name", material.name},
-                     {"model", model == Model::Phong               ? "phong"
-                               : model == Model::MetallicRoughness ? "metallic-roughness"
-                                                                   : "specular-glossiness"},
-                     {"base_color", material.base_color},
-                     {"base_color_texture", texture(material.base_color_texture)}};
-    if (model != Model::MetallicRoughness)
-        result.set("specular", material.specular);
-    if (model == Model::Phong) {
-        result.set("exponent", material.exponent);
-    } else {
-        result.set("roughness", material.roughness);
-        result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
-    }
-    if (model == Model::MetallicRoughness)
-        result.set("metallic", material.metallic);
-    else if (model == Model::SpecularGlossiness)
-        result.set("specular_texture", texture(material.specular_texture));
-    return result;
-}
-
-void describe_mesh(const Options& options, const Session& session) {
-    const mesh::TriangleMesh mesh = mesh::load(options.path);
-    const mesh::Bounds box = mesh::bounds(mesh);
-    const auto num_loose = std::count(mesh.normals.begin(), mesh.normals.end(), glm::vec3(0.0f));
-    session.say(fmt::format("mesh                {} vertices, {} triangles", mesh.num_vertices(),
-                            mesh.num_triangles()));
-    session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,
-                            box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
-    session.say(fmt::format("without a face      {} vertices", num_loose));
-    session.say(fmt::format("colours, uvs        {}, {}", mesh.colors.empty() ? "no" : "yes",
-                            !mesh.uvs.empty()          ? "yes"
-                            : !mesh.corner_uvs.empty() ? "per corner"
-                                                       : "no"));
-    std::vector<Report> materials;
-    for (const mesh::Material& material : mesh.materials) {
-        session.say(
-            fmt::format("material            {}: {}", material.name, description(mesh, material)));
-        materials.push_back(json_of(mesh, material));
-    }
-    for (const std::string& group : mesh.groups)
-        session.say(fmt::format("group               {}", group));
-    for (const std::string& name : mesh.missing)
-        session.say(fmt::format("not found           {}", name));
-    for (const std::string& warning : mesh.warnings)
-        session.say(fmt::format("left out            {}", warning));
-    session.report({{"kind", "mesh"},
-                    {"vertices", mesh.num_vertices()},
-                    {"triangles", mesh.num_triangles()},
-                    {"min", box.min},
-                    {"max", box.max},
-                    {"vertices_without_face", num_loose},
-                    {"colors", !mesh.colors.empty()},
-                    {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
-                    {"materials", materials},
-                    {"groups", mesh.groups},
-                    {"missing", mesh.missing},
-                    {"left_out", mesh.warnings}});
-}
-
 void run(const Options& options, const Session& session) {
     for (const std::filesystem::path& file : cubemap::environment_files(options.path))
         static_cast<void>(files::size(file)); // a name that is not there says so first
     const std::string extension = extension_of(options.path);
     const bool is_environment = extension == ".exr" || extension == ".hdr";
-    if (!options.picture.empty() && !is_environment)
+    if (!options.picture.empty() && extension == ".prt")
         throw UsageError(
             "--picture",
-            fmt::format("expected an environment (.exr or .hdr) to draw, got '{}'", options.path));
+            fmt::format("expected an environment or a mesh to draw, got '{}'", options.path));
     if (options.check && extension != ".prt")
         throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
     if (extension == ".prt")
@@ -203,7 +109,7 @@ void run(const Options& options, const Session& session) {
     else if (is_environment)
         describe_environment({options.path, options.layout, options.picture}, session);
     else
-        describe_mesh(options, session);
+        describe_mesh({options.path, options.picture}, session);
 }
 
 } // namespace
@@ -223,7 +129,8 @@ void add_info(Command& program, Session& session) {
         .one_of(layout_names());
     command
         .add_option("--picture", options->picture,
-                    "draw an environment: lat-long .png with the axes and the sun marked")
+                    "draw an environment, lat-long with the axes and the sun marked, or a mesh "
+                    "with its faults marked: .png")
         .file();
     command.add_flag(
         "--check", options->check,

@@ -52,7 +52,7 @@ public:
               relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
         require_diffuse(lit_.scene(), options.scene);
         lit_.light(map_);
-        exact_ = relight::exact_radiance(receivers_, sample_, lit_.rays(), map_,
+        exact_ = relight::exact_radiance(receivers_, sample_, lit_.blockers(), map_,
                                          {.bias = lit_.scene().settings.bias,
                                           .stop = session.stop(),
                                           .on_progress = session.progress("exact integration")});

@@ -17,8 +17,10 @@
 #include "app/output_options.h"
 #include "app/plan_option.h"
 #include "app/receiver_options.h"
+#include "app/refine_options.h"
 #include "app/surface_options.h"
 #include "mesh/floor.h"
+#include "mesh/half_edge/winding.h"
 
 namespace relumine::app {
 
@@ -35,6 +37,9 @@ struct Options {
     bool is_plan = false;
     PlanOption parts;
     MeshOptions mesh_options;
+    /// 0: all vertices stay
+    std::uint32_t simplify = 0;
+    RefineOptionGroup refine;
     ReceiverOptions receivers;
     SurfaceOptions surfaces;
     CheckpointOptions checkpoint;
@@ -179,9 +184,9 @@ Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts
 /// How fine the floor's shadows are: what one of its vertices spans.
 Report floor_report(const Scene& scene, const Session& session) {
     const std::size_t n = scene.settings.floor_vertices;
-    const auto positions = std::span(scene.mesh.positions);
     const mesh::FloorPlace place =
-        mesh::floor_place(positions.last(n * n), scene.settings.floor_vertices);
+        mesh::floor_place(std::span(scene.mesh.positions).subspan(*first_floor_vertex(scene)),
+                          scene.settings.floor_vertices);
     session.say(fmt::format(
         "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
         "{3:.3g} at the edge",
@@ -200,6 +205,25 @@ std::string where_time_went(const PrecomputeReport& facts, double seconds) {
                        facts.highlights ? fmt::format(", highlights {:.1f}", highlights) : "",
                        facts.bounces ? fmt::format(", bounces {:.1f}", bounces) : "",
                        std::max(seconds - facts.clusters.seconds - highlights - bounces, 0.0));
+}
+
+/// Triangles that are wound the wrong way round look inwards, where it is dark, unless the file's
+/// normals say otherwise.
+void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
+                     const Session& session) {
+    const mesh::Winding winding = mesh::find_winding(mesh);
+    std::size_t num_black = 0;
+    std::uint32_t first = 0;
+    for (std::uint32_t i = static_cast<std::uint32_t>(mesh.num_triangles()); i-- > 0;)
+        if (winding.is_wrong[i] && mesh::faces_with_normals(mesh, i)) {
+            ++num_black;
+            first = i;
+        }
+    if (num_black != 0)
+        session.warn(fmt::format(
+            "{}: {} of {} triangles are wound the wrong way round, the first is triangle {}: they "
+            "look inwards and stay dark; `relumine mesh repair` turns them",
+            path, num_black, mesh.num_triangles(), first));
 }
 
 /// What there is to say of a plan.
@@ -236,6 +260,11 @@ void run(const Options& options, const Command& command, Session& session) {
     check_output(options.output, {options.mesh});
     options.receivers.check();
     options.surfaces.check();
+    options.refine.check();
+    if ((options.refine.is_wanted() || options.simplify != 0) &&
+        !std::holds_alternative<Vertices>(options.receivers.receivers()))
+        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
+                         "expected vertices as receivers");
 
     MeshOptions mesh_options = options.mesh_options;
     mesh_options.normals =
@@ -254,8 +283,14 @@ void run(const Options& options, const Command& command, Session& session) {
         session.warn(fmt::format("{}: {}", options.mesh, warning));
     for (const std::string& name : mesh.geometry.missing)
         session.warn(fmt::format("{}: no {} is found", options.mesh, name));
+    warn_of_winding(mesh.geometry, options.mesh, session);
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
+
+    if (options.simplify != 0)
+        mesh = simplified_to(std::move(mesh), options.simplify, session);
+    if (options.refine.is_wanted())
+        mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
 
     const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
     if (options.is_plan)
@@ -326,6 +361,14 @@ void add_work_options(Command& command, const std::shared_ptr<Options>& options)
                     "vertex normals: the file's where it has them, or always smooth")
         .one_of({"file", "smooth"})
         .show_default();
+    add_crease_option(command, options->mesh_options.crease);
+    command
+        .add_option("--simplify", options->simplify,
+                    "light so many of the mesh's vertices, those that shape it; all of its "
+                    "triangles go on to throw shadows")
+        .between(4, 4294967294.0)
+        .type_name("N");
+    options->refine.add_to_precompute(command);
     command
         .add_option("--tolerance", options->precompute.tolerance,
                     "RMS error of the transfer allowed within a cluster, 1/sr")

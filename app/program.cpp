@@ -17,6 +17,7 @@ void add_commands(CommandLine& line, Session& session) {
     add_lights(program, session);
     add_info(program, session);
     add_generate(program, session);
+    add_mesh(program, session);
     add_env(program, session);
     add_view(program, session);
     add_serve(program, session);

@@ -16,11 +16,31 @@ struct Options {
     SceneOptions scene;
     EnvironmentOptions environment;
     std::size_t num_samples = 2000;
+    std::size_t num_surface_points = VerifyOptions{}.num_surface_points;
     std::uint64_t seed = 1;
     BounceOption bounces;
     float albedo = 0.5f;
     std::uint32_t num_paths = VerifyOptions{}.num_paths;
 };
+
+/// The error between the vertices, for people and for --json.
+Report surface_report(const mesh::TriangleMesh& mesh, const Verification::Surface& surface,
+                      const Session& session) {
+    const relight::ErrorReport& error = surface.error;
+    const glm::vec3 worst =
+        prt::value_at(mesh, mesh.positions, surface.points[error.worst_receiver]);
+    session.say(fmt::format("between the vertices, {} points of the surface: relative L2 {:.5f}, "
+                            "mean error {:.3f} %, largest {:.2f} % at ({}, {}, {})",
+                            surface.points.size(), error.relative_l2, 100.0 * error.mean_abs,
+                            100.0 * error.max_abs, worst.x, worst.y, worst.z));
+    return {{"points", surface.points.size()},
+            {"relative_l2", error.relative_l2},
+            {"mean_abs", error.mean_abs},
+            {"max_abs", error.max_abs},
+            {"bias", error.bias},
+            {"mean_radiance", error.mean_radiance},
+            {"worst_position", worst}};
+}
 
 void run(const Options& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
@@ -31,6 +51,7 @@ void run(const Options& options, Session& session) {
     Stopwatch watch;
     const Verification check = lit.verify({.num_samples = options.num_samples,
                                            .seed = options.seed,
+                                           .num_surface_points = options.num_surface_points,
                                            .num_paths = options.num_paths,
                                            .stop = session.stop(),
                                            .on_progress = session.progress("exact integration")});
@@ -54,18 +75,21 @@ void run(const Options& options, Session& session) {
                         bounces->num_bounces, options.albedo, options.num_paths, check.noise));
     session.say(fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x,
                             worst.y, worst.z));
-    session.report({{"relative_l2", error.relative_l2},
-                    {"mean_abs", error.mean_abs},
-                    {"max_abs", error.max_abs},
-                    {"bias", error.bias},
-                    {"bounces", bounces ? bounces->num_bounces : 0},
-                    {"noise", check.noise},
-                    {"samples", check.receivers.size()},
-                    {"mean_radiance", error.mean_radiance},
-                    {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
-                    {"worst_position", worst},
-                    {"face_resolution", lit.environment().resolution},
-                    {"seconds", seconds}});
+    Report report = {{"relative_l2", error.relative_l2},
+                     {"mean_abs", error.mean_abs},
+                     {"max_abs", error.max_abs},
+                     {"bias", error.bias},
+                     {"bounces", bounces ? bounces->num_bounces : 0},
+                     {"noise", check.noise},
+                     {"samples", check.receivers.size()},
+                     {"mean_radiance", error.mean_radiance},
+                     {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
+                     {"worst_position", worst},
+                     {"face_resolution", lit.environment().resolution},
+                     {"seconds", seconds}};
+    if (check.surface)
+        report.set("surface", surface_report(lit.scene().mesh, *check.surface, session));
+    session.report(report);
 }
 
 } // namespace
@@ -78,6 +102,12 @@ void add_verify(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command);
     command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
+        .show_default();
+    command
+        .add_option("--surface", options->num_surface_points,
+                    "points of the surface chosen at random, where exact light is compared with "
+                    "what the vertices interpolate; 0 for none")
+        .type_name("N")
         .show_default();
     command.add_option("--seed", options->seed, "seed of the choice").show_default();
     options->bounces.add_to(command);

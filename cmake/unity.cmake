@@ -3,7 +3,7 @@
 # So names in unnamed namespaces must differ within a room.
 #
 # A source stays alone if its text is compiled several times (Highway's foreach_target.h), if it holds the code of a
-# header-only library or includes one that is dear (CLI11, Draco), or if it has compile options of its own.
+# header-only library or includes one that is dear (CLI11, Draco, OpenMesh), or if it has compile options of its own.
 option(RELUMINE_UNITY "Compile the sources of a folder together" ON)
 set(RELUMINE_UNITY_SIZE 12 CACHE STRING "How many sources are compiled together at most")
 mark_as_advanced(RELUMINE_UNITY_SIZE)
@@ -20,7 +20,7 @@ function(relumine_compile_together target)
     set(rooms "")
     foreach(source ${sources})
         get_filename_component(path ${source} ABSOLUTE)
-        file(STRINGS ${path} alone REGEX "hwy/foreach_target.h|^#define STB_.*_IMPLEMENTATION|CLI/CLI.hpp|<draco/" LIMIT_COUNT 1)
+        file(STRINGS ${path} alone REGEX "hwy/foreach_target.h|^#define STB_.*_IMPLEMENTATION|CLI/CLI.hpp|<draco/|<OpenMesh/" LIMIT_COUNT 1)
         if(alone)
             continue()
         endif()

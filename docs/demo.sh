@@ -7,6 +7,8 @@ folder=$2
 mkdir -p "$folder"
 
 field() { sed -n "s/^ *\"$2\": \([^,]*\),\{0,1\}$/\1/p" "$folder/$1.json" | head -n 1; }
+# The figure between the vertices, which stands in an object of its own.
+surface_field() { sed -n '/"surface": {/,/}/p' "$folder/$1.json" | sed -n "s/^ *\"$2\": \([^,]*\),\{0,1\}$/\1/p"; }
 step() { # step NAME COMMAND...: shows the command, keeps its figures in NAME.json
     local name=$1
     shift
@@ -31,11 +33,11 @@ ms() { awk -v s="$1" 'BEGIN { printf "%.2f ms", 1000 * s }'; }
 echo
 awk -v v="$(field precompute vertices)" -v c="$(field precompute clusters)" -v s="$(field precompute seconds)" -v b="$(field precompute file_bytes)" \
     'BEGIN { printf "colonnade: %d vertices, %d clusters, precomputed in %.1f s, %.1f MB\n\n", v, c, s, b / 1e6 }'
-printf '| environment | bin | relight | sun traced | relative L2 error | picture |\n|---|---|---|---|---|---|\n'
+printf '| environment | bin | relight | sun traced | relative L2 error | between vertices | picture |\n|---|---|---|---|---|---|---|\n'
 for environment in "${environments[@]}"; do
-    printf '| %s | %s | %s | %s | %.4f | %s |\n' "$environment" "$(ms "$(field "relight_$environment" seconds_bin)")" \
+    printf '| %s | %s | %s | %s | %.4f | %.4f | %s |\n' "$environment" "$(ms "$(field "relight_$environment" seconds_bin)")" \
         "$(ms "$(field "relight_$environment" seconds_relight)")" "$(ms "$(field "relight_$environment" seconds_trace)")" \
-        "$(field "verify_$environment" relative_l2)" "$folder/$environment.png"
+        "$(field "verify_$environment" relative_l2)" "$(surface_field "verify_$environment" relative_l2)" "$folder/$environment.png"
 done
-printf '| soft_boxes, fill x 4 | - | %s (%s of %s clusters) | - | - | %s |\n' "$(ms "$(field edit seconds_edit)")" \
+printf '| soft_boxes, fill x 4 | - | %s (%s of %s clusters) | - | - | - | %s |\n' "$(ms "$(field edit seconds_edit)")" \
     "$(field edit clusters_touched)" "$(field edit clusters)" "$folder/soft_boxes_edited.png"

@@ -1,14 +1,22 @@
 #include "mesh/normals.h"
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
+#include "mesh/half_edge/edge_uses.h"
+
 namespace relumine::mesh {
 
-std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh) {
-    std::vector<glm::dvec3> sums(mesh.num_vertices(), glm::dvec3(0.0));
-    for (const Triangle& triangle : mesh.triangles) {
+namespace {
+
+/// Calls add(corner, weighted normal) for each corner of a triangle with an area.
+template<typename Add>
+void for_each_corner_normal(const TriangleMesh& mesh, const Add& add) {
+    for (std::size_t t = 0; t < mesh.num_triangles(); ++t) {
+        const Triangle& triangle = mesh.triangles[t];
         const std::array<glm::dvec3, 3> corners = {glm::dvec3(mesh.positions[triangle[0]]),
                                                    glm::dvec3(mesh.positions[triangle[1]]),
                                                    glm::dvec3(mesh.positions[triangle[2]])};
@@ -22,16 +30,88 @@ std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh) {
             const double angle =
                 std::atan2(twice_area, glm::dot(corners[(i + 1) % 3] - corners[i],
                                                 corners[(i + 2) % 3] - corners[i]));
-            sums[triangle[i]] += area_normal * (angle / twice_area);
+            add(3 * t + i, area_normal * (angle / twice_area));
         }
     }
-    std::vector<glm::vec3> normals(mesh.num_vertices(), glm::vec3(0.0f));
-    for (std::size_t i = 0; i < sums.size(); ++i) {
-        const double length = glm::length(sums[i]);
-        if (length > 0.0)
-            normals[i] = glm::vec3(sums[i] / length);
-    }
+}
+
+glm::vec3 unit_or_none(const glm::dvec3& sum) {
+    const double length = glm::length(sum);
+    return length > 0.0 ? glm::vec3(sum / length) : glm::vec3(0.0f);
+}
+
+/// Joins the corners around each vertex over the edges that are smooth.
+DisjointSets smooth_corners(const TriangleMesh& mesh, std::span<const Triangle> welded,
+                            float degrees) {
+    const double least = std::cos(static_cast<double>(degrees) * std::numbers::pi / 180.0);
+    DisjointSets sets(3 * welded.size());
+    const std::vector<EdgeUse> uses = edge_uses(welded);
+    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+        if (!is_smooth_join(edge))
+            return;
+        const glm::dvec3 a = area_normal(mesh.positions, welded[edge[0].triangle()]);
+        const glm::dvec3 b = area_normal(mesh.positions, welded[edge[1].triangle()]);
+        // A triangle without an area bends nothing. The slack keeps an angle that is meant.
+        constexpr double Slack = 1e-6;
+        if (glm::dot(a, b) < (least - Slack) * glm::length(a) * glm::length(b))
+            return;
+        const auto next = [](std::uint32_t corner) {
+            return corner - corner % 3 + (corner % 3 + 1) % 3;
+        };
+        sets.join(edge[0].corner, next(edge[1].corner));
+        sets.join(next(edge[0].corner), edge[1].corner);
+    });
+    return sets;
+}
+
+} // namespace
+
+std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh) {
+    std::vector<glm::dvec3> sums(mesh.num_vertices(), glm::dvec3(0.0));
+    for_each_corner_normal(mesh, [&](std::size_t corner, const glm::dvec3& normal) {
+        sums[mesh.triangles[corner / 3][corner % 3]] += normal;
+    });
+    std::vector<glm::vec3> normals(mesh.num_vertices());
+    std::transform(sums.begin(), sums.end(), normals.begin(), unit_or_none);
     return normals;
+}
+
+TriangleMesh with_creases(const TriangleMesh& mesh, float degrees) {
+    const std::vector<Triangle> welded = renamed(mesh.triangles, first_at_place(mesh.positions));
+    DisjointSets sets = smooth_corners(mesh, welded, degrees);
+    std::vector<glm::dvec3> sums(3 * mesh.num_triangles(), glm::dvec3(0.0));
+    for_each_corner_normal(mesh, [&](std::size_t corner, const glm::dvec3& normal) {
+        sums[sets.first(static_cast<std::uint32_t>(corner))] += normal;
+    });
+
+    TriangleMesh result = mesh;
+    result.normals.assign(mesh.num_vertices(), glm::vec3(0.0f));
+    // The copies of each vertex: the set of corners that each serves, and where the next is.
+    constexpr std::uint32_t None = 0xffffffff;
+    std::vector<std::uint32_t> set_of(mesh.num_vertices(), None), next(mesh.num_vertices(), None);
+    for (std::uint32_t corner = 0; corner < 3 * mesh.num_triangles(); ++corner) {
+        const std::uint32_t set = sets.first(corner);
+        std::uint32_t vertex = mesh.triangles[corner / 3][corner % 3];
+        while (set_of[vertex] != set && set_of[vertex] != None && next[vertex] != None)
+            vertex = next[vertex];
+        if (set_of[vertex] != set && set_of[vertex] != None) {
+            const auto copy = static_cast<std::uint32_t>(result.num_vertices());
+            next[vertex] = copy;
+            result.positions.push_back(result.positions[vertex]);
+            result.normals.emplace_back(0.0f);
+            if (!mesh.colors.empty())
+                result.colors.push_back(result.colors[vertex]);
+            if (!mesh.uvs.empty())
+                result.uvs.push_back(result.uvs[vertex]);
+            set_of.push_back(None);
+            next.push_back(None);
+            vertex = copy;
+        }
+        set_of[vertex] = set;
+        result.normals[vertex] = unit_or_none(sums[set]);
+        result.triangles[corner / 3][corner % 3] = vertex;
+    }
+    return result;
 }
 
 } // namespace relumine::mesh

@@ -14,4 +14,14 @@ namespace relumine::mesh {
 /// Cost:    O(num_triangles).
 [[nodiscard]] std::vector<glm::vec3> smooth_normals(const TriangleMesh& mesh);
 
+/// Returns the mesh with normals that are smooth over edges of at most `degrees` between the
+/// normals of their two triangles, and broken beyond, weighted by angles as above. Rims and edges
+/// of more triangles, or of two that are wound against each other, are broken, too. Vertices at
+/// equal positions are smooth across their seam. A vertex becomes several only where its normal
+/// breaks: the first keeps its place, the others follow all vertices of the mesh, with its
+/// attributes.
+///
+/// Cost:    O(n log n).
+[[nodiscard]] TriangleMesh with_creases(const TriangleMesh& mesh, float degrees);
+
 } // namespace relumine::mesh

@@ -11,6 +11,7 @@
 
 #include "files/output_file.h"
 #include "mesh/glb_writer.h"
+#include "mesh/obj_writer.h"
 
 namespace relumine::mesh {
 
@@ -19,33 +20,54 @@ namespace {
 static_assert(std::endian::native == std::endian::little,
               "binary_little_endian is written from memory as it is");
 
-std::string ply(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
-    std::string content =
-        fmt::format("ply\n"
-                    "format binary_little_endian 1.0\n"
-                    "comment Relumine: linear RGB radiance per vertex\n"
-                    "element vertex {}\n"
-                    "property float x\nproperty float y\nproperty float z\n"
-                    "property float nx\nproperty float ny\nproperty float nz\n"
-                    "property float red\nproperty float green\nproperty float blue\n"
-                    "element face {}\n"
-                    "property list uchar uint vertex_indices\n"
-                    "end_header\n",
-                    mesh.num_vertices(), mesh.num_triangles());
+/// Without colours or uvs where they are empty.
+std::string ply(const TriangleMesh& mesh, const std::string& comment,
+                std::span<const glm::vec3> colors, std::span<const glm::vec2> uvs) {
+    std::string content = fmt::format(
+        "ply\n"
+        "format binary_little_endian 1.0\n"
+        "comment {}\n"
+        "element vertex {}\n"
+        "property float x\nproperty float y\nproperty float z\n"
+        "property float nx\nproperty float ny\nproperty float nz\n"
+        "{}{}"
+        "element face {}\n"
+        "property list uchar uint vertex_indices\n"
+        "end_header\n",
+        comment, mesh.num_vertices(),
+        colors.empty() ? "" : "property float red\nproperty float green\nproperty float blue\n",
+        uvs.empty() ? "" : "property float s\nproperty float t\n", mesh.num_triangles());
     const auto append = [&content](const auto& value) {
         content.append(reinterpret_cast<const char*>(&value), sizeof value);
     };
-    content.reserve(content.size() + mesh.num_vertices() * 36 + mesh.num_triangles() * 13);
+    content.reserve(content.size() + mesh.num_vertices() * 44 + mesh.num_triangles() * 13);
     for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
         append(mesh.positions[i]);
         append(i < mesh.normals.size() ? mesh.normals[i] : glm::vec3(0.0f));
-        append(colors[i]);
+        if (!colors.empty())
+            append(colors[i]);
+        if (!uvs.empty())
+            append(uvs[i]);
     }
     for (const Triangle& triangle : mesh.triangles) {
         content += '\3';
         append(triangle);
     }
     return content;
+}
+
+std::string small_extension(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
+        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    });
+    return extension;
+}
+
+void write(const std::filesystem::path& path, const std::string& content) {
+    files::OutputFile file(path);
+    file.write(std::as_bytes(std::span(content)));
+    file.commit();
 }
 
 /// Refuses a mesh that neither format can hold.
@@ -67,10 +89,7 @@ void check(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
 
 void save(const std::filesystem::path& path, const TriangleMesh& mesh,
           std::span<const glm::vec3> colors) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    });
+    const std::string extension = small_extension(path);
     if (extension != ".ply" && extension != ".glb")
         throw std::runtime_error(
             fmt::format("{}: expected a mesh file to write (.ply or .glb), got '{}'", path.string(),
@@ -78,13 +97,42 @@ void save(const std::filesystem::path& path, const TriangleMesh& mesh,
     std::string content;
     try {
         check(mesh, colors);
-        content = extension == ".ply" ? ply(mesh, colors) : glb(mesh, colors);
+        content = extension == ".ply"
+                      ? ply(mesh, "Relumine: linear RGB radiance per vertex", colors, {})
+                      : glb(mesh, colors);
     } catch (const std::runtime_error& error) {
         throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
     }
-    files::OutputFile file(path);
-    file.write(std::as_bytes(std::span(content)));
-    file.commit();
+    write(path, content);
+}
+
+std::vector<std::string> save(const std::filesystem::path& path, const TriangleMesh& mesh) {
+    const std::string extension = small_extension(path);
+    std::vector<std::string> left_out;
+    if (!mesh.textures.empty())
+        left_out.emplace_back("images of textures");
+    if (extension == ".ply") {
+        if (!mesh.corner_uvs.empty())
+            left_out.emplace_back("uvs of corners, which .ply has no place for");
+        if (!mesh.triangle_materials.empty())
+            left_out.emplace_back("materials, which .ply has no place for");
+        if (!mesh.triangle_groups.empty())
+            left_out.emplace_back("groups, which .ply has no place for");
+        write(path, ply(mesh, "Relumine", mesh.colors, mesh.uvs));
+    } else if (extension == ".obj") {
+        std::filesystem::path library;
+        if (!mesh.triangle_materials.empty()) {
+            library = path;
+            library.replace_extension(".mtl");
+            write(library, mtl(mesh));
+        }
+        write(path, obj(mesh, library.filename().string()));
+    } else {
+        throw std::runtime_error(
+            fmt::format("{}: expected a mesh file to write (.ply or .obj), got '{}'", path.string(),
+                        extension));
+    }
+    return left_out;
 }
 
 } // namespace relumine::mesh

@@ -19,14 +19,19 @@ namespace relumine {
 struct LitScene::Impl {
     Impl(std::shared_ptr<const Scene>&& given, const LightOptions& options)
         : owned_scene(std::move(given)), scene(*owned_scene), rays(scene.mesh),
-          clusters_only(options.clusters_only) {}
+          clusters_only(options.clusters_only) {
+        if (scene.blockers)
+            others.emplace(*scene.blockers);
+    }
+
+    [[nodiscard]] const prt::RayScene& blockers() const { return others ? *others : rays; }
 
     [[nodiscard]] bool has_clusters() const { return scene.transfer.num_receivers() != 0; }
 
     [[nodiscard]] relight::ShadowRays shadow_rays() const {
         if (clusters_only)
             return {};
-        return {.blockers = &rays,
+        return {.blockers = &blockers(),
                 .positions = scene.receivers.positions,
                 .bias = scene.settings.bias,
                 .tolerance = rms_tolerance(scene)};
@@ -113,6 +118,35 @@ struct LitScene::Impl {
         return all > 0.0 ? std::sqrt(errors / all) : 0.0;
     }
 
+    /// What the vertices interpolate against exact integration, at random points between them.
+    [[nodiscard]] std::optional<Verification::Surface>
+    verify_surface(const VerifyOptions& options) const {
+        Verification::Surface result{
+            .points = prt::random_points(scene.mesh, options.num_surface_points, options.seed),
+            .error = {}};
+        if (result.points.empty())
+            return std::nullopt;
+        const std::span<const glm::vec3> at_vertices = lit_relighter().diffuse_radiance();
+        prt::Receivers receivers;
+        std::vector<std::uint32_t> indices;
+        std::vector<glm::vec3> interpolated;
+        for (const prt::MeshPoint& point : result.points) {
+            indices.push_back(static_cast<std::uint32_t>(indices.size()));
+            receivers.positions.push_back(prt::smooth_position(scene.mesh, point));
+            receivers.normals.push_back(prt::shading_normal(scene.mesh, point));
+            interpolated.push_back(prt::value_at(scene.mesh, at_vertices, point));
+        }
+        const relight::ExactOptions exact_options{.bias = scene.settings.bias,
+                                                  .stop = options.stop};
+        const std::vector<glm::dvec3> exact =
+            file.image != nullptr
+                ? relight::exact_radiance(receivers, indices, blockers(), file, exact_options)
+                : relight::exact_radiance(receivers, indices, blockers(),
+                                          lit_relighter().environment(), exact_options);
+        result.error = relight::compare(indices, exact, interpolated);
+        return result;
+    }
+
     /// The light of the receivers without bounces.
     [[nodiscard]] std::span<const glm::vec3> direct() const {
         const relight::Relighter* lit = present_relighter();
@@ -124,6 +158,8 @@ struct LitScene::Impl {
     std::shared_ptr<const Scene> owned_scene;
     const Scene& scene;
     prt::RayScene rays;
+    /// Of the scene's own blockers
+    std::optional<prt::RayScene> others;
     bool clusters_only;
     /// One of the two lights the scene; none before the first light()
     std::optional<relight::Relighter> relighter;
@@ -177,6 +213,10 @@ bool LitScene::has_clusters() const {
 
 const prt::RayScene& LitScene::rays() const {
     return impl_->rays;
+}
+
+const prt::RayScene& LitScene::blockers() const {
+    return impl_->blockers();
 }
 
 relight::ShadowRays LitScene::shadow_rays() const {
@@ -343,8 +383,8 @@ Verification LitScene::verify(const VerifyOptions& options) const {
                                               .stop = options.stop,
                                               .on_progress = options.on_progress};
     const auto exact_under = [&](const auto& light) {
-        return relight::exact_radiance(impl_->scene.receivers, result.receivers, impl_->rays, light,
-                                       exact_options);
+        return relight::exact_radiance(impl_->scene.receivers, result.receivers, impl_->blockers(),
+                                       light, exact_options);
     };
     result.of_file = impl_->file.image != nullptr;
     std::vector<glm::dvec3> exact =
@@ -352,6 +392,9 @@ Verification LitScene::verify(const VerifyOptions& options) const {
     if (!impl_->bounced.empty())
         result.noise = impl_->add_traced(result.receivers, options, exact);
     result.error = relight::compare(result.receivers, exact, radiance());
+    if (options.num_surface_points != 0 &&
+        std::holds_alternative<prt::VertexLayout>(impl_->scene.layout))
+        result.surface = impl_->verify_surface(options);
     return result;
 }
 

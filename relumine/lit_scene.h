@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -43,6 +44,9 @@ struct VerifyOptions {
     /// Receivers chosen at random, 0 for all
     std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
+    /// Points of the surface chosen at random, evenly by area, where the light is compared that a
+    /// renderer would interpolate from the vertices; 0 for none. Only for vertices.
+    std::size_t num_surface_points = 500;
     /// Paths of each receiver that bounces are compared with; only after bounce()
     std::uint32_t num_paths = 256;
     /// Polled a few times a second; Cancelled is thrown
@@ -56,6 +60,14 @@ struct Verification {
     /// The receivers that were looked at
     std::vector<std::uint32_t> receivers;
     relight::ErrorReport error;
+    /// Between the vertices: the diffuse light of albedo 1 that they interpolate, without bounces,
+    /// against exact integration at points of the surface. Its worst_receiver is one of `points`.
+    /// Only for vertices.
+    struct Surface {
+        std::vector<prt::MeshPoint> points;
+        relight::ErrorReport error;
+    };
+    std::optional<Surface> surface = {};
     /// Standard error of the paths that bounces were compared with, relative to the radiance, L2
     /// over the receivers; it is a part of error.relative_l2. 0 without bounces.
     double noise = 0.0;
@@ -100,7 +112,10 @@ public:
     [[nodiscard]] const Scene& scene() const;
     /// False for unclustered_scene().
     [[nodiscard]] bool has_clusters() const;
+    /// Rays against the mesh, as pictures show it.
     [[nodiscard]] const prt::RayScene& rays() const;
+    /// What blocks the light: the mesh, or Scene::blockers.
+    [[nodiscard]] const prt::RayScene& blockers() const;
     /// Returns what tracing single lights needs: the rays with the scene's own bias and tolerance.
     /// Empty for clusters_only. The result points into this object.
     [[nodiscard]] relight::ShadowRays shadow_rays() const;

@@ -1,19 +1,178 @@
 #include "relumine/mesh.h"
 
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+
 #include "mesh/floor.h"
+#include "mesh/half_edge/simplify.h"
+#include "mesh/normals.h"
 #include "prt/scene/scene_file.h"
+#include "prt/visibility/beam_scene.h"
+#include "prt/visibility/ray_scene.h"
 
 namespace relumine {
+
+namespace {
+
+/// What rays need of a mesh.
+mesh::TriangleMesh blockers_of(const mesh::TriangleMesh& mesh) {
+    mesh::TriangleMesh blockers;
+    blockers.positions = mesh.positions;
+    blockers.triangles = mesh.triangles;
+    return blockers;
+}
+
+/// Moves the floor's vertices to the end, those of `num_old` first. Returns how many of the floor
+/// are new.
+std::uint32_t move_floor_last(mesh::TriangleMesh& mesh, std::size_t first_of_floor,
+                              std::size_t num_old) {
+    std::vector<bool> is_floor(mesh.num_vertices());
+    std::fill(is_floor.begin() + static_cast<std::ptrdiff_t>(first_of_floor),
+              is_floor.begin() + static_cast<std::ptrdiff_t>(num_old), true);
+    // The floor is a group of its own.
+    const std::uint32_t group = mesh.triangle_groups[static_cast<std::size_t>(
+        std::find_if(mesh.triangles.begin(), mesh.triangles.end(),
+                     [&](const mesh::Triangle& triangle) { return is_floor[triangle[0]]; }) -
+        mesh.triangles.begin())];
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        for (const std::uint32_t vertex : mesh.triangles[i])
+            is_floor[vertex] =
+                is_floor[vertex] || (mesh.triangle_groups[i] == group && vertex >= num_old);
+    std::vector<std::uint32_t> order(mesh.num_vertices());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_partition(order.begin(), order.end(),
+                          [&](std::uint32_t vertex) { return !is_floor[vertex]; });
+    std::vector<std::uint32_t> places(order.size());
+    for (std::uint32_t place = 0; place < order.size(); ++place)
+        places[order[place]] = place;
+    const auto sort = [&](auto& values) {
+        if (values.empty())
+            return;
+        auto sorted = values;
+        for (std::size_t place = 0; place < order.size(); ++place)
+            sorted[place] = values[order[place]];
+        values = std::move(sorted);
+    };
+    sort(mesh.positions);
+    sort(mesh.normals);
+    sort(mesh.colors);
+    sort(mesh.uvs);
+    for (mesh::Triangle& triangle : mesh.triangles)
+        for (std::uint32_t& vertex : triangle)
+            vertex = places[vertex];
+    const auto num_floor =
+        static_cast<std::size_t>(std::count(is_floor.begin(), is_floor.end(), true));
+    return static_cast<std::uint32_t>(num_floor - (num_old - first_of_floor));
+}
+
+/// Returns the vertices [begin, end) and the triangles between them.
+mesh::TriangleMesh part_of(const mesh::TriangleMesh& mesh, std::size_t begin, std::size_t end) {
+    mesh::TriangleMesh part = mesh;
+    const auto keep_vertices = [&](auto& values) {
+        if (!values.empty())
+            values = {values.begin() + static_cast<std::ptrdiff_t>(begin),
+                      values.begin() + static_cast<std::ptrdiff_t>(end)};
+    };
+    keep_vertices(part.positions);
+    keep_vertices(part.normals);
+    keep_vertices(part.colors);
+    keep_vertices(part.uvs);
+    const auto keep_triangles = [&](auto& values) {
+        if (values.empty())
+            return;
+        std::size_t place = 0;
+        for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+            if (mesh.triangles[i][0] >= begin && mesh.triangles[i][0] < end)
+                values[place++] = values[i];
+        values.resize(place);
+    };
+    keep_triangles(part.triangles);
+    keep_triangles(part.corner_uvs);
+    keep_triangles(part.triangle_materials);
+    keep_triangles(part.triangle_groups);
+    for (mesh::Triangle& triangle : part.triangles)
+        for (std::uint32_t& vertex : triangle)
+            vertex -= static_cast<std::uint32_t>(begin);
+    return part;
+}
+
+/// Appends a part of the same mesh: materials and groups are the same.
+void append(mesh::TriangleMesh& mesh, const mesh::TriangleMesh& part) {
+    const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+    const auto add = [](auto& values, const auto& others) {
+        values.insert(values.end(), others.begin(), others.end());
+    };
+    add(mesh.positions, part.positions);
+    add(mesh.normals, part.normals);
+    add(mesh.colors, part.colors);
+    add(mesh.uvs, part.uvs);
+    add(mesh.corner_uvs, part.corner_uvs);
+    add(mesh.triangle_materials, part.triangle_materials);
+    add(mesh.triangle_groups, part.triangle_groups);
+    for (const auto& [a, b, c] : part.triangles)
+        mesh.triangles.push_back({a + first, b + first, c + first});
+}
+
+std::string prefix_of(const Mesh& mesh) {
+    return mesh.source.empty() ? "" : mesh.source + ": ";
+}
+
+} // namespace
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh(mesh::load(path, options.normals));
     mesh.source = path.string();
     mesh.source_hash = prt::file_hash(path);
+    if (options.crease)
+        mesh.geometry = mesh::with_creases(mesh.geometry, *options.crease);
     mesh::turn_up(mesh.geometry, options.up.value_or(mesh::customary_up(path)));
     if (options.floor_vertices) {
         mesh::append_floor(mesh.geometry, *options.floor_vertices, options.floor_scale);
         mesh.floor_vertices = *options.floor_vertices;
     }
+    return mesh;
+}
+
+Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
+    const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
+    const std::size_t num_old = mesh.geometry.num_vertices();
+    mesh::TriangleMesh after;
+    try {
+        const prt::RayScene rays(before);
+        const prt::BeamScene beams(before, rays);
+        after = prt::refine(mesh.geometry, beams, options, report);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(prefix_of(mesh) + error.what());
+    }
+    if (options.curved)
+        mesh.blockers.reset();
+    else if (!mesh.blockers)
+        mesh.blockers = blockers_of(mesh.geometry);
+    mesh.geometry = std::move(after);
+    if (const std::size_t n = mesh.floor_vertices; n != 0)
+        mesh.floor_added +=
+            move_floor_last(mesh.geometry, num_old - n * n - mesh.floor_added, num_old);
+    return mesh;
+}
+
+Mesh simplified(Mesh mesh, std::size_t num_vertices) {
+    if (!mesh.blockers)
+        mesh.blockers = blockers_of(mesh.geometry);
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor =
+        mesh.geometry.num_vertices() - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const mesh::TriangleMesh floor =
+        part_of(mesh.geometry, first_of_floor, mesh.geometry.num_vertices());
+    try {
+        mesh.geometry = mesh::simplified(part_of(mesh.geometry, 0, first_of_floor), num_vertices);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(prefix_of(mesh) + error.what());
+    }
+    append(mesh.geometry, floor);
     return mesh;
 }
 

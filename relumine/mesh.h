@@ -10,6 +10,7 @@
 #include "mesh/load.h"
 #include "mesh/triangle_mesh.h"
 #include "mesh/up_axis.h"
+#include "prt/refinement/refine.h"
 
 namespace relumine {
 
@@ -21,8 +22,12 @@ struct Mesh {
     std::string source;
     /// xxHash64 of the file's bytes, 0 without a file
     std::uint64_t source_hash = 0;
-    /// n: the last n x n vertices are a floor under the mesh. 0: there is no floor.
+    /// n: n x n vertices, and those that refined() added, are a floor under the mesh. They stand at
+    /// its end. 0: there is no floor.
     std::uint32_t floor_vertices = 0;
+    std::uint32_t floor_added = 0;
+    /// The triangles that block light, where they are not those of `geometry`.
+    std::optional<mesh::TriangleMesh> blockers = {};
 
     Mesh() = default;
     // NOLINTNEXTLINE(google-explicit-constructor): a mesh made in code is a mesh
@@ -34,6 +39,8 @@ struct MeshOptions {
     std::optional<mesh::UpAxis> up = {};
     /// Where normals come from: the file if it has them, or always the faces.
     mesh::NormalSource normals = mesh::NormalSource::File;
+    /// Replaces them by mesh::with_creases() of so many degrees.
+    std::optional<float> crease = {};
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN]
     std::optional<std::uint32_t> floor_vertices = {};
     /// Side of the floor, in widths of the mesh.
@@ -46,5 +53,24 @@ struct MeshOptions {
 ///          std::invalid_argument for a floor that does not fit (mesh::append_floor()).
 /// Cost:    reads the file twice, once for its hash.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options = {});
+
+using prt::RefineOptions;
+using prt::RefineReport;
+
+/// Returns the mesh with more vertices where its light changes between two of them, or where edges
+/// are long: prt::refine(). The original triangles remain what blocks light, unless the new
+/// vertices lie on a curved surface, which then does. The vertices of the file keep their places;
+/// those of an added floor follow the new ones.
+///
+/// Throws:  std::runtime_error "SOURCE: ..." where prt::refine() throws std::invalid_argument;
+///          Cancelled.
+[[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {},
+                           RefineReport* report = nullptr);
+
+/// Returns the mesh with so many vertices, its floor not counted: mesh::simplified(). The original
+/// triangles remain what blocks light.
+///
+/// Throws:  std::runtime_error "SOURCE: ..." where mesh::simplified() throws.
+[[nodiscard]] Mesh simplified(Mesh mesh, std::size_t num_vertices);
 
 } // namespace relumine

@@ -31,6 +31,8 @@ public:
           prefix_(mesh.source.empty() ? "" : mesh.source + ": "),
           limit_(options.max_memory, prefix_) {
         scene_.settings.floor_vertices = mesh.floor_vertices;
+        scene_.settings.floor_added = mesh.floor_added;
+        scene_.blockers = std::move(mesh.blockers);
         scene_.settings.source = std::filesystem::path(mesh.source).filename().string();
         scene_.settings.source_hash = mesh.source_hash;
         scene_.mesh = std::move(mesh.geometry);
@@ -98,7 +100,7 @@ private:
                               .num_triangles = report_.num_triangles,
                               .has_beams = options_.engine == Engine::Beams};
         limit_.check_scene(sizes);
-        const prt::RayScene rays = ray_scene();
+        const prt::RayScene rays = ray_scene(blocking_mesh());
         place_receivers(rays);
         require_few_clusters();
         sizes.num_receivers = report_.num_receivers = scene_.receivers.size();
@@ -122,9 +124,13 @@ private:
         prt::set_surfaces(scene_.transfer, scene_.receivers);
     }
 
-    [[nodiscard]] prt::RayScene ray_scene() const {
+    [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
+        return scene_.blockers ? *scene_.blockers : scene_.mesh;
+    }
+
+    [[nodiscard]] prt::RayScene ray_scene(const mesh::TriangleMesh& mesh) const {
         try {
-            return prt::RayScene(scene_.mesh);
+            return prt::RayScene(mesh);
         } catch (const std::runtime_error& error) {
             throw std::runtime_error(prefix_ + error.what());
         }
@@ -165,12 +171,16 @@ private:
 
     void place_receivers(const prt::RayScene& rays) {
         try {
-            if (const auto* pixels = std::get_if<Pixels>(&options_.receivers))
-                place_pixels(*pixels, rays);
-            else if (const auto* texels = std::get_if<Texels>(&options_.receivers))
+            if (const auto* pixels = std::get_if<Pixels>(&options_.receivers)) {
+                if (scene_.blockers)
+                    place_pixels(*pixels, ray_scene(scene_.mesh));
+                else
+                    place_pixels(*pixels, rays);
+            } else if (const auto* texels = std::get_if<Texels>(&options_.receivers)) {
                 place_texels(*texels);
-            else
+            } else {
                 scene_.receivers = prt::vertex_receivers(scene_.mesh);
+            }
             // Receivers that are no pixels of the view but seen from it.
             if (options_.view && !std::holds_alternative<Pixels>(options_.receivers)) {
                 const std::optional<prt::Camera>& own = options_.view->camera;
@@ -228,7 +238,8 @@ private:
         if (mesh.materials.empty() && !options_.surface && options_.floor_surface == prt::Surface())
             return;
         const std::size_t n = scene_.settings.floor_vertices;
-        const std::size_t first_of_floor = mesh.num_vertices() - n * n;
+        const std::size_t first_of_floor =
+            mesh.num_vertices() - n * n - scene_.settings.floor_added;
         const prt::SurfaceOverride surface_of =
             [&](const mesh::TriangleMesh& of, std::uint32_t triangle, const prt::Surface& own) {
                 if (n != 0 && of.triangles[triangle][0] >= first_of_floor)
@@ -295,7 +306,7 @@ private:
         };
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
             options_.output,
-            prt::fingerprint(scene_.mesh, scene_.receivers, clustering_,
+            prt::fingerprint(blocking_mesh(), scene_.receivers, clustering_,
                              has_highlights ? std::optional(options_.glossy_tolerance)
                                             : std::nullopt),
             prt::CheckpointFile::Options{
@@ -322,7 +333,7 @@ private:
     void cluster(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
         std::optional<prt::BeamScene> beams;
         if (options_.engine == Engine::Beams)
-            beams.emplace(scene_.mesh, rays);
+            beams.emplace(blocking_mesh(), rays);
         const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
         report_.memory = limit_.check_estimate(sizes, scene_.receivers, blockers, clustering_);
         if (report_.memory)
@@ -380,8 +391,12 @@ private:
 
     void add_bounces(const prt::RayScene& rays) {
         prt::BounceStatistics statistics;
+        std::optional<prt::RayScene> of_mesh;
+        if (scene_.blockers)
+            of_mesh.emplace(ray_scene(scene_.mesh));
         scene_.bounces = prt::precompute_bounces(scene_.mesh, scene_.receivers, scene_.transfer,
-                                                 relight::probe_radiance(scene_.transfer), rays,
+                                                 relight::probe_radiance(scene_.transfer),
+                                                 of_mesh ? *of_mesh : rays,
                                                  {.tolerance = *options_.bounce_tolerance,
                                                   .two_sided = options_.two_sided_bounces,
                                                   .bias = clustering_.bias,
@@ -442,10 +457,11 @@ void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report)
 void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics) {
     const prt::Plan plan = prt::load_plan(options.plan);
     const prt::Scene& scene = plan.scene;
-    const prt::RayScene rays(scene.mesh);
+    const mesh::TriangleMesh& triangles = scene.blockers ? *scene.blockers : scene.mesh;
+    const prt::RayScene rays(triangles);
     std::optional<prt::BeamScene> beams;
     if (options.engine == Engine::Beams)
-        beams.emplace(scene.mesh, rays);
+        beams.emplace(triangles, rays);
     const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
     const prt::VisibleCounts counts =
         prt::part_counts(scene.receivers, scene.transfer, blockers,

@@ -14,6 +14,7 @@ namespace relumine {
 Scene unclustered_scene(Mesh mesh) {
     Scene scene;
     scene.mesh = std::move(mesh.geometry);
+    scene.blockers = std::move(mesh.blockers);
     scene.receivers = prt::vertex_receivers(scene.mesh);
     scene.settings.bias = prt::automatic_bias(scene.mesh);
     return scene;
@@ -26,9 +27,10 @@ float rms_tolerance(const Scene& scene) {
 
 std::optional<std::size_t> first_floor_vertex(const Scene& scene) {
     const std::uint64_t n = scene.settings.floor_vertices;
-    if (n < 2 || n * n > scene.mesh.num_vertices())
+    const std::uint64_t of_floor = n * n + scene.settings.floor_added;
+    if (n < 2 || of_floor > scene.mesh.num_vertices())
         return std::nullopt;
-    return scene.mesh.num_vertices() - static_cast<std::size_t>(n * n);
+    return scene.mesh.num_vertices() - static_cast<std::size_t>(of_floor);
 }
 
 std::vector<bool> floor_receivers(const Scene& scene) {

@@ -38,7 +38,8 @@ using relight::Camera;
 /// where there is none.
 [[nodiscard]] std::vector<bool> floor_receivers(const Scene& scene);
 
-/// Returns the first vertex of the added floor, which is n x n; none where there is no floor.
+/// Returns the first vertex of the added floor, which is n x n and what was added to it; none where
+/// there is no floor.
 [[nodiscard]] std::optional<std::size_t> first_floor_vertex(const Scene& scene);
 
 /// New colours for all surfaces but the added floor's. An empty colour stays as it is.

@@ -5,6 +5,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "cubemap/split_mix64.h"
+
 namespace relumine::prt {
 
 namespace {
@@ -59,6 +61,37 @@ glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point
         moved -= weights[corner] * below * normal;
     }
     return flat + moved;
+}
+
+std::vector<MeshPoint> random_points(const mesh::TriangleMesh& mesh, std::size_t count,
+                                     std::uint64_t seed) {
+    std::vector<double> areas; // of all triangles up to each
+    double sum = 0.0;
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const glm::dvec3 origin(mesh.positions[a]);
+        sum += glm::length(glm::cross(glm::dvec3(mesh.positions[b]) - origin,
+                                      glm::dvec3(mesh.positions[c]) - origin));
+        areas.push_back(sum);
+    }
+    if (!(sum > 0.0))
+        return {};
+    cubemap::SplitMix64 random(seed);
+    const auto uniform = [&random] {
+        return static_cast<double>(random.next() >> 11u) * 0x1p-53;
+    };
+    std::vector<MeshPoint> points;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto place = std::upper_bound(areas.begin(), areas.end() - 1, uniform() * sum);
+        // The square root makes even density in the triangle (G. Turk, Graphics Gems, 1990).
+        const double root = std::sqrt(uniform()), part = uniform();
+        points.push_back(
+            {static_cast<std::uint32_t>(place - areas.begin()),
+             {static_cast<float>(root * (1.0 - part)), static_cast<float>(root * part)}});
+    }
+    std::stable_sort(points.begin(), points.end(), [](const MeshPoint& a, const MeshPoint& b) {
+        return a.triangle < b.triangle;
+    });
+    return points;
 }
 
 bool meets_front(const mesh::TriangleMesh& mesh, const MeshPoint& point,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -38,6 +39,13 @@ struct MeshPoint {
 ///
 /// Based on: J. Hanika, "Hacking the Shadow Terminator", Ray Tracing Gems II, 2021.
 [[nodiscard]] glm::vec3 smooth_position(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Returns `count` points of the surface chosen at random, evenly by area; none for a mesh without
+/// an area. The same seed gives the same points. They are sorted by triangle.
+///
+/// Cost:    O(triangles + count log triangles).
+[[nodiscard]] std::vector<MeshPoint> random_points(const mesh::TriangleMesh& mesh,
+                                                   std::size_t count, std::uint64_t seed);
 
 /// Whether a ray meets the front of a surface: the side of the triangle that its vertex normals
 /// stand on. Interpolated normals alone would show some fronts to rays from behind.

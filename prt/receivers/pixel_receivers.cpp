@@ -80,8 +80,11 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
             const glm::vec3 to_eye = glm::length(way) > 0.0f
                                          ? glm::normalize(way)
                                          : face_normal(mesh, seen.point.triangle);
-            receivers.positions[receiver] = position;
-            receivers.normals[receiver] = normal_towards(mesh, seen.point, to_eye);
+            const glm::vec3 normal = normal_towards(mesh, seen.point, to_eye);
+            // The smooth surface is before the facets as seen from its front.
+            const bool is_front = normal == shading_normal(mesh, seen.point);
+            receivers.positions[receiver] = is_front ? smooth_position(mesh, seen.point) : position;
+            receivers.normals[receiver] = normal;
             receivers.to_eye[receiver] = to_eye;
             receivers.points[receiver] = seen.point;
             result.layout.samples[receiver] = seen.sample;

@@ -237,7 +237,7 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
     receivers.positions.resize(receivers.points.size());
     receivers.normals.resize(receivers.points.size());
     tbb::parallel_for(std::size_t{0}, receivers.points.size(), [&](std::size_t i) {
-        receivers.positions[i] = value_at(mesh, mesh.positions, receivers.points[i]);
+        receivers.positions[i] = smooth_position(mesh, receivers.points[i]);
         receivers.normals[i] = shading_normal(mesh, receivers.points[i]);
     });
     return result;

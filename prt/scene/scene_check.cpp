@@ -97,7 +97,8 @@ void check_settings(const Check& check, const SceneSettings& settings,
     check.that(settings.min_level <= MaxLevel,
                fmt::format("a minimum depth from 0 to {}", MaxLevel),
                fmt::format("{}", settings.min_level));
-    const std::size_t floor = std::size_t{settings.floor_vertices} * settings.floor_vertices;
+    const std::size_t floor =
+        std::size_t{settings.floor_vertices} * settings.floor_vertices + settings.floor_added;
     check.that(floor <= mesh.num_vertices(),
                fmt::format("a floor among {} vertices", mesh.num_vertices()),
                fmt::format("one of {}", floor));
@@ -123,12 +124,17 @@ void check_places(const Check& check, const Scene& scene) {
         constexpr float Largest = std::numeric_limits<float>::max();
         return is_within(position, -Largest, Largest);
     };
-    check.all("finite coordinates", scene.mesh.positions, is_finite);
     check.all("finite coordinates", scene.receivers.positions, is_finite);
-    for (const mesh::Triangle& triangle : scene.mesh.triangles)
-        for (const std::uint32_t vertex : triangle)
-            if (!is_inside(scene.mesh.positions[vertex]))
-                check.fail(expected, text_of(scene.mesh.positions[vertex]));
+    const auto check_mesh = [&](const mesh::TriangleMesh& mesh) {
+        check.all("finite coordinates", mesh.positions, is_finite);
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            for (const std::uint32_t vertex : triangle)
+                if (!is_inside(mesh.positions[vertex]))
+                    check.fail(expected, text_of(mesh.positions[vertex]));
+    };
+    check_mesh(scene.mesh);
+    if (scene.blockers)
+        check_mesh(*scene.blockers);
     for (std::size_t i = 0; i < scene.receivers.size(); ++i)
         if (scene.receivers.normals[i] != glm::vec3(0.0f) &&
             !is_inside(scene.receivers.positions[i]))

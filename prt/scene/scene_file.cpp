@@ -38,6 +38,8 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
                         {"floor_vertices", settings.floor_vertices},
                         {"source", settings.source},
                         {"source_hash", fmt::format("{:016x}", settings.source_hash)}};
+    if (settings.floor_added != 0)
+        json.set("floor_added", settings.floor_added);
     if (settings.epsilon)
         json.set("epsilon", *settings.epsilon);
     if (settings.glossy_tolerance)
@@ -64,6 +66,7 @@ public:
                 reader_.has("part") ? "a part of one" : "a plan of one, which has no light yet"));
         Scene scene;
         scene.mesh = mesh();
+        scene.blockers = blockers();
         scene.settings = settings();
         scene.layout = read_layout(reader_);
         scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
@@ -84,12 +87,26 @@ private:
         mesh.normals = reader_.elements<glm::vec3>("normals", mesh.num_vertices());
         mesh.colors = reader_.elements<glm::vec3>("colors", mesh.num_vertices(), true);
         mesh.uvs = reader_.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
+        require_indices(mesh, "triangles");
+        read_material_sections(reader_, mesh);
+        return mesh;
+    }
+
+    std::optional<mesh::TriangleMesh> blockers() const {
+        if (!reader_.has("block_triangles"))
+            return std::nullopt;
+        mesh::TriangleMesh blockers;
+        blockers.positions = reader_.elements<glm::vec3>("block_positions");
+        blockers.triangles = reader_.elements<mesh::Triangle>("block_triangles");
+        require_indices(blockers, "block_triangles");
+        return blockers;
+    }
+
+    void require_indices(const mesh::TriangleMesh& mesh, const std::string& section) const {
         for (const mesh::Triangle& triangle : mesh.triangles)
             if (std::any_of(triangle.begin(), triangle.end(),
                             [&](auto i) { return i >= mesh.num_vertices(); }))
-                reader_.fail("triangles", "indices of vertices");
-        read_material_sections(reader_, mesh);
-        return mesh;
+                reader_.fail(section, "indices of vertices");
     }
 
     SceneSettings settings() const {
@@ -101,6 +118,8 @@ private:
             settings.face_resolution = natural(json.at("face_resolution"));
             settings.bias = real(json.at("bias"));
             settings.floor_vertices = natural(json.at("floor_vertices"));
+            if (json.contains("floor_added"))
+                settings.floor_added = natural(json.at("floor_added"));
             settings.source = json.at("source").string();
             settings.source_hash = std::stoull(json.at("source_hash").string(), nullptr, 16);
             if (json.contains("epsilon"))
@@ -214,6 +233,10 @@ Sections sections_without_light(const std::filesystem::path& path, const Scene& 
     sections["positions"] = bytes_of(scene.mesh.positions);
     sections["triangles"] = bytes_of(scene.mesh.triangles);
     sections["normals"] = bytes_of(scene.mesh.normals);
+    if (scene.blockers) {
+        sections["block_positions"] = bytes_of(scene.blockers->positions);
+        sections["block_triangles"] = bytes_of(scene.blockers->triangles);
+    }
     if (!scene.mesh.colors.empty())
         sections["colors"] = bytes_of(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())

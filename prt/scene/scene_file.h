@@ -28,6 +28,9 @@ struct SceneSettings {
     std::uint32_t floor_vertices = 0;
     /// File name of the mesh, without folders.
     std::string source = {};
+    /// Vertices of a refined floor beyond n x n. All of the floor stands at the mesh's end, its n x
+    /// n first.
+    std::uint32_t floor_added = 0;
     /// xxHash64 of the mesh file's bytes; 0 for a mesh that came from no file.
     std::uint64_t source_hash = 0;
     /// GlossyOptions::tolerance; set where there is a glossy part.
@@ -46,6 +49,9 @@ struct Scene {
     Receivers receivers = {};
     /// What the receivers are.
     ReceiverLayout layout = {};
+    /// The triangles that block light, where they are not the mesh's own: the mesh before it was
+    /// refined or simplified. Positions and triangles, nothing else.
+    std::optional<mesh::TriangleMesh> blockers = {};
     /// Light from surface to surface; only of vertices.
     std::optional<BounceMatrix> bounces = {};
 };

@@ -23,7 +23,7 @@ TEST_F(Generate, AllMakesEveryScenesAndEnvironmentsFile) {
         if (path.extension() == ".ply") {
             EXPECT_EQ(info["vertices"], file["vertices"]);
             EXPECT_NEAR(info["vertices"].get<double>(), 1000.0, 40.0);
-            EXPECT_EQ(info["vertices_without_face"], 0);
+            EXPECT_EQ(info["diagnosis"]["isolated_vertices"], 0);
         } else {
             EXPECT_EQ(info["num_nan"], 0);
             EXPECT_EQ(info["num_negative"], 0);

@@ -17,7 +17,7 @@ TEST_F(Info, Mesh) {
     EXPECT_EQ(info["triangles"], 8);
     EXPECT_EQ(info["min"], (nlohmann::json{-1.0, -1.0, -1.0}));
     EXPECT_EQ(info["max"], (nlohmann::json{1.0, 1.0, 1.0}));
-    EXPECT_EQ(info["vertices_without_face"], 0);
+    EXPECT_EQ(info["diagnosis"]["isolated_vertices"], 0);
     EXPECT_EQ(info["colors"], false);
     EXPECT_NE(succeed({"info", "mesh.obj"}).out.find("6 vertices, 8 triangles"), std::string::npos);
 }

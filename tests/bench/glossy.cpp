@@ -113,8 +113,9 @@ void print_row(float roughness, const Settings& settings, const Mesh& mesh,
                 seconds_frame.push_back(times.seconds_bin + times.seconds_trace +
                                         times.seconds_relight);
         }
-        errors += fmt::format(" {:.4f} |",
-                              lit.verify({.num_samples = settings.num_samples}).error.relative_l2);
+        errors += fmt::format(
+            " {:.4f} |", lit.verify({.num_samples = settings.num_samples, .num_surface_points = 0})
+                             .error.relative_l2);
     }
     const auto [lobe_seconds, lobe_bytes] = lobes_alone(transfer, maps.front().map);
     const auto per_block = [&](std::size_t lobe) {

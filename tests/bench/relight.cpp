@@ -133,20 +133,26 @@ void measure_errors(const Settings& settings, const bench::Inputs& inputs, LitSc
     lit.set_layers({});
     std::size_t num_samples = 0;
     std::vector<double> seconds;
-    std::string errors;
+    std::string errors, errors_between;
     for (const std::string name : {"grace", "stpeters", "galileo", "kitchen", "beach"}) {
         lit.light(inputs.environment(name + "_cross.hdr", Resolution));
         Verification check;
-        seconds.push_back(
-            bench::seconds_of([&] { check = lit.verify({.num_samples = settings.num_samples}); }));
+        seconds.push_back(bench::seconds_of([&] {
+            check = lit.verify({.num_samples = settings.num_samples, .num_surface_points = 0});
+        }));
         num_samples = check.receivers.size();
         errors += fmt::format(" {} {:.5f}", name, check.error.relative_l2);
         report.add_value("error_" + name, check.error.relative_l2);
+        const Verification between =
+            lit.verify({.num_samples = 1, .num_surface_points = settings.num_samples});
+        errors_between += fmt::format(" {} {:.5f}", name, between.surface->error.relative_l2);
+        report.add_value("surface_error_" + name, between.surface->error.relative_l2);
     }
     report.add("verify",
                fmt::format("exact radiance of {} receivers, R = {}", num_samples,
                            lit.environment().resolution),
-               1e3 * bench::median(seconds), "relative L2 of relighting:" + errors);
+               1e3 * bench::median(seconds),
+               "relative L2 of relighting:" + errors + "; between the vertices:" + errors_between);
 }
 
 } // namespace

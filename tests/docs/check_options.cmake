@@ -28,6 +28,7 @@ if(num_commands LESS 2)
 endif()
 
 list(TRANSFORM commands REPLACE "^env$" "env convert")
+list(TRANSFORM commands REPLACE "^mesh$" "mesh repair;mesh refine;mesh simplify")
 foreach(command IN LISTS commands)
     if(NOT page MATCHES "\n## ${command} ")
         message("${PAGE}: no section for ${command}")

@@ -93,6 +93,8 @@ const std::vector<Words>& working_lines() {
         {"lights", "env.0.hdr", "-o", "new.json"},
         {"lights", "env.0.hdr", "--compare", "scene.prt", "-n", "4"},
         {"info", "scene.prt"},
+        {"mesh", "refine", "mesh.obj", "-o", "new.ply", "--error", "0.05", "--max-vertices", "40"},
+        {"mesh", "repair", "mesh.obj", "-o", "new.obj", "--weld"},
         {"env", "convert", "env.0.hdr", "-o", "new.exr", "--size", "8x4"},
         {"generate", "blob", "-o", "new", "--vertices", "1000"},
         {"generate", "constant", "-o", "new", "--face-resolution", "8"},

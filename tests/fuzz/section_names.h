@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 38> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 40> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -44,6 +44,8 @@ inline constexpr std::array<std::string_view, 38> SectionNames = {"settings",
                                                                   "materials",
                                                                   "images",
                                                                   "t_materials",
-                                                                  "corner_uvs"};
+                                                                  "corner_uvs",
+                                                                  "block_positions",
+                                                                  "block_triangles"};
 
 } // namespace relumine::fuzz

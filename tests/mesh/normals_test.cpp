@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "tests/mesh/mesh_files.h"
+#include "tests/mesh/half_edge/shapes.h"
 
 namespace relumine::mesh {
 namespace {
@@ -61,6 +61,58 @@ TEST(SmoothNormals, ZeroWithoutAnAreaAndIndependentOfScale) {
         EXPECT_EQ(normals[3], glm::vec3(0.0f)) << "only faces without area";
         EXPECT_EQ(normals[4], glm::vec3(0.0f)) << "no face";
     }
+}
+
+TEST(Creases, ACubeGetsFlatFacesAndASphereNothing) {
+    const TriangleMesh cube = with_creases(box_mesh(), 40.0f);
+    EXPECT_EQ(cube.num_vertices(), 24u);
+    EXPECT_EQ(std::vector(cube.positions.begin(), cube.positions.begin() + 8), BoxPositions);
+    for (const Triangle& t : cube.triangles) {
+        const glm::vec3 flat(glm::normalize(area_normal(cube.positions, t)));
+        for (const std::uint32_t vertex : t)
+            EXPECT_NEAR(glm::distance(cube.normals[vertex], flat), 0.0f, 1e-6f);
+    }
+    const TriangleMesh sphere = ball(16);
+    const TriangleMesh same = with_creases(sphere, 40.0f);
+    EXPECT_EQ(same.triangles, sphere.triangles);
+    EXPECT_EQ(same.positions, sphere.positions);
+    for (std::size_t i = 0; i < sphere.num_vertices(); ++i)
+        EXPECT_NEAR(glm::distance(same.normals[i], sphere.normals[i]), 0.0f, 1e-6f);
+    EXPECT_EQ(with_creases(box_mesh(), 90.0f).num_vertices(), 8u) << "90 degrees are within 90";
+    EXPECT_EQ(with_creases(box_mesh(), 89.0f).num_vertices(), 24u);
+}
+
+TEST(Creases, VerticesAtOnePlaceAreSmoothAcrossTheirSeam) {
+    // The cube of 24 vertices becomes smooth again, and keeps its vertices.
+    TriangleMesh flat = with_creases(box_mesh(), 40.0f);
+    for (std::size_t i = 0; i < flat.num_vertices(); ++i)
+        flat.uvs.emplace_back(static_cast<float>(i), 0.0f);
+    const TriangleMesh smooth = with_creases(flat, 100.0f);
+    EXPECT_EQ(smooth.triangles, flat.triangles);
+    EXPECT_EQ(smooth.uvs, flat.uvs);
+    for (std::size_t i = 0; i < 8; ++i)
+        EXPECT_NEAR(glm::distance(smooth.normals[i], box_mesh().normals[i]), 0.0f, 1e-6f);
+}
+
+TEST(Creases, OnlyTheVerticesOfTheEdgeAreDoubled) {
+    // A roof: two slopes of 3 x 3 vertices that meet at a ridge of 90 degrees.
+    TriangleMesh roof;
+    for (int x = -2; x <= 2; ++x)
+        for (int z = 0; z < 3; ++z)
+            roof.positions.emplace_back(x, -std::abs(x), z);
+    for (std::uint32_t x = 0; x < 4; ++x)
+        for (std::uint32_t z = 0; z < 2; ++z) {
+            const std::uint32_t a = 3 * x + z;
+            roof.triangles.push_back({a, a + 1, a + 3});
+            roof.triangles.push_back({a + 1, a + 4, a + 3});
+        }
+    roof.normals = smooth_normals(roof);
+    roof.colors.assign(15, glm::vec3(0.5f));
+    const TriangleMesh creased = with_creases(roof, 40.0f);
+    EXPECT_EQ(creased.num_vertices(), 18u);
+    EXPECT_EQ(creased.colors.size(), 18u);
+    for (const glm::vec3& normal : creased.normals)
+        EXPECT_NEAR(std::abs(normal.x), std::sqrt(0.5f), 1e-6f);
 }
 
 } // namespace

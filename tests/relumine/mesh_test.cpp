@@ -1,5 +1,7 @@
 #include "relumine/mesh.h"
 
+#include <algorithm>
+
 #include "mesh/floor.h"
 #include "mesh/save.h"
 #include "prt/scene/scene_file.h"
@@ -36,6 +38,46 @@ TEST_F(MeshFile, IsTurnedUpright) {
         EXPECT_EQ(turned.geometry.normals[i], glm::vec3(0, 0, -1));
         EXPECT_EQ(turned.geometry.positions[i].y, squares.positions[i].z);
     }
+}
+
+TEST_F(MeshFile, RefinedKeepsTheFloorLastAndTheBlockersAsTheyWere) {
+    Mesh mesh(scenes::two_squares());
+    mesh::append_floor(mesh.geometry, 3);
+    mesh.floor_vertices = 3;
+    const mesh::TriangleMesh before = mesh.geometry;
+    const std::size_t num_own = before.num_vertices() - 9;
+    const Mesh fine = refined(mesh, {.error = 0.0f, .max_vertices = 300});
+    ASSERT_TRUE(fine.blockers);
+    EXPECT_EQ(fine.blockers->positions, before.positions);
+    EXPECT_EQ(fine.blockers->triangles, before.triangles);
+    const std::vector<glm::vec3>& positions = fine.geometry.positions;
+    EXPECT_TRUE(std::equal(before.positions.begin(),
+                           before.positions.begin() + static_cast<std::ptrdiff_t>(num_own),
+                           positions.begin()));
+    ASSERT_GT(fine.floor_added, 0u);
+    const std::size_t first = positions.size() - 9 - fine.floor_added;
+    for (std::size_t i = 0; i < 9; ++i)
+        EXPECT_EQ(positions[first + i], before.positions[num_own + i]);
+    for (std::size_t i = 0; i < positions.size(); ++i)
+        EXPECT_EQ(positions[i].y == before.positions.back().y, i >= first) << i;
+    // The scene knows its floor.
+    const Scene scene = unclustered_scene(fine);
+    EXPECT_TRUE(scene.blockers);
+    // A curved surface throws its own shadows.
+    EXPECT_FALSE(refined(mesh, {.error = {}, .max_edge = 0.3f, .curved = true}).blockers);
+    EXPECT_THROW(static_cast<void>(refined(mesh, {.max_vertices = 3})), std::runtime_error);
+}
+
+TEST_F(MeshFile, SimplifiedKeepsTheFloorAndTheBlockers) {
+    Mesh mesh(scenes::two_squares());
+    mesh::append_floor(mesh.geometry, 5);
+    mesh.floor_vertices = 5;
+    const Mesh coarse = simplified(mesh, 4);
+    ASSERT_TRUE(coarse.blockers);
+    EXPECT_EQ(coarse.blockers->positions, mesh.geometry.positions);
+    EXPECT_TRUE(std::equal(mesh.geometry.positions.end() - 25, mesh.geometry.positions.end(),
+                           coarse.geometry.positions.end() - 25));
+    EXPECT_THROW(static_cast<void>(simplified(mesh, 2)), std::runtime_error);
 }
 
 TEST_F(MeshFile, ThatIsAbsentIsNamed) {

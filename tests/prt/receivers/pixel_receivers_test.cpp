@@ -49,8 +49,35 @@ TEST(PixelReceivers, CoverASpheresSilhouette) {
         const std::uint32_t sample = pixels.layout.samples[i];
         const glm::vec3 ray = rays.direction(sample / 9 % 150, sample / 9 / 150, sample % 9);
         EXPECT_LT(glm::length(ray + receivers.to_eye[i]), 1e-4f);
-        EXPECT_EQ(receivers.positions[i], value_at(sphere, sphere.positions, receivers.points[i]));
+        const glm::vec3 flat = value_at(sphere, sphere.positions, receivers.points[i]);
+        EXPECT_NEAR(glm::distance(receivers.positions[i], flat), 0.0f, 2e-3f);
+        EXPECT_GE(glm::length(outward) + 1e-6f, glm::length(flat - camera.target));
     }
+}
+
+TEST(PixelReceivers, FacetsDoNotShadeACoarseSphereWhereLightGrazes) {
+    const mesh::TriangleMesh sphere = scenes::icosphere(2, 1.0f, glm::vec3(0.0f));
+    const RayScene rays(sphere);
+    const PixelReceivers pixels =
+        pixel_receivers(sphere, rays, {.camera = {.eye = {0, 0, 6}}, .width = 60, .height = 60});
+    const glm::vec3 light = glm::normalize(glm::vec3(1.0f, 0.13f, 0.07f));
+    std::size_t num_grazed = 0, num_shaded = 0, num_shaded_flat = 0;
+    for (std::size_t i = 0; i < pixels.receivers.size(); ++i) {
+        const glm::vec3& normal = pixels.receivers.normals[i];
+        const float cosine = glm::dot(normal, light);
+        if (cosine < 0.03f || cosine > 0.3f)
+            continue;
+        const auto is_shaded = [&](const glm::vec3& position) {
+            return rays.occluded(ray_origin(position, normal, 1e-4f), light) ? 1u : 0u;
+        };
+        ++num_grazed;
+        num_shaded += is_shaded(pixels.receivers.positions[i]);
+        num_shaded_flat +=
+            is_shaded(value_at(sphere, sphere.positions, pixels.receivers.points[i]));
+    }
+    EXPECT_GT(num_grazed, 100u);
+    EXPECT_GT(num_shaded_flat, num_grazed / 15) << "the fault that is mended";
+    EXPECT_LT(num_shaded, num_grazed / 100);
 }
 
 TEST(PixelReceivers, BackFacesTurnTheirNormals) {

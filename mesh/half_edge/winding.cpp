@@ -1,0 +1,194 @@
+#include "mesh/half_edge/winding.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "mesh/half_edge/edge_uses.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+/// A patch whose area vectors sum to less than this part of its area is closed or nearly so: the
+/// holes of a scanned bunny are 2 %, a box without its lid has 20 %.
+constexpr double NearlyClosed = 0.05;
+
+/// Beside the patch of a triangle: whether it is turned against the patch's first triangle.
+struct Joined {
+    std::uint32_t triangle;
+    bool is_turned;
+};
+
+/// The triangles next to each triangle, over edges that two triangles share.
+class Neighbours {
+public:
+    Neighbours(std::span<const EdgeUse> uses, std::size_t num_triangles)
+        : begin_(num_triangles + 1) {
+        const auto for_pairs = [&](const auto& action) {
+            for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+                if (edge.size() != 2 || edge[0].triangle() == edge[1].triangle())
+                    return;
+                const bool is_turned = edge[0].ascends == edge[1].ascends;
+                action(edge[0].triangle(), Joined{edge[1].triangle(), is_turned});
+                action(edge[1].triangle(), Joined{edge[0].triangle(), is_turned});
+            });
+        };
+        for_pairs([&](std::uint32_t from, const Joined&) { ++begin_[from + 1]; });
+        for (std::size_t i = 1; i < begin_.size(); ++i)
+            begin_[i] += begin_[i - 1];
+        joined_.resize(begin_.back());
+        std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
+        for_pairs([&](std::uint32_t from, const Joined& to) { joined_[next[from]++] = to; });
+    }
+    [[nodiscard]] std::span<const Joined> of(std::uint32_t triangle) const {
+        return std::span(joined_).subspan(begin_[triangle],
+                                          begin_[triangle + 1] - begin_[triangle]);
+    }
+
+private:
+    std::vector<std::size_t> begin_;
+    std::vector<Joined> joined_;
+};
+
+/// Triangles that one winding decides.
+struct Patch {
+    std::vector<std::uint32_t> triangles;
+    bool is_closed = false;
+    /// Times six, as wound like the first triangle.
+    double volume = 0.0;
+    double area = 0.0, turned_area = 0.0;
+    Bounds box;
+};
+
+bool contains(const Bounds& outer, const Bounds& inner) {
+    return glm::all(glm::lessThanEqual(outer.min, inner.min)) &&
+           glm::all(glm::greaterThanEqual(outer.max, inner.max));
+}
+
+/// Returns how often a ray from a point crosses a patch. The direction is odd, so that it hardly
+/// meets an edge.
+std::size_t num_crossings(const TriangleMesh& mesh, const Patch& patch, const glm::dvec3& origin) {
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(0.43711, 0.71279, 0.54853));
+    std::size_t count = 0;
+    for (const std::uint32_t i : patch.triangles) {
+        std::array<glm::dvec3, 3> to{};
+        for (std::size_t k = 0; k < 3; ++k)
+            to[k] = glm::dvec3(mesh.positions[mesh.triangles[i][k]]) - origin;
+        std::array<double, 3> side{};
+        for (std::size_t k = 0; k < 3; ++k)
+            side[k] = glm::dot(direction, glm::cross(to[k], to[(k + 1) % 3]));
+        const bool is_hit = (side[0] > 0.0 && side[1] > 0.0 && side[2] > 0.0) ||
+                            (side[0] < 0.0 && side[1] < 0.0 && side[2] < 0.0);
+        if (!is_hit)
+            continue;
+        const glm::dvec3 normal = glm::cross(to[1] - to[0], to[2] - to[0]);
+        const double distance = glm::dot(to[0], normal) / glm::dot(direction, normal);
+        count += distance > 0.0 ? 1 : 0;
+    }
+    return count;
+}
+
+/// Finds the patches, and for each triangle whether it is turned against its patch's first.
+std::vector<Patch> patches_of(const TriangleMesh& mesh, std::span<const EdgeUse> uses,
+                              std::vector<bool>& is_turned) {
+    const Neighbours neighbours(uses, mesh.num_triangles());
+    std::vector<Patch> patches;
+    std::vector<bool> is_seen(mesh.num_triangles());
+    for (std::uint32_t seed = 0; seed < mesh.num_triangles(); ++seed) {
+        if (is_seen[seed])
+            continue;
+        Patch& patch = patches.emplace_back();
+        patch.triangles.push_back(seed);
+        is_seen[seed] = true;
+        for (std::size_t i = 0; i < patch.triangles.size(); ++i)
+            for (const Joined& next : neighbours.of(patch.triangles[i]))
+                if (!is_seen[next.triangle]) {
+                    is_seen[next.triangle] = true;
+                    is_turned[next.triangle] = is_turned[patch.triangles[i]] != next.is_turned;
+                    patch.triangles.push_back(next.triangle);
+                }
+    }
+    return patches;
+}
+
+void measure(const TriangleMesh& mesh, const std::vector<bool>& is_turned, Patch& patch) {
+    const glm::vec3 first = mesh.positions[mesh.triangles[patch.triangles.front()][0]];
+    patch.box = {first, first};
+    glm::dvec3 centre(0.0), vector_area(0.0);
+    for (const std::uint32_t i : patch.triangles) {
+        const glm::dvec3 normal = area_normal(mesh.positions, mesh.triangles[i]);
+        const double area = glm::length(normal);
+        patch.area += area;
+        patch.turned_area += is_turned[i] ? area : 0.0;
+        vector_area += is_turned[i] ? -normal : normal;
+        for (const std::uint32_t vertex : mesh.triangles[i]) {
+            centre += area / 3.0 * glm::dvec3(mesh.positions[vertex]);
+            patch.box.min = glm::min(patch.box.min, mesh.positions[vertex]);
+            patch.box.max = glm::max(patch.box.max, mesh.positions[vertex]);
+        }
+    }
+    if (!(patch.area > 0.0))
+        return;
+    centre /= patch.area;
+    for (const std::uint32_t i : patch.triangles) {
+        const glm::dvec3 normal = area_normal(mesh.positions, mesh.triangles[i]);
+        const glm::dvec3 to = glm::dvec3(mesh.positions[mesh.triangles[i][0]]) - centre;
+        patch.volume += (is_turned[i] ? -1.0 : 1.0) * glm::dot(to, normal);
+    }
+    // A sheet encloses nothing, though its area vectors may cancel.
+    constexpr double LeastVolume = 1e-4;
+    patch.is_closed = glm::length(vector_area) < NearlyClosed * patch.area &&
+                      std::abs(patch.volume) > LeastVolume * std::pow(patch.area, 1.5);
+}
+
+} // namespace
+
+Winding find_winding(const TriangleMesh& mesh) {
+    const std::vector<Triangle> welded = renamed(mesh.triangles, first_at_place(mesh.positions));
+    const std::vector<EdgeUse> uses = edge_uses(welded);
+    Winding result;
+    result.is_wrong.resize(mesh.num_triangles());
+    std::vector<Patch> patches = patches_of(mesh, uses, result.is_wrong);
+    for (Patch& patch : patches)
+        measure(mesh, result.is_wrong, patch);
+    for (const Patch& patch : patches) {
+        bool turns = 2.0 * patch.turned_area > patch.area;
+        if (patch.is_closed) {
+            std::size_t depth = 0;
+            const glm::dvec3 point(mesh.positions[mesh.triangles[patch.triangles.front()][0]]);
+            for (const Patch& other : patches)
+                if (&other != &patch && other.is_closed && contains(other.box, patch.box))
+                    depth += num_crossings(mesh, other, point) % 2;
+            turns = (patch.volume < 0.0) != (depth % 2 == 1);
+        }
+        if (turns)
+            for (const std::uint32_t i : patch.triangles)
+                result.is_wrong[i] = !result.is_wrong[i];
+    }
+    for (std::uint32_t i = static_cast<std::uint32_t>(result.is_wrong.size()); i-- > 0;)
+        if (result.is_wrong[i]) {
+            ++result.num_wrong;
+            result.first_wrong = i;
+        }
+    for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
+        if (edge.size() == 2 &&
+            (edge[0].ascends == edge[1].ascends) ==
+                (result.is_wrong[edge[0].triangle()] == result.is_wrong[edge[1].triangle()]))
+            ++result.num_one_sided;
+    });
+    return result;
+}
+
+bool faces_with_normals(const TriangleMesh& mesh, std::uint32_t triangle) {
+    const Triangle& corners = mesh.triangles[triangle];
+    glm::dvec3 sum(0.0);
+    for (const std::uint32_t vertex : corners)
+        sum += glm::dvec3(mesh.normals[vertex]);
+    return glm::dot(sum, area_normal(mesh.positions, corners)) >= 0.0;
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,335 @@
+#include "prt/refinement/refine.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "mesh/half_edge/curved_surface.h"
+#include "mesh/half_edge/split_mesh.h"
+#include "prt/refinement/coarse_transfer.h"
+#include "prt/visibility/ray_scene.h"
+
+namespace relumine::prt {
+
+namespace {
+
+using mesh::SplitMesh;
+using Bits = CoarseDirections::Bits;
+
+/// Middles that are traced together: 50 MB.
+constexpr std::size_t PointsPerStep = std::size_t{1} << 18;
+
+/// Triangles with a side longer than this part of the scene's diagonal are asked for their centre.
+constexpr float LargeTriangle = 1.0f / 16.0f;
+
+/// Of the mesh's diagonal.
+constexpr float ShortestEdge = 1e-3f;
+
+/// With a limit of vertices, a round takes this part of what is left. Fewer rounds would split
+/// edges that the next round finds to matter less; measured.
+constexpr std::size_t RoundsToLimit = 6;
+constexpr std::size_t FewestOfRound = 32;
+
+/// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
+constexpr float LargestPartOfWay = 0.25f;
+
+class Refinement {
+public:
+    Refinement(const mesh::TriangleMesh& mesh, const Blockers& blockers,
+               const RefineOptions& options, RefineReport& report)
+        : base_(mesh), blockers_(blockers), options_(options), report_(report), split_(mesh),
+          progress_(options.stop, options.on_progress), step_(automatic_bias(mesh)),
+          bias_(options.bias.value_or(step_)),
+          large_(LargeTriangle * mesh::bounds(mesh).diagonal()),
+          min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(mesh).diagonal())) {}
+
+    mesh::TriangleMesh run() {
+        progress_.start_stage(0.0, 1.0);
+        if (options_.max_edge)
+            while (split_long_edges())
+                ++report_.num_rounds;
+        if (options_.error) {
+            trace_vertices();
+            for (;;) {
+                ask_edges();
+                ask_large_triangles();
+                if (!split_by_error())
+                    break;
+                ++report_.num_rounds;
+                trace_vertices();
+                report_progress();
+            }
+        }
+        if (!options_.curved)
+            return split_.take();
+        return bent();
+    }
+
+private:
+    [[nodiscard]] std::size_t num_vertices() const { return split_.mesh().num_vertices(); }
+    [[nodiscard]] std::size_t room() const { return options_.max_vertices - num_vertices(); }
+
+    void report_progress() {
+        const auto num_new = static_cast<double>(num_vertices() - base_.num_vertices());
+        const auto most = static_cast<double>(options_.max_vertices - base_.num_vertices());
+        progress_.report(
+            std::max(most > 0.0 ? num_new / most : 1.0,
+                     1.0 - std::exp2(-0.25 * static_cast<double>(report_.num_rounds))));
+    }
+
+    /// Splits edges that are too long, in each round those nearly as long as the longest: so edges
+    /// are even also where the limit of vertices ends the work.
+    bool split_long_edges() {
+        constexpr float NearlyAsLong = 0.7f;
+        float longest = 0.0f;
+        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+            if (!split_.is_split(edge))
+                longest = std::max(longest, split_.length(edge));
+        const float least = std::max(*options_.max_edge, NearlyAsLong * longest);
+        if (!(longest > *options_.max_edge))
+            return false;
+        std::vector<std::uint32_t> edges;
+        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+            if (!split_.is_split(edge) && split_.length(edge) > least)
+                edges.push_back(edge);
+        std::stable_sort(edges.begin(), edges.end(), [&](std::uint32_t a, std::uint32_t b) {
+            return split_.length(a) > split_.length(b);
+        });
+        for (const std::uint32_t edge : edges)
+            if (!split_.mark(edge, room()))
+                report_.is_at_limit = true;
+        if (split_.num_marked() == 0)
+            return false;
+        progress_.poll();
+        split_.split();
+        return true;
+    }
+
+    void trace_vertices() {
+        const Receivers all = vertex_receivers(split_.mesh());
+        const auto first = static_cast<std::ptrdiff_t>(vertex_bits_.size());
+        Receivers added{.positions = {all.positions.begin() + first, all.positions.end()},
+                        .normals = {all.normals.begin() + first, all.normals.end()}};
+        const std::vector<Bits> bits = trace(added);
+        vertex_bits_.insert(vertex_bits_.end(), bits.begin(), bits.end());
+    }
+
+    std::vector<Bits> trace(const Receivers& receivers) {
+        report_.num_points += receivers.size();
+        return directions_.trace(receivers, blockers_, bias_, progress_);
+    }
+
+    [[nodiscard]] CoarseDirections::Point vertex(std::uint32_t index) const {
+        return {split_.mesh().normals[index], &vertex_bits_[index]};
+    }
+
+    /// A point with the mean of vertices' positions and normals.
+    void add_mean(std::initializer_list<std::uint32_t> vertices, Receivers& receivers) const {
+        const mesh::TriangleMesh& mesh = split_.mesh();
+        glm::dvec3 position(0.0), normal(0.0);
+        for (const std::uint32_t vertex : vertices) {
+            position += glm::dvec3(mesh.positions[vertex]) / static_cast<double>(vertices.size());
+            normal += glm::dvec3(mesh.normals[vertex]);
+        }
+        const double length = glm::length(normal);
+        constexpr double Shortest = 1e-4;
+        receivers.positions.emplace_back(position);
+        receivers.normals.push_back(length > Shortest ? glm::vec3(normal / length)
+                                                      : mesh.normals[*vertices.begin()]);
+    }
+
+    [[nodiscard]] bool may_split(std::uint32_t edge) const {
+        return !split_.is_split(edge) && split_.length(edge) >= 2.0f * min_edge_ &&
+               split_.length(edge) > 0.0f;
+    }
+
+    /// Finds the errors of the edges that are new.
+    void ask_edges() {
+        std::uint32_t next = static_cast<std::uint32_t>(errors_.size());
+        errors_.resize(split_.num_edges(), 0.0f);
+        struct Middle {
+            std::uint32_t edge;
+            SplitMesh::Ends ends;
+        };
+        while (next < split_.num_edges()) {
+            std::vector<Middle> middles;
+            std::vector<SplitMesh::Ends> ends;
+            Receivers receivers;
+            for (; next < split_.num_edges() && middles.size() < PointsPerStep; ++next) {
+                if (!may_split(next))
+                    continue;
+                ends.clear();
+                split_.append_ends(next, ends);
+                for (const SplitMesh::Ends& pair : ends) {
+                    middles.push_back({next, pair});
+                    add_mean({pair.low, pair.high}, receivers);
+                    if (pair.is_rim)
+                        move_inside(pair.triangle, receivers.positions.back());
+                }
+            }
+            const std::vector<Bits> bits = trace(receivers);
+            std::vector<float> errors(middles.size());
+            tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t i) {
+                const std::array<CoarseDirections::Point, 2> both = {vertex(middles[i].ends.low),
+                                                                     vertex(middles[i].ends.high)};
+                errors[i] =
+                    directions_.difference({receivers.normals[i], &bits[i]}, both, 1.0f / 2.0f);
+            });
+            for (std::size_t i = 0; i < middles.size(); ++i)
+                errors_[middles[i].edge] = std::max(errors_[middles[i].edge], errors[i]);
+        }
+    }
+
+    void move_inside(std::uint32_t triangle, glm::vec3& position) const {
+        const mesh::Triangle& corners = split_.mesh().triangles[triangle];
+        const std::vector<glm::vec3>& positions = split_.mesh().positions;
+        const glm::vec3 way =
+            (positions[corners[0]] + positions[corners[1]] + positions[corners[2]]) / 3.0f -
+            position;
+        if (const float length = glm::length(way); length > 0.0f)
+            position += std::min(step_ / length, LargestPartOfWay) * way;
+    }
+
+    /// What lies in the middle of a large triangle may throw no shadow on its edges.
+    void ask_large_triangles() {
+        std::vector<std::uint32_t> triangles;
+        Receivers receivers;
+        for (const std::uint32_t triangle : split_.changed_triangles()) {
+            const std::uint32_t edge = split_.edge_of(triangle, split_.longest_side(triangle));
+            if (split_.length(edge) <= large_ || !may_split(edge))
+                continue;
+            const auto& [a, b, c] = split_.mesh().triangles[triangle];
+            triangles.push_back(triangle);
+            add_mean({a, b, c}, receivers);
+        }
+        const std::vector<Bits> bits = trace(receivers);
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const auto& [a, b, c] = split_.mesh().triangles[triangles[i]];
+            const std::array<CoarseDirections::Point, 3> corners = {vertex(a), vertex(b),
+                                                                    vertex(c)};
+            float& error = errors_[split_.edge_of(triangles[i], split_.longest_side(triangles[i]))];
+            error = std::max(error, directions_.difference({receivers.normals[i], &bits[i]},
+                                                           corners, 1.0f / 3.0f));
+        }
+    }
+
+    /// Splits the edges beyond the error, or those of them that matter most.
+    bool split_by_error() {
+        struct Candidate {
+            double weight;
+            std::uint32_t edge;
+        };
+        std::vector<Candidate> candidates;
+        report_.largest_error = 0.0f;
+        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+            if (errors_[edge] > *options_.error && may_split(edge)) {
+                candidates.push_back(
+                    {double{errors_[edge]} * double{errors_[edge]} * split_.area_beside(edge),
+                     edge});
+                report_.largest_error = std::max(report_.largest_error, errors_[edge]);
+            }
+        std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
+            return a.weight != b.weight ? a.weight > b.weight : a.edge < b.edge;
+        });
+        // Without a limit that is near, all of them.
+        const std::size_t most = room();
+        const std::size_t wanted = 2 * candidates.size() < most / RoundsToLimit
+                                       ? most
+                                       : std::max(most / RoundsToLimit, FewestOfRound);
+        report_.is_at_limit = false;
+        for (const Candidate& candidate : candidates) {
+            if (split_.num_marked() >= wanted)
+                break;
+            if (!split_.mark(candidate.edge, most))
+                report_.is_at_limit = true;
+        }
+        if (split_.num_marked() == 0)
+            return false;
+        split_.split();
+        return true;
+    }
+
+    /// The mesh with the new vertices on the smooth surface.
+    mesh::TriangleMesh bent() {
+        mesh::TriangleMesh mesh = split_.mesh();
+        const mesh::CurvedSurface surface(base_);
+        std::vector<bool> is_done(mesh.num_vertices());
+        std::fill_n(is_done.begin(), base_.num_vertices(), true);
+        for (std::uint32_t i = 0; i < mesh.num_triangles(); ++i)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = mesh.triangles[i][k];
+                if (is_done[vertex])
+                    continue;
+                is_done[vertex] = true;
+                mesh.positions[vertex] =
+                    surface.at(split_.origin(i).triangle, split_.origin(i).corners[k]);
+            }
+        return mesh;
+    }
+
+    const mesh::TriangleMesh& base_;
+    const Blockers& blockers_;
+    const RefineOptions& options_;
+    RefineReport& report_;
+    SplitMesh split_;
+    Progress progress_;
+    float step_;
+    float bias_;
+    float large_;
+    float min_edge_;
+    CoarseDirections directions_;
+    /// [num_vertices].
+    std::vector<Bits> vertex_bits_;
+    /// [num_edges].
+    std::vector<float> errors_;
+};
+
+void check(const mesh::TriangleMesh& mesh, const RefineOptions& options) {
+    const auto require = [](bool condition, const std::string& message) {
+        if (!condition)
+            throw std::invalid_argument(message);
+    };
+    require(!options.error || (std::isfinite(*options.error) && *options.error >= 0.0f),
+            fmt::format("expected an error >= 0, got {}", options.error.value_or(0.0f)));
+    require(!options.max_edge || *options.max_edge > 0.0f,
+            fmt::format("expected edges longer than 0, got {}", options.max_edge.value_or(0.0f)));
+    const float min_edge = options.min_edge.value_or(0.0f);
+    require(min_edge >= 0.0f, fmt::format("expected a shortest edge >= 0, got {}", min_edge));
+    require(!options.max_edge || min_edge <= *options.max_edge,
+            fmt::format("expected a shortest edge that is not above the longest of {}, got {}",
+                        options.max_edge.value_or(0.0f), min_edge));
+    require(options.max_vertices >= mesh.num_vertices(),
+            fmt::format("expected a limit of at least the mesh's {} vertices, got {}",
+                        mesh.num_vertices(), options.max_vertices));
+    require(std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
+                        [&](const mesh::Triangle& triangle) {
+                            const glm::dvec3 origin(mesh.positions[triangle[0]]);
+                            return glm::cross(glm::dvec3(mesh.positions[triangle[1]]) - origin,
+                                              glm::dvec3(mesh.positions[triangle[2]]) - origin) !=
+                                   glm::dvec3(0.0);
+                        }),
+            "expected a triangle with an area to refine, got none");
+}
+
+} // namespace
+
+mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blockers,
+                          const RefineOptions& options, RefineReport* report) {
+    check(mesh, options);
+    const auto start = std::chrono::steady_clock::now();
+    RefineReport local;
+    mesh::TriangleMesh result = Refinement(mesh, blockers, options, local).run();
+    local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (report != nullptr)
+        *report = local;
+    return result;
+}
+
+} // namespace relumine::prt

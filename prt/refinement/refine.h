@@ -1,0 +1,67 @@
+// Meshes refined where their light needs it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <stop_token>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/visibility/blockers.h"
+
+namespace relumine::prt {
+
+struct RefineOptions {
+    /// An edge is split while the transfer at its middle differs by more from the mean of its ends:
+    /// RMS over all directions, 1/sr, albedo 1. 0.046 is the edge of a floor at the foot of a wall.
+    /// Empty: light is not asked.
+    std::optional<float> error = 0.01f;
+    /// Longer edges are split in any case. Empty: none.
+    std::optional<float> max_edge = {};
+    /// Edges shorter than twice this are not split, in the mesh's unit. Empty: 1/1000 of the mesh's
+    /// diagonal.
+    std::optional<float> min_edge = {};
+    /// The mesh grows to so many vertices at most. Then the edges are split first that matter most:
+    /// error squared times the area beside them.
+    std::size_t max_vertices = std::numeric_limits<std::uint32_t>::max() - 1;
+    /// New vertices lie on mesh::CurvedSurface, not in the middle of the old edge. Light is asked
+    /// for at the flat places, where no triangle is before them.
+    bool curved = false;
+    /// Lift of the rays' origins along the normal, as in PrecomputeOptions. Empty:
+    /// automatic_bias().
+    std::optional<float> bias = {};
+    /// Polled a few times a second.
+    std::stop_token stop = {};
+    /// Receives an estimate of the fraction done, in [0, 1], which never falls; one call at a time.
+    std::function<void(double)> on_progress = {};
+};
+
+struct RefineReport {
+    std::size_t num_rounds = 0;
+    /// Points whose transfer was asked for: vertices, and middles of edges.
+    std::size_t num_points = 0;
+    /// The largest error of an edge that may be split and is not. Above RefineOptions::error only
+    /// at the limit of vertices.
+    float largest_error = 0.0f;
+    bool is_at_limit = false;
+    double seconds = 0.0;
+};
+
+/// Splits the edges of a mesh where light changes between their ends, whatever the environment will
+/// be: mesh::SplitMesh says how. Transfer is found in 1,536 directions, horizons included, first at
+/// the vertices and at the middles of all edges, then at the new ones, round by round. Triangles
+/// that are large in the scene are asked for their centre, too.
+///
+/// Vertices of the mesh keep index and position; its triangles come first, too, each cut down.
+///
+/// Memory:  200 bytes for each vertex, 100 for each edge.
+/// Threads: parallel inside; the result is the same bit by bit for any number of threads.
+/// Throws:  std::invalid_argument for options out of range or against each other, and for a mesh
+///          without a triangle of positive area; Cancelled.
+[[nodiscard]] mesh::TriangleMesh refine(const mesh::TriangleMesh& mesh, const Blockers& blockers,
+                                        const RefineOptions& options = {},
+                                        RefineReport* report = nullptr);
+
+} // namespace relumine::prt

@@ -1,0 +1,228 @@
+#include "prt/refinement/refine.h"
+
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "mesh/half_edge/edge_uses.h"
+#include "prt/precompute.h"
+#include "prt/refinement/coarse_transfer.h"
+#include "prt/visibility/ray_scene.h"
+#include "tests/prt/scenes.h"
+
+namespace relumine::prt {
+namespace {
+
+/// A box on a floor of two triangles.
+mesh::TriangleMesh box_on_floor() {
+    return scenes::joined(scenes::box({-0.5f, 0.001f, -0.5f}, {0.5f, 1.0f, 0.5f}),
+                          scenes::floor_grid(2, 6.0f));
+}
+
+mesh::TriangleMesh refined(const mesh::TriangleMesh& mesh, const RefineOptions& options,
+                           RefineReport* report = nullptr) {
+    return refine(mesh, RayScene(mesh), options, report);
+}
+
+/// A wall without end at x = 0: nothing from x > 0 reaches points left of it, below a height.
+class Wall final : public Blockers {
+public:
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::uint32_t active) const override {
+        std::uint32_t blocked = 0;
+        for (std::uint32_t i = 0; i < PacketSize; ++i)
+            if ((origin.x < 0.0f) != (directions.x[i] < 0.0f))
+                blocked |= 1u << i;
+        return blocked & active;
+    }
+};
+
+TEST(CoarseDirections, WhatReachesAPointOverAnEmptyFloor) {
+    const CoarseDirections directions;
+    const mesh::TriangleMesh floor = scenes::floor_grid(2, 1.0f);
+    const RayScene rays(floor);
+    const Progress progress({}, {});
+    const auto bits = directions.trace(vertex_receivers(floor), rays, 1e-4f, progress);
+    ASSERT_EQ(bits.size(), 4u);
+    std::size_t count = 0;
+    for (const std::uint64_t word : bits[0])
+        count += static_cast<std::size_t>(std::popcount(word));
+    EXPECT_EQ(count, 6u * 16u * 16u / 2u) << "the upper half";
+}
+
+TEST(CoarseDirections, TheDifferenceAtAWallIsTheClosedForm) {
+    // On one side of the wall half of the sky is seen, on the other the other half. The middle
+    // differs from the mean by half of its T everywhere: RMS^2 = 1/(4 pi) Int_hemisphere
+    // (cos / 2 pi)^2 = 1 / (24 pi^2).
+    const CoarseDirections directions;
+    Receivers points;
+    points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
+    points.normals.assign(3, glm::vec3(0, 1, 0));
+    const auto bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
+    const std::array<CoarseDirections::Point, 2> ends = {
+        CoarseDirections::Point{points.normals[0], &bits[0]},
+        CoarseDirections::Point{points.normals[1], &bits[1]}};
+    EXPECT_NEAR(directions.difference({points.normals[2], &bits[2]}, ends, 0.5f),
+                std::sqrt(1.0 / 24.0) / 3.14159265, 3e-4);
+    EXPECT_EQ(directions.difference({points.normals[0], &bits[0]}, std::span(ends).first(1), 1.0f),
+              0.0f);
+    // Other normals, all of them slow: the same sum by the plain way.
+    const glm::vec3 slanted = glm::normalize(glm::vec3(0.3f, 1.0f, 0.2f));
+    double sum = 0.0, all = 0.0;
+    for (std::size_t p = 0; p < CoarseDirections::NumPatches; ++p)
+        for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
+            const glm::vec3 w = directions.patches()[p].direction(j);
+            const double place = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
+            const double share = place * place * place; // of the texel's solid angle
+            const bool a = (bits[0][p] >> j & 1u) != 0, m = (bits[2][p] >> j & 1u) != 0;
+            const double difference =
+                (m ? glm::dot(slanted, w) : 0.0f) - (a ? glm::dot(points.normals[0], w) : 0.0f);
+            sum += share * difference * difference;
+            all += share;
+        }
+    EXPECT_NEAR(directions.difference({slanted, &bits[2]}, std::span(ends).first(1), 1.0f),
+                std::sqrt(sum / all) / 3.14159265, 1e-4);
+}
+
+TEST(Refine, ABoxOnTwoTrianglesGetsItsShadow) {
+    const mesh::TriangleMesh mesh = box_on_floor();
+    RefineReport report;
+    const mesh::TriangleMesh fine = refined(mesh, {.error = 0.0f, .max_vertices = 2000}, &report);
+    EXPECT_LE(fine.num_vertices(), 2000u);
+    EXPECT_GT(fine.num_vertices(), 1950u) << "up to the limit";
+    EXPECT_TRUE(report.is_at_limit);
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
+        EXPECT_EQ(fine.positions[i], mesh.positions[i]);
+        EXPECT_EQ(fine.normals[i], mesh.normals[i]);
+    }
+    // Most vertices are near the box, and none of the box's own: it is convex.
+    std::size_t num_near = 0;
+    for (std::size_t i = mesh.num_vertices(); i < fine.num_vertices(); ++i) {
+        const glm::vec3& p = fine.positions[i];
+        num_near += std::max(std::abs(p.x), std::abs(p.z)) < 1.5f ? 1 : 0;
+    }
+    EXPECT_GT(num_near, 1200u) << "in a quarter of the floor";
+    // Without gaps.
+    mesh::for_each_edge(mesh::edge_uses(fine.triangles), [&](std::span<const mesh::EdgeUse> edge) {
+        EXPECT_LE(edge.size(), 2u);
+        if (edge.size() == 1) {
+            const glm::vec3 middle =
+                0.5f * (fine.positions[edge[0].low] + fine.positions[edge[0].high]);
+            EXPECT_FLOAT_EQ(std::max(std::abs(middle.x), std::abs(middle.z)), 3.0f);
+        }
+    });
+}
+
+TEST(Refine, TheErrorHoldsInTheEnd) {
+    const mesh::TriangleMesh mesh = box_on_floor();
+    RefineReport loose, fine;
+    const std::size_t few = refined(mesh, {.error = 0.02f}, &loose).num_vertices();
+    const std::size_t many = refined(mesh, {.error = 0.01f}, &fine).num_vertices();
+    EXPECT_GT(few, mesh.num_vertices());
+    EXPECT_GT(many, few);
+    EXPECT_EQ(loose.largest_error, 0.0f) << "none that may still be split";
+    EXPECT_FALSE(fine.is_at_limit);
+}
+
+TEST(Refine, NothingIsSplitWithoutLightOrWithoutChange) {
+    // Below a plane that covers all: no light at all.
+    mesh::TriangleMesh dark = scenes::floor_grid(4, 1.0f);
+    for (glm::vec3& normal : dark.normals)
+        normal = -normal;
+    const mesh::TriangleMesh both = scenes::joined(dark, scenes::floor_grid(2, 50.0f, -0.01f));
+    const mesh::TriangleMesh fine = refined(both, {.error = 0.0f, .max_vertices = 5000});
+    std::size_t num_above = 0;
+    for (const glm::vec3& p : fine.positions)
+        num_above += p.y > -0.005f ? 1 : 0;
+    EXPECT_EQ(num_above, 16u) << "the side that looks down at the floor";
+    const mesh::TriangleMesh flat = scenes::floor_grid(2, 1.0f);
+    EXPECT_EQ(refined(flat, {.error = 0.0f}).triangles, flat.triangles);
+    const mesh::TriangleMesh sphere = scenes::icosphere(4, 1.0f, glm::vec3(0.0f));
+    EXPECT_EQ(refined(sphere, {.error = 0.02f}).triangles, sphere.triangles);
+}
+
+TEST(Refine, LimitsOfLength) {
+    const mesh::TriangleMesh floor = scenes::floor_grid(2, 1.0f);
+    const auto longest = [](const mesh::TriangleMesh& mesh) {
+        float result = 0.0f;
+        for (const mesh::EdgeUse& use : mesh::edge_uses(mesh.triangles))
+            result =
+                std::max(result, glm::distance(mesh.positions[use.low], mesh.positions[use.high]));
+        return result;
+    };
+    const mesh::TriangleMesh even = refined(floor, {.error = {}, .max_edge = 0.1f});
+    EXPECT_LE(longest(even), 0.1f);
+    EXPECT_GT(longest(even), 0.05f);
+    RefineReport report;
+    const mesh::TriangleMesh limited =
+        refined(floor, {.error = {}, .max_edge = 0.01f, .max_vertices = 500}, &report);
+    EXPECT_LE(limited.num_vertices(), 500u);
+    EXPECT_TRUE(report.is_at_limit);
+    const mesh::TriangleMesh coarse = refined(box_on_floor(), {.error = 0.0f, .min_edge = 0.5f});
+    for (const mesh::EdgeUse& use : mesh::edge_uses(coarse.triangles))
+        EXPECT_GE(glm::distance(coarse.positions[use.low], coarse.positions[use.high]), 0.3f)
+            << "no half is shorter, and an edge to a corner across hardly";
+}
+
+TEST(Refine, SmallThingsInTheMiddleOfALargeTriangleAreFound) {
+    // Far from all edges of the floor.
+    const mesh::TriangleMesh mesh = scenes::joined(
+        scenes::box({0.9f, 0.01f, -1.6f}, {1.4f, 0.5f, -1.1f}), scenes::floor_grid(2, 8.0f));
+    const mesh::TriangleMesh fine = refined(mesh, {.error = 0.0f, .max_vertices = 400});
+    std::size_t num_near = 0;
+    for (const glm::vec3& p : fine.positions)
+        num_near += glm::distance(p, glm::vec3(1.15f, 0, -1.35f)) < 1.0f ? 1 : 0;
+    EXPECT_GT(num_near, 150u);
+}
+
+TEST(Refine, CurvedVerticesLieOnTheBall) {
+    const mesh::TriangleMesh coarse = scenes::icosphere(1, 1.0f, glm::vec3(0.0f));
+    const mesh::TriangleMesh fine =
+        refined(coarse, {.error = {}, .max_edge = 0.2f, .curved = true});
+    ASSERT_GT(fine.num_vertices(), 300u);
+    for (std::size_t i = 0; i < fine.num_vertices(); ++i) {
+        EXPECT_NEAR(glm::length(fine.positions[i]), 1.0f, 0.01f);
+        if (i < coarse.num_vertices()) {
+            EXPECT_EQ(fine.positions[i], coarse.positions[i]);
+        }
+    }
+}
+
+TEST(Refine, SameBytesForAnyNumberOfThreads) {
+    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
+    const RefineOptions options{.error = 0.005f, .max_vertices = 3000};
+    mesh::TriangleMesh one;
+    {
+        const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+        one = refined(mesh, options);
+    }
+    const mesh::TriangleMesh many = refined(mesh, options);
+    EXPECT_EQ(one.positions, many.positions);
+    EXPECT_EQ(one.normals, many.normals);
+    EXPECT_EQ(one.triangles, many.triangles);
+}
+
+TEST(Refine, OptionsOutOfRangeAreRefused) {
+    const mesh::TriangleMesh mesh = box_on_floor();
+    const auto refuse = [](const mesh::TriangleMesh& what, const RefineOptions& options) {
+        EXPECT_THROW(static_cast<void>(refined(what, options)), std::invalid_argument);
+    };
+    refuse(mesh, {.error = -1.0f});
+    refuse(mesh, {.error = std::numeric_limits<float>::quiet_NaN()});
+    refuse(mesh, {.max_edge = 0.0f});
+    refuse(mesh, {.max_edge = 1.0f, .min_edge = 2.0f});
+    refuse(mesh, {.min_edge = -1.0f});
+    refuse(mesh, {.max_vertices = 5});
+    mesh::TriangleMesh flat = mesh;
+    flat.triangles = {{0, 0, 1}, {1, 1, 1}};
+    refuse(flat, {});
+    std::stop_source stop;
+    stop.request_stop();
+    EXPECT_THROW(static_cast<void>(refined(mesh, {.stop = stop.get_token()})), Cancelled);
+}
+
+} // namespace
+} // namespace relumine::prt
