@@ -94,7 +94,7 @@ cubemap::CubeMap unturned_cube_map_of(const cubemap::EnvironmentImage& image,
                                       const EnvironmentOptions& options) {
     return cubemap::resample(image, options.face_resolution != 0
                                         ? options.face_resolution
-                                        : cubemap::natural_resolution(image));
+                                        : cubemap::automatic_resolution(image));
 }
 
 cubemap::CubeMap cube_map_of(const cubemap::EnvironmentImage& image,

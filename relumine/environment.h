@@ -23,7 +23,8 @@ struct EnvironmentOptions {
     std::optional<cubemap::Layout> layout = {};
     /// Whose convention the file follows: a name of cubemap::conventions()
     std::string_view from = "openexr";
-    /// R, texels along a cube face's edge; 0: as many as keep the file's resolution
+    /// R, texels along a cube face's edge; 0: as fine as the file, and finer where single pixels of
+    /// it hold much of the light: cubemap::automatic_resolution()
     std::uint32_t face_resolution = 0;
     /// NaN and negative radiance becomes 0, infinite radiance the largest finite one; otherwise
     /// such files are refused, but for the few negative pixels that resampling leaves

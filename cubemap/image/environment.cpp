@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -12,6 +13,7 @@
 
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
+#include "cubemap/luminance.h"
 #include "cubemap/resample/resample.h"
 #include "files/output_file.h"
 
@@ -257,6 +259,31 @@ std::uint32_t natural_resolution(const EnvironmentImage& image) {
     if (image.layout == Layout::Octahedral)
         return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
     return std::max(1U, (image.width + 2) / 4);
+}
+
+std::uint32_t automatic_resolution(const EnvironmentImage& image) {
+    constexpr double SharpShare = 0.01;
+    constexpr std::uint32_t Least = 256, Most = 1024;
+    const std::uint32_t natural = natural_resolution(image);
+    const std::uint32_t finer = std::min(std::max(2 * natural, Least), Most);
+    // A pixel of a face is a texel of the cube map.
+    if (has_faces(image.layout) || finer <= natural)
+        return natural;
+    double brightest = 0.0;
+    double sum = 0.0;
+    for (std::uint32_t y = 0; y < image.height; ++y) {
+        // Pixels of other layouts differ little in solid angle.
+        const double weight =
+            image.layout == Layout::LatLong
+                ? std::sin(std::numbers::pi * (y + 0.5) / static_cast<double>(image.height))
+                : 1.0;
+        for (std::uint32_t x = 0; x < image.width; ++x) {
+            const double light = weight * luminance(image.pixels[std::size_t{y} * image.width + x]);
+            brightest = std::max(brightest, light);
+            sum += light;
+        }
+    }
+    return brightest > SharpShare * sum ? finer : natural;
 }
 
 ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {

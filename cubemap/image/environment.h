@@ -137,6 +137,14 @@ environment_files(const std::filesystem::path& path);
 /// cube or a cross.
 [[nodiscard]] std::uint32_t natural_resolution(const EnvironmentImage& image);
 
+/// Returns the cube-map resolution at which an image should light a scene: the natural one, and
+/// twice as much, 256 at least and 1,024 at most, where a single pixel holds over a hundredth of
+/// the light. A sun of one pixel lies in up to four texels, which must be small for its shadows
+/// not to move.
+///
+/// Cost:    O(pixels).
+[[nodiscard]] std::uint32_t automatic_resolution(const EnvironmentImage& image);
+
 /// Width and height of an image in pixels.
 struct ImageSize {
     std::uint32_t width = 0;

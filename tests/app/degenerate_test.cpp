@@ -71,9 +71,11 @@ void expect_equal(const Radiance& got, const Radiance& expected, std::size_t num
         EXPECT_NEAR(got[i][1], expected[i][1], tolerance) << i;
 }
 
+/// What is left of a cluster whose sharp light is taken out is a difference of large numbers.
 void expect_black(const Radiance& radiance, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-        EXPECT_EQ(radiance[i], (std::array<float, 3>{})) << i;
+        for (const float channel : radiance[i])
+            EXPECT_NEAR(channel, 0.0f, 1e-8f) << i;
 }
 
 TEST_F(Degenerate, OneTriangleSeesItsHemisphere) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs planned precomputes with the engines that users have: GNU parallel, and Slurm with the scripts of
+# Runs planned precomputes with the engines that users have: GNU parallel, mpirun, and Slurm with the scripts of
 # examples/slurm on a cluster of this one host. Both must give the bytes of a single part.
 #   run.sh RELUMINE SOURCE_DIR
 set -euo pipefail
@@ -34,6 +34,19 @@ if command -v parallel >/dev/null; then
     compare "GNU parallel, 5 parts" parallel.prt
 else
     echo "GNU parallel: not installed (packages-scale.txt)"
+fi
+
+if command -v mpirun >/dev/null; then
+    as_root=()
+    [ "$(id -u)" -ne 0 ] || as_root=(--allow-run-as-root)
+    # shellcheck disable=SC2016 # the ranks expand it
+    mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader -n 3 sh -c 'relumine precompute \
+        --plan knot.plan --part $((OMPI_COMM_WORLD_RANK + 1))/$OMPI_COMM_WORLD_SIZE \
+        -o mpi.part.$OMPI_COMM_WORLD_RANK --threads 1 -q'
+    relumine join mpi.part.* -o mpi.prt -q
+    compare "mpirun, 3 ranks" mpi.prt
+else
+    echo "MPI: not installed (packages-scale.txt)"
 fi
 
 # A task that was killed is done again by its command; nothing half written is left.

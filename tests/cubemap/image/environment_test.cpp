@@ -123,6 +123,28 @@ TEST(Environment, HugeFiniteValuesAreNotBad) {
     EXPECT_EQ(load_environment(folder / "a.exr").bad_pixels.count(), 0u);
 }
 
+TEST(Environment, APixelWithMuchOfTheLightAsksForAFinerMap) {
+    const auto resolution = [](std::uint32_t width, float sun, Layout layout = Layout::LatLong) {
+        const std::uint32_t height = layout == Layout::LatLong ? width / 2 : width;
+        EnvironmentImage image;
+        image.width = width;
+        image.height = height;
+        image.layout = layout;
+        image.pixels.assign(std::size_t{width} * height, glm::vec3(1.0f));
+        // The sum over a lat-long of height h is about 4 h^2 / pi.
+        image.pixels[std::size_t{height / 2} * width + 3] = glm::vec3(
+            sun * static_cast<float>(height) * static_cast<float>(height) * 4.0f / 3.1415927f);
+        return automatic_resolution(image);
+    };
+    EXPECT_EQ(resolution(256, 0.009f), 64u);
+    EXPECT_EQ(resolution(256, 0.011f), 256u);
+    EXPECT_EQ(resolution(1024, 0.009f), 256u);
+    EXPECT_EQ(resolution(1024, 0.011f), 512u);
+    EXPECT_EQ(resolution(2048, 0.011f), 1024u);
+    EXPECT_EQ(resolution(8192, 0.5f), 2048u);
+    EXPECT_EQ(resolution(512, 0.5f, Layout::AngularMap), 256u);
+}
+
 TEST(Environment, SavedFilesReadBackToTheSamePowerAndPicture) {
     const TemporaryFolder folder;
     CubeMap map(32);
