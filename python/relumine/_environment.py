@@ -24,7 +24,8 @@ class Environment:
     layout    latlong, cube, strip, cross, hcross, angular, mirrorball or octahedral
     convention  whose axes the picture has: openexr, usd, mitsuba, blender, threejs, opengl,
               directx, pbrt, pbrt-v2
-    face_resolution  R of the cube map that it becomes; 0: as fine as the picture
+    face_resolution  R of the cube map that it becomes; 0: as fine as the picture, and finer where
+              single pixels hold much of the light
     fix_env   replaces NaN and negative radiance by 0, infinite by the largest finite; otherwise
               they are refused
     flip      mirrors along an axis of the world, "x", "y" or "z"; first

@@ -60,7 +60,7 @@ def scene(arrays):
 
 @pytest.fixture(scope="session")
 def sky():
-    return relumine.Environment(sky_pixels())
+    return relumine.Environment(sky_pixels(), face_resolution=16)
 
 
 @pytest.fixture

@@ -94,7 +94,7 @@ def test_wrong_arrays_are_named():
 def sunny():
     pixels = np.full((64, 128, 3), 0.3)
     pixels[16, 40] = 5000.0
-    return relumine.Environment(pixels, rotate=20)
+    return relumine.Environment(pixels, rotate=20, face_resolution=32)
 
 
 def test_the_doctor_finds_the_sun_in_the_worlds_axes():

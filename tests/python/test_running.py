@@ -208,7 +208,7 @@ def test_nothing_leaks(tmp_path):
 def relight_and_load():
     """10,000 relights and 1,000 loads of everything: within 1 % of the memory."""
     scene = relumine.precompute(*boulder_arrays(12), tolerance=0.2)
-    sky = relumine.Environment(sky_pixels(8))
+    sky = relumine.Environment(sky_pixels(8), face_resolution=4)
     scene.save("small.prt")
     sky.save("small.exr")
     relighter = relumine.Relighter(scene, clusters_only=True)
@@ -227,7 +227,7 @@ def relight_and_load():
     def loads(count):
         for _ in range(count):
             relumine.Scene.load("small.prt").vertices
-            relumine.Environment.load("small.exr").cube
+            relumine.Environment.load("small.exr", face_resolution=4).cube
             relumine.Mesh.load("small.ply").vertices
             for wrong in ("small.exr", "none.prt"):
                 with pytest.raises(OSError):
