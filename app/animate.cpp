@@ -59,7 +59,9 @@ public:
           binner_(lit_.scene().transfer, relighter_.shadow_rays().blockers != nullptr
                                              ? relighter_.shadow_rays().tolerance
                                              : 0.0f),
-          writer_(lit_, options.output.for_scene(lit_.scene())) {}
+          writer_(lit_, options.output.for_scene(lit_.scene())) {
+        set_bounces(relighter_);
+    }
 
     void run() {
         if (pattern_)
@@ -83,6 +85,7 @@ public:
             totals_.seconds_wait += watch.lap();
             const relight::Backdrop sharp = std::move(frame.sharp);
             const cubemap::CubeMap background = light(std::move(frame));
+            bounce(relighter_);
             const double seconds_relight = watch.lap();
             totals_.seconds_relight += seconds_relight;
             seconds_relight_frames_.push_back(seconds_relight);
@@ -125,6 +128,15 @@ private:
         return paths;
     }
 
+    void set_bounces(relight::Relighter& relighter) const {
+        options_.bounces.set(relighter, lit_.scene(), options_.output.for_scene(lit_.scene()),
+                             options_.scene.path);
+    }
+    static void bounce(relight::Relighter& relighter) {
+        if (relighter.bounces().matrix != nullptr)
+            relighter.bounce();
+    }
+
     /// Those that are not there yet; all of them where one file holds all.
     void choose_frames() {
         if (pattern_)
@@ -158,6 +170,7 @@ private:
         const std::size_t num_gaps = std::min(MostFrames - 1, last);
         // A light of its own: the frames' differences must not depend on the exposure.
         relight::Relighter relighter(lit_.scene().transfer, lit_.shadow_rays());
+        set_bounces(relighter);
         for (std::size_t i = 0; i <= num_gaps; ++i) {
             session_.poll();
             PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
@@ -165,6 +178,7 @@ private:
                 relighter.set_frame(std::move(frame.binned));
             else
                 relighter.set_lights(frame.lights);
+            bounce(relighter);
             writer_.meter(lighting_of(relighter));
         }
         record_->set_exposure_ev(writer_.choose_exposure_ev(lighting_of(relighter)));

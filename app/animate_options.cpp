@@ -56,6 +56,7 @@ void AnimateOptions::add_to(Command& command) {
     command.add_flag("--even", even,
                      "clusters: lights are equally strong over all their frames, as in the paper");
     command.add_option("--seed", seed, "of the random numbers").show_default();
+    bounces.add_to(command);
     output.add_to(command).required(false).description(
         "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
         "(numbers), .ply, .glb");
@@ -136,10 +137,11 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all =
-        fmt::format("{} {} {}\n{}\n{} {} {} {}\n{}\n{}", RELUMINE_VERSION,
-                    FrameRecord::stamp(scene.path), scene.clusters_only, environment.settings(),
-                    method, bound, num_lights, seed, output.path, output.settings());
+    std::string all = fmt::format(
+        "{} {} {}\n{}\n{} {} {} {}\n{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
+        scene.clusters_only, environment.settings(), method, bound, num_lights, seed, output.path,
+        output.settings(),
+        bounces.limits().num_bounces ? fmt::format("{}", *bounces.limits().num_bounces) : "all");
     if (method == "clusters") { // every frame depends on all
         all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
         for (const cubemap::FrameFile& frame : sequence.files())

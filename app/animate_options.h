@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "app/bounce_option.h"
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
 #include "app/output_options.h"
@@ -42,6 +43,7 @@ struct AnimateOptions {
     std::string plot;
     /// Its path is a pattern. Empty: no picture files.
     OutputOptions output;
+    BounceOption bounces;
     /// A .npy of all frames. Empty: none.
     std::string vertices;
     /// An .mp4 movie. Empty: none.

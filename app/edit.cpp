@@ -13,6 +13,7 @@
 #include <fmt/printf.h>
 #include <glm/geometric.hpp>
 
+#include "app/bounce_option.h"
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/file_watch.h"
@@ -32,6 +33,7 @@ struct Options {
     EnvironmentOptions environment;
     std::string layers;
     OutputOptions output;
+    BounceOption bounces;
     /// Direction of the quick edit, X,Y,Z. Empty: LAYERS are given.
     std::string disc;
     double radius_degrees = 10.0;
@@ -121,6 +123,7 @@ public:
             full = editor_.set_rotation(*layers_.rotate_degrees);
         seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
         apply_one_by_one();
+        bounce();
         write_output();
         if (!options_.saved_environment.empty())
             cubemap::save_environment(options_.saved_environment, editor_.environment());
@@ -130,6 +133,8 @@ public:
                          {"clusters_touched", clusters_touched_},
                          {"seconds_edit", seconds_edit_},
                          {"seconds_full", seconds_full_},
+                         {"bounces", bounced_.num_bounces},
+                         {"seconds_bounces", bounced_.seconds},
                          {"edits", edits_}};
         if (!options_.lit_by.empty())
             result.set("lit_by_share", lit_by_share_);
@@ -140,6 +145,7 @@ public:
 
 private:
     void check_receivers() {
+        static_cast<void>(options_.bounces.applies_to(lit_.scene(), options_.scene.path));
         if (!options_.who.empty()) // a map, whatever the receivers are
             return;
         painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
@@ -158,6 +164,17 @@ private:
             save_frames();
         else
             painter_->save(options_.output.path, lit_.lighting());
+    }
+
+    /// Edits are timed without their bounces, which come once, before anything is written.
+    void bounce() {
+        const auto report = options_.bounces.bounce(lit_, options_.output.for_scene(lit_.scene()),
+                                                    options_.scene.path);
+        if (!report)
+            return;
+        bounced_ = *report;
+        session_.say(
+            fmt::format("{} bounces in {:.1f} ms", report->num_bounces, 1e3 * report->seconds));
     }
 
     void record(const std::string& name, const relight::UpdateReport& report) {
@@ -189,6 +206,7 @@ private:
         for (int frame = first; frame <= last; ++frame) {
             record(fmt::format("frame {}", frame),
                    editor_.set_layers(cubemap::layers_at(layers_, frame)));
+            bounce();
             painter_->save(numbered(options_.output.path, frame), lit_.lighting());
             session_.poll();
         }
@@ -232,6 +250,7 @@ private:
                 Stopwatch output;
                 record("saved", report);
                 const std::size_t index = edits_.size() - 1;
+                bounce();
                 write_output();
                 const double seconds_output = output.total();
                 // The file system's clock may be a tick behind.
@@ -261,6 +280,7 @@ private:
     double seconds_edit_ = 0.0;
     double lit_by_share_ = 0.0;
     std::size_t clusters_touched_ = 0;
+    BounceReport bounced_;
     std::vector<Report> edits_;
 };
 
@@ -281,6 +301,7 @@ void add_edit(Command& program, Session& session) {
     command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)")
         .file();
     options->output.add_to(command);
+    options->bounces.add_to(command);
     command.add_option("--disc", options->disc,
                        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
                        "scene to the light");

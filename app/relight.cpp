@@ -75,25 +75,27 @@ void light_with_environment(const Options& options, Session& session) {
     // Of the sum, where there is a list, too.
     std::vector<glm::vec3> radiance;
     std::optional<Lighting> from_list;
+    std::vector<glm::vec3> list_for_bounces;
     std::size_t num_lights = 0;
     if (!options.lights.empty()) {
         const lights::LightList list = lights::load_lights(options.lights);
         num_lights = list.lights.size();
         lit.light(list.lights);
-        options.bounces.bounce(lit, options.output.for_scene(scene), options.scene.path);
-        from_list = chosen_lighting(options, lit);
+        from_list = lit.lighting();
         radiance.assign(from_list->radiance.begin(), from_list->radiance.end());
+        const std::span<const glm::vec3> direct = lit.relighter().diffuse_radiance();
+        list_for_bounces.assign(direct.begin(), direct.end());
     }
     const double seconds_list = watch.lap();
     Environment environment = load_environment(options.environment, session);
     const RelightTimes times = lit.light(std::move(environment));
     const std::uint32_t resolution = lit.environment().resolution;
     session.poll();
-    const std::optional<BounceReport> bounces =
-        options.bounces.bounce(lit, options.output.for_scene(scene), options.scene.path);
+    const std::optional<BounceReport> bounces = options.bounces.bounce(
+        lit, options.output.for_scene(scene), options.scene.path, list_for_bounces);
     watch.lap();
     Lighting lighting = chosen_lighting(options, lit);
-    if (from_list)
+    if (from_list && !options.only_bounces)
         add(lighting, std::move(*from_list), radiance);
     Painter painter(lit, options.output.for_scene(lit.scene()));
     painter.save(options.output.path, lighting);

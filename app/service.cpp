@@ -13,6 +13,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bounce_option.h"
 #include "app/command_line.h"
 #include "app/command_table.h"
 #include "app/environment_options.h"
@@ -125,6 +126,8 @@ struct Service::Impl {
     void set_environment(const EnvironmentOptions& options);
     void set_layers(const std::string& path);
     void write_radiance(const std::string& output, const std::string& shared_memory);
+    /// Adds the bounces of the present light and reports them.
+    void bounce();
 
     LitScene& lit() {
         if (!scene)
@@ -142,6 +145,7 @@ struct Service::Impl {
     Session& session;
     std::string scene_path;
     std::optional<LitScene> scene;
+    BounceOption bounces;
 
     /// Environments that came before, as they light the scene, the last first.
     struct Binned {
@@ -174,9 +178,13 @@ const std::vector<Service::Impl::Request>& Service::Impl::requests() {
 
 void Service::Impl::declare_scene(Command& command) {
     auto options = std::make_shared<SceneOptions>();
+    auto bounce_option = std::make_shared<BounceOption>();
     options->add_to(command);
-    command.on_run([this, options] {
+    bounce_option->add_to(command);
+    command.on_run([this, options, bounce_option] {
         LitScene loaded = lit_scene(*options);
+        static_cast<void>(bounce_option->applies_to(loaded.scene(), options->path));
+        bounces = *bounce_option;
         binned.clear();
         scene.emplace(std::move(loaded));
         scene_path = options->path;
@@ -217,6 +225,7 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
     }
     target.light(binned.front().environment, binned.front().file);
     report = {{"face_resolution", target.environment().resolution}, {"was_kept", is_kept}};
+    bounce();
 }
 
 void Service::Impl::declare_edit(Command& command) {
@@ -239,6 +248,12 @@ void Service::Impl::set_layers(const std::string& path) {
     const UpdateReport update = lit().set_layers(std::move(list));
     report = {
         {"layers", count}, {"clusters", update.num_clusters}, {"receivers", update.num_receivers}};
+    bounce();
+}
+
+void Service::Impl::bounce() {
+    if (const auto done = bounces.bounce(lit(), {}, scene_path))
+        report.update({{"bounces", done->num_bounces}, {"seconds_bounces", done->seconds}});
 }
 
 void Service::Impl::declare_picture(Command& command) {

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/bounce_option.h"
 #include "app/commands.h"
 #include "app/environment_options.h"
 #include "app/lit_scene.h"
@@ -27,6 +28,7 @@ namespace {
 struct Options {
     SceneOptions scene;
     EnvironmentOptions environment;
+    BounceOption bounces;
     std::string layers;
     std::string script;
     std::string screenshot;
@@ -129,6 +131,7 @@ void run(const Options& options, Session& session) {
     viewer::LoadedEnvironment first =
         path.empty() ? viewer::LoadedEnvironment{.map = plain_grey(), .sharp = {}} : load(path);
     editor.set_base(std::move(first.map));
+    options.bounces.bounce(lit, {}, options.scene.path);
     viewer::LightDesk desk(editor, path);
     viewer::ViewState state{.mesh = lit.scene().mesh,
                             .rays = lit.rays(),
@@ -157,6 +160,7 @@ void add_view(Command& program, Session& session) {
     auto options = std::make_shared<Options>();
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
+    options->bounces.add_to(command);
     command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
     add_exposure_options(command, options->exposure, options->tone_map);
     command.add_option("--size", options->size, "the window's size").show_default();

@@ -21,10 +21,10 @@ step scene generate colonnade -o "$folder" --vertices 50000
 for environment in "${environments[@]}"; do
     step "$environment" generate "$environment" -o "$folder"
 done
-step precompute precompute "$folder/colonnade.ply" -o "$folder/colonnade.prt" --tolerance 0.02
+step precompute precompute "$folder/colonnade.ply" -o "$folder/colonnade.prt" --tolerance 0.02 --bounces
 for environment in "${environments[@]}"; do
     step "relight_$environment" relight "$folder/colonnade.prt" "$folder/$environment.exr" -o "$folder/$environment.png"
-    step "verify_$environment" verify "$folder/colonnade.prt" "$folder/$environment.exr" --samples 300
+    step "verify_$environment" verify "$folder/colonnade.prt" "$folder/$environment.exr" --samples 300 --bounces 0
 done
 # The cool fill box of the studio, four times as bright.
 step edit edit "$folder/colonnade.prt" "$folder/soft_boxes.exr" --disc 0.85,0.35,0.4 --radius 25 --gain 4 -o "$folder/soft_boxes_edited.png"

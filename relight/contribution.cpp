@@ -4,6 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
+
+#include <tbb/parallel_for.h>
 
 #include "relight/block_kernels.h"
 #include "relight/light_packets.h"
@@ -110,34 +113,54 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     for (std::size_t place = 0; place < place_of.size(); ++place)
         place_of[transfer.order[place]] = place;
 
-    const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
-    const std::span<const SharpLight> sharp = relighter.sharp_lights();
-    std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
-    std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
-    std::vector<LightPackets> shadow_packets; // one for each light, to tell them apart
-    for (std::size_t i = 0; i < sharp.size(); ++i)
-        shadow_packets.emplace_back(sharp.subspan(i, 1));
+    // Receivers whose direct light counts, and how much.
+    struct Counted {
+        std::uint32_t receiver = 0;
+        glm::dvec3 factor{0.0};
+    };
+    std::vector<Counted> counted;
     const double share = 1.0 / static_cast<double>(receivers.size());
     for (const std::uint32_t receiver : receivers) {
         if (receiver >= place_of.size())
             throw std::invalid_argument("expected an index of a receiver");
-        const std::size_t place = place_of[receiver];
-        const glm::dvec3 normal = transfer.normals[place];
-        for (std::size_t cluster = 0; cluster < cells.size(); ++cluster) {
-            const double count = share * transfer.counts.count(place, cluster);
+        counted.push_back({.receiver = receiver, .factor = glm::dvec3(share)});
+    }
+    if (!relighter.bounced().empty()) {
+        const std::vector<glm::dvec3> factors =
+            bounce_factors(relighter.bounces(), transfer, receivers);
+        for (std::uint32_t receiver = 0; receiver < factors.size(); ++receiver)
+            if (factors[receiver] != glm::dvec3(0.0))
+                counted.push_back({.receiver = receiver, .factor = factors[receiver]});
+    }
+
+    const std::span<const prt::Cell> cells = transfer.quadtree.leaves();
+    const std::span<const SharpLight> sharp = relighter.sharp_lights();
+    std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
+    std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
+    tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t cluster) {
+        for (const auto& [receiver, factor] : counted) {
+            const std::size_t place = place_of[receiver];
+            const double count = transfer.counts.count(place, cluster);
+            if (count == 0.0)
+                continue;
+            const glm::dvec3 normal = transfer.normals[place];
             const float* e =
                 relighter.cluster_lights().vectors.data() + cluster * ClusterLights::Stride;
             for (int channel = 0; channel < 3; ++channel, e += 3)
                 from_cluster[cluster][channel] +=
-                    count * std::max(0.0, normal.x * static_cast<double>(e[0]) +
-                                              normal.y * static_cast<double>(e[1]) +
-                                              normal.z * static_cast<double>(e[2]));
+                    factor[channel] * count *
+                    std::max(0.0, normal.x * static_cast<double>(e[0]) +
+                                      normal.y * static_cast<double>(e[1]) +
+                                      normal.z * static_cast<double>(e[2]));
         }
-        const ShadowRays& rays = relighter.shadow_rays();
-        for (std::size_t i = 0; i < sharp.size(); ++i)
-            from_sharp[i] +=
-                share * shadow_packets[i].radiance(rays.positions[receiver], normal, rays);
-    }
+    });
+    const ShadowRays& rays = relighter.shadow_rays();
+    tbb::parallel_for(std::size_t{0}, sharp.size(), [&](std::size_t i) {
+        const LightPackets packets(sharp.subspan(i, 1)); // one for each light, to tell them apart
+        for (const auto& [receiver, factor] : counted)
+            from_sharp[i] += factor * packets.radiance(rays.positions[receiver],
+                                                       transfer.normals[place_of[receiver]], rays);
+    });
 
     Spreader spreader(relighter.environment());
     for (std::size_t i = 0; i < sharp.size(); ++i)
@@ -153,7 +176,13 @@ std::vector<glm::vec3> radiance_from(const Relighter& relighter, std::span<const
         throw std::invalid_argument("expected one weight per texel");
     for (std::size_t texel = 0; texel < weights.size(); ++texel)
         part.texels[texel] *= weights[texel];
-    return relight(relighter.transfer(), part, relighter.shadow_rays());
+    Relighter other(relighter.transfer(), relighter.shadow_rays());
+    other.set_environment(std::move(part));
+    if (!relighter.bounced().empty()) {
+        other.set_bounces(relighter.bounces());
+        other.bounce();
+    }
+    return {other.radiance().begin(), other.radiance().end()};
 }
 
 } // namespace relumine::relight

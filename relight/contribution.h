@@ -15,16 +15,17 @@ namespace relumine::relight {
 /// Returns the environment weighted by how much of it reaches the receivers: each texel's radiance
 /// times the transfer of its cluster, averaged over the receivers. A sharp light has its own shadow
 /// ray in place of the cluster's transfer. The integral over the sphere, cubemap::total_power(), is
-/// the mean of the receivers' radiance().
+/// the mean of the receivers' radiance(). Where light bounces, it is the light that reaches them
+/// from surfaces, too.
 ///
 /// Unit:    radiance per sr.
-/// Cost:    O(clusters times receivers + 6 R^2).
+/// Cost:    O(clusters times receivers + 6 R^2); with bounces all receivers count, a second or two.
 /// Throws:  std::invalid_argument for no receivers, or an index out of range.
 [[nodiscard]] cubemap::CubeMap contribution_map(const Relighter& relighter,
                                                 std::span<const std::uint32_t> receivers);
 
 /// Returns the radiance that a part of the environment gives to each receiver, as
-/// Relighter::radiance().
+/// Relighter::radiance(), with its bounces.
 ///
 /// Shape:   [num_receivers] in the receivers' own order. weights is [6 * R * R] in the relighter's
 ///          environment: the part of each texel, 0 to 1.

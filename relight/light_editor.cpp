@@ -282,11 +282,39 @@ void LightEditor::mark() {
         ++at_;
         forget_oldest();
     }
-    // A mark's radiance must be the same bit by bit, whichever edits led to it.
-    if (base_) {
-        relighter_.resum();
+    renew();
+}
+
+/// Makes the radiance the same bit by bit, whichever edits led to it.
+void LightEditor::renew() {
+    if (!base_)
+        return;
+    relighter_.resum();
+    if (relighter_.bounces().matrix != nullptr)
+        relighter_.bounce();
+    publish();
+}
+
+void LightEditor::set_bounces(SurfaceBounces bounces) {
+    relighter_.set_bounces(std::move(bounces));
+    if (base_)
         publish();
-    }
+}
+
+BounceReport LightEditor::settle(std::span<const glm::vec3> more) {
+    if (!base_ || relighter_.bounces().matrix == nullptr)
+        return {};
+    const BounceReport report = relighter_.bounce(more);
+    publish();
+    return report;
+}
+
+BounceReport LightEditor::step() {
+    if (!base_ || is_settled())
+        return {};
+    const BounceReport report = relighter_.step();
+    publish();
+    return report;
 }
 
 void LightEditor::forget_oldest() {
@@ -312,10 +340,7 @@ void LightEditor::forget_oldest() {
 void LightEditor::forget_history() {
     history_.assign(1, {.layers = layers_, .rotation_degrees = rotation_degrees_, .base = base_});
     at_ = 0;
-    if (base_) {
-        relighter_.resum();
-        publish();
-    }
+    renew();
 }
 
 UpdateReport LightEditor::undo() {
@@ -333,13 +358,12 @@ UpdateReport LightEditor::go_to(std::size_t mark) {
     if (state.base != base_ || state.rotation_degrees != rotation_degrees_) {
         base_ = state.base;
         rotation_degrees_ = state.rotation_degrees;
-        return report_of(relight_all(), relighter_.transfer());
+        const UpdateReport report = report_of(relight_all(), relighter_.transfer());
+        settle();
+        return report;
     }
     const UpdateReport report = apply(layers_);
-    if (base_) {
-        relighter_.resum();
-        publish();
-    }
+    renew();
     return report;
 }
 

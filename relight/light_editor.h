@@ -92,6 +92,18 @@ public:
     [[nodiscard]] bool can_undo() const { return at_ > 0; }
     [[nodiscard]] bool can_redo() const { return at_ + 1 < history_.size(); }
 
+    /// Lets light go on from surface to surface, as Relighter::set_bounces(). Edits show their
+    /// direct light at once, with the bounces of the light before; settle() and step() bring the
+    /// new ones. mark(), undo() and redo() settle.
+    ///
+    /// Throws:  as Relighter::set_bounces().
+    void set_bounces(SurfaceBounces bounces);
+    /// Finds all bounces, as Relighter::bounce(). Without set_bounces() or a base nothing happens.
+    BounceReport settle(std::span<const glm::vec3> more = {});
+    /// Goes one bounce on, as Relighter::step(), where light bounces and is_settled() is false.
+    BounceReport step();
+    [[nodiscard]] bool is_settled() const { return relighter_.is_settled(); }
+
     /// Radiance of all receivers after the last complete update, as Relighter::radiance(). For the
     /// writer's thread.
     ///
@@ -122,6 +134,7 @@ private:
     UpdateReport update_dirty(const cubemap::CubeMap& base,
                               std::span<const cubemap::LightLayer> layers);
     UpdateReport go_to(std::size_t mark);
+    void renew();
     [[nodiscard]] const cubemap::CubeMap& turned_base() const {
         return rotation_degrees_ == 0.0 ? *base_ : turned_base_;
     }

@@ -86,11 +86,19 @@ public:
     UpdateReport update_regions(std::span<const TexelRectangle> rectangles,
                                 const std::function<void(cubemap::CubeMap&)>& edit);
     void resum();
+    void set_bounces(SurfaceBounces bounces);
+    [[nodiscard]] const SurfaceBounces& bounces() const { return bounces_; }
+    BounceReport bounce(std::span<const glm::vec3> more);
+    BounceReport step();
+    [[nodiscard]] std::span<const glm::vec3> bounced() const { return bounced_; }
+    [[nodiscard]] bool is_settled() const { return !bounce_light_ || is_settled_; }
 
-    [[nodiscard]] std::span<const glm::vec3> radiance() const { return radiance_; }
+    [[nodiscard]] std::span<const glm::vec3> radiance() const {
+        return bounced_.empty() ? radiance_ : total_;
+    }
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
-        return diffuse_.empty() ? radiance() : diffuse_;
+        return diffuse_.empty() ? radiance_ : diffuse_;
     }
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
@@ -107,6 +115,9 @@ private:
     std::size_t update_changed(bool sharp_changed);
     void set_pyramid();
     void light_glossy(std::size_t block);
+    void take_bounces();
+    void forget_bounces();
+    void finish_change();
     void write_radiance(std::size_t block);
     /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
     void write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
@@ -143,6 +154,13 @@ private:
     std::vector<glm::vec3> radiance_;
     /// For albedo 1; empty without surfaces.
     std::vector<glm::vec3> diffuse_;
+    SurfaceBounces bounces_;
+    std::optional<BounceLight> bounce_light_;
+    /// Whether bounced_ is for the present light.
+    bool is_settled_ = false;
+    /// [num_receivers] from other surfaces, and with it; empty without bounces.
+    std::vector<glm::vec3> bounced_;
+    std::vector<glm::vec3> total_;
     /// Scratch: clusters whose light changes.
     std::vector<std::uint32_t> changed_;
     /// Scratch: changed_ as the kernels read it.
@@ -171,6 +189,7 @@ Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
 
 RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
     BinnedEnvironment binned = binner_.bin(std::move(environment));
+    forget_bounces();
     RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
     take(std::move(binned));
@@ -202,6 +221,7 @@ UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
         throw std::invalid_argument("expected an environment binned for this scene");
     if (!(bound >= 0.0))
         throw std::invalid_argument("expected a bound >= 0");
+    forget_bounces();
     UpdateReport report;
     const bool is_first = environment_.resolution == 0;
     changed_.clear();
@@ -246,6 +266,7 @@ RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> l
         if (!(std::abs(glm::length(light.direction) - 1.0) < UnitTolerance))
             throw std::invalid_argument("expected directions of unit length");
     }
+    forget_bounces();
     RelightTimes times;
     auto start = std::chrono::steady_clock::now();
     environment_ = {};
@@ -298,6 +319,75 @@ void Relighter::Impl::resum() {
         }
     });
     lit_by_ = lights_.vectors;
+    finish_change();
+}
+
+void Relighter::Impl::set_bounces(SurfaceBounces bounces) {
+    if (bounces.matrix == nullptr) {
+        bounce_light_.reset();
+    } else if (bounce_light_ && bounces_.matrix == bounces.matrix) {
+        bounce_light_->set_albedo(bounces.albedo);
+    } else {
+        BounceLight made(*bounces.matrix, transfer_);
+        made.set_albedo(bounces.albedo);
+        bounce_light_ = std::move(made);
+    }
+    bounces_ = std::move(bounces);
+    forget_bounces();
+}
+
+BounceReport Relighter::Impl::bounce(std::span<const glm::vec3> more) {
+    if (!bounce_light_)
+        throw std::logic_error("expected bounces to be set before light bounces");
+    const std::span<const glm::vec3> own = diffuse_radiance();
+    std::vector<glm::vec3> sum;
+    if (!more.empty()) {
+        if (more.size() != own.size())
+            throw std::invalid_argument(
+                fmt::format("expected the light of {} receivers, got {}", own.size(), more.size()));
+        sum.assign(more.begin(), more.end());
+        std::transform(own.begin(), own.end(), sum.begin(), sum.begin(), std::plus<>());
+    }
+    const BounceReport report = bounce_light_->solve(more.empty() ? own : sum, bounces_.limits);
+    is_settled_ = true;
+    take_bounces();
+    return report;
+}
+
+BounceReport Relighter::Impl::step() {
+    // A number of bounces has no light to go on from.
+    if (!bounce_light_ || bounces_.limits.num_bounces)
+        return bounce({});
+    const BounceReport report = bounce_light_->step(diffuse_radiance());
+    constexpr double Visible = 1e-4;
+    is_settled_ = report.error < Visible;
+    take_bounces();
+    return report;
+}
+
+/// Puts the bounces into the radiance.
+void Relighter::Impl::take_bounces() {
+    const std::span<const glm::vec3> indirect = bounce_light_->indirect();
+    bounced_.assign(indirect.begin(), indirect.end());
+    for (std::size_t place = 0; place < transfer_.surfaces.size(); ++place)
+        bounced_[transfer_.order[place]] *= transfer_.surfaces[place].albedo;
+    total_.resize(radiance_.size());
+    std::transform(radiance_.begin(), radiance_.end(), bounced_.begin(), total_.begin(),
+                   std::plus<>());
+}
+
+void Relighter::Impl::forget_bounces() {
+    bounced_.clear();
+    total_.clear();
+    is_settled_ = false;
+}
+
+/// The direct light has changed; the bounces of the light before stay until the next.
+void Relighter::Impl::finish_change() {
+    is_settled_ = false;
+    if (!bounced_.empty())
+        std::transform(radiance_.begin(), radiance_.end(), bounced_.begin(), total_.begin(),
+                       std::plus<>());
 }
 
 /// Sets the light of clusters: all light of their cells minus the sharp lights in them. `clusters`
@@ -407,6 +497,7 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
         std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride,
                     lit_by_.begin() + first);
     }
+    finish_change();
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
@@ -488,6 +579,8 @@ std::vector<glm::vec3> Relighter::Impl::soft_radiance() const {
     std::vector<glm::vec3> radiance(radiance_.size());
     tbb::parallel_for(std::size_t{0}, light_.size(),
                       [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
+    for (std::size_t i = 0; i < bounced_.size(); ++i)
+        radiance[i] += bounced_[i];
     return radiance;
 }
 
@@ -521,6 +614,25 @@ UpdateReport Relighter::update_regions(std::span<const TexelRectangle> rectangle
 
 void Relighter::resum() {
     impl_->resum();
+}
+
+void Relighter::set_bounces(SurfaceBounces bounces) {
+    impl_->set_bounces(std::move(bounces));
+}
+const SurfaceBounces& Relighter::bounces() const {
+    return impl_->bounces();
+}
+BounceReport Relighter::bounce(std::span<const glm::vec3> more) {
+    return impl_->bounce(more);
+}
+BounceReport Relighter::step() {
+    return impl_->step();
+}
+std::span<const glm::vec3> Relighter::bounced() const {
+    return impl_->bounced();
+}
+bool Relighter::is_settled() const {
+    return impl_->is_settled();
 }
 
 std::span<const glm::vec3> Relighter::radiance() const {

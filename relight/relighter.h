@@ -15,6 +15,7 @@
 #include "lights/light_list.h"
 #include "prt/transfer.h"
 #include "relight/binned_environment.h"
+#include "relight/bounces/bounce_light.h"
 #include "relight/shadow_rays.h"
 #include "relight/sharp_lights.h"
 
@@ -125,6 +126,32 @@ public:
     /// Cost:    a relighting without the binning.
     void resum();
 
+    /// Lets light go on from surface to surface, or ends that. Nothing bounces before bounce() or
+    /// step().
+    ///
+    /// Throws:  std::invalid_argument as BounceLight; nothing has changed then.
+    void set_bounces(SurfaceBounces bounces);
+    [[nodiscard]] const SurfaceBounces& bounces() const;
+
+    /// Adds what surfaces send to each other to radiance(), found from nothing: equal light gives
+    /// equal bits. set_environment(), set_frame() and set_lights() take it away again.
+    /// update_region() keeps it as it is until the next call of bounce() or step(), while the
+    /// direct light is new.
+    ///
+    /// `more` is light that bounces as well but is no part of radiance(): direct light for
+    /// albedo 1, [num_receivers] or empty.
+    ///
+    /// Cost:    docs/measurements.md.
+    /// Throws:  std::logic_error without set_bounces(); std::invalid_argument for a wrong size.
+    BounceReport bounce(std::span<const glm::vec3> more = {});
+    /// Goes one bounce on from the bounces of the light before: for light that changes while it is
+    /// looked at.
+    BounceReport step();
+    /// The part of radiance() that comes from other surfaces, [num_receivers]; empty without it.
+    [[nodiscard]] std::span<const glm::vec3> bounced() const;
+    /// Whether more steps would change nothing that can be seen.
+    [[nodiscard]] bool is_settled() const;
+
     /// Outgoing radiance in the environment's unit. With surfaces in the transfer, it is the
     /// radiance towards the eye where the transfer has a glossy part. Without surfaces it is for
     /// albedo 1.
@@ -139,8 +166,8 @@ public:
     /// Cost:    O(receivers).
     [[nodiscard]] std::vector<glm::vec3> soft_radiance() const;
 
-    /// Radiance as if every receiver were Lambert of albedo 1: irradiance over pi. Without surfaces
-    /// the same as radiance().
+    /// Direct radiance as if every receiver were Lambert of albedo 1: irradiance over pi, without
+    /// bounces.
     ///
     /// Shape:   [num_receivers] in the receivers' own order.
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const;

@@ -16,6 +16,19 @@
 
 namespace relumine {
 
+relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3> albedo,
+                                   const BounceLimits& limits) {
+    if (!scene.bounces)
+        throw std::invalid_argument("expected a scene with bounces, got one without");
+    relight::SurfaceBounces bounces{
+        .matrix = &*scene.bounces, .albedo = {albedo.begin(), albedo.end()}, .limits = limits};
+    const std::vector<prt::Surface>& surfaces = scene.receivers.surfaces;
+    if (surfaces.size() == bounces.albedo.size())
+        for (std::size_t i = 0; i < surfaces.size(); ++i)
+            bounces.albedo[i] *= surfaces[i].albedo;
+    return bounces;
+}
+
 struct LitScene::Impl {
     Impl(std::shared_ptr<const Scene>&& given, const LightOptions& options)
         : owned_scene(std::move(given)), scene(*owned_scene), rays(scene.mesh),
@@ -80,6 +93,10 @@ struct LitScene::Impl {
         auto made = std::make_unique<relight::LightEditor>(scene.transfer, shadow_rays());
         if (has_environment())
             made->set_base(relighter->environment());
+        if (relighter && !relighter->bounced().empty()) {
+            made->set_bounces(relighter->bounces());
+            made->settle();
+        }
         editor = std::move(made);
         relighter.reset();
         file = {};
@@ -87,18 +104,13 @@ struct LitScene::Impl {
         return *editor;
     }
 
-    void forget_bounces() {
-        bounced.clear();
-        total.clear();
-    }
-
     /// Adds the bounces of a path tracer to exact direct light. Returns the standard error of the
     /// sum, relative to it, L2 over the receivers.
     double add_traced(std::span<const std::uint32_t> receivers, const VerifyOptions& options,
                       std::vector<glm::dvec3>& exact) const {
         const std::vector<relight::TracedBounces> traced =
-            relight::trace_bounces(scene.mesh, bounce_albedo, scene.receivers, receivers, rays,
-                                   lit_relighter().environment(),
+            relight::trace_bounces(scene.mesh, lit_relighter().bounces().albedo, scene.receivers,
+                                   receivers, rays, lit_relighter().environment(),
                                    {.num_paths = options.num_paths,
                                     .seed = options.seed,
                                     .bias = scene.settings.bias,
@@ -147,14 +159,6 @@ struct LitScene::Impl {
         return result;
     }
 
-    /// The light of the receivers without bounces.
-    [[nodiscard]] std::span<const glm::vec3> direct() const {
-        const relight::Relighter* lit = present_relighter();
-        if (lit != nullptr && (is_lit_by_list || has_environment()))
-            return lit->radiance();
-        return radiance;
-    }
-
     std::shared_ptr<const Scene> owned_scene;
     const Scene& scene;
     prt::RayScene rays;
@@ -176,13 +180,6 @@ struct LitScene::Impl {
     /// Of a scene without clusters
     std::vector<glm::vec3> radiance;
     std::vector<lights::DistantLight> list;
-    /// None before the first bounce()
-    std::optional<relight::BounceLight> bounces;
-    /// [num_receivers] diffuse reflectance of the last bounce()
-    std::vector<glm::vec3> bounce_albedo;
-    /// [num_receivers] what bounces add, and radiance with it; empty without bounces
-    std::vector<glm::vec3> bounced;
-    std::vector<glm::vec3> total;
 };
 
 LitScene::LitScene(Scene scene, const LightOptions& options)
@@ -224,7 +221,6 @@ relight::ShadowRays LitScene::shadow_rays() const {
 }
 
 RelightTimes LitScene::light(cubemap::CubeMap environment) {
-    impl_->forget_bounces();
     const RelightTimes times =
         impl_->editor ? impl_->editor->set_base(std::move(environment))
                       : impl_->plain_relighter().set_environment(std::move(environment));
@@ -243,7 +239,6 @@ RelightTimes LitScene::light(Environment environment) {
 }
 
 UpdateReport LitScene::update(Environment environment) {
-    impl_->forget_bounces();
     const UpdateReport report = impl_->edited().update_base(std::move(environment.map));
     impl_->sharp = relight::backdrop_of(environment.file);
     return report;
@@ -256,7 +251,6 @@ BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
 }
 
 void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFile& file) {
-    impl_->forget_bounces();
     if (impl_->editor)
         impl_->editor->set_base(std::move(environment.map));
     else
@@ -266,7 +260,6 @@ void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFi
 }
 
 RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
-    impl_->forget_bounces();
     RelightTimes times;
     if (!has_clusters()) {
         impl_->radiance =
@@ -283,7 +276,6 @@ RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
 
 UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
                                      std::span<const glm::vec3> radiance) {
-    impl_->forget_bounces();
     impl_->sharp = {};
     if (!impl_->editor) {
         const UpdateReport report = impl_->plain_relighter().update_region(rectangle, radiance);
@@ -311,54 +303,42 @@ UpdateReport LitScene::update_region(const cubemap::TexelRectangle& rectangle,
 UpdateReport LitScene::set_layers(std::vector<cubemap::LightLayer> layers) {
     if (!impl_->has_environment())
         throw std::invalid_argument("expected an environment before its layers");
-    impl_->forget_bounces();
     return impl_->edited().set_layers(std::move(layers));
 }
 
 UpdateReport LitScene::set_layer(std::size_t index, const cubemap::LightLayer& layer) {
     if (!impl_->has_environment())
         throw std::invalid_argument("expected an environment before its layers");
-    impl_->forget_bounces();
     return impl_->edited().set_layer(index, layer);
 }
 
 relight::LightEditor& LitScene::editor() {
-    impl_->forget_bounces();
     return impl_->edited();
 }
 
 std::span<const glm::vec3> LitScene::radiance() const {
-    return impl_->total.empty() ? impl_->direct() : impl_->total;
+    const relight::Relighter* lit = impl_->present_relighter();
+    if (lit != nullptr && (impl_->is_lit_by_list || impl_->has_environment()))
+        return lit->radiance();
+    return impl_->radiance;
 }
 
-BounceReport LitScene::bounce(std::span<const glm::vec3> albedo, const BounceLimits& limits) {
-    const Scene& own = impl_->scene;
-    if (!own.bounces)
-        throw std::invalid_argument("expected a scene with bounces, got one without");
-    if (impl_->direct().empty())
+BounceReport LitScene::bounce(std::span<const glm::vec3> albedo, const BounceLimits& limits,
+                              std::span<const glm::vec3> more) {
+    relight::SurfaceBounces bounces = bounces_of(impl_->scene, albedo, limits);
+    if (radiance().empty())
         throw std::logic_error("expected a scene that is lit");
-    if (!impl_->bounces)
-        impl_->bounces.emplace(*own.bounces, own.transfer);
-    const std::vector<prt::Surface>& surfaces = own.receivers.surfaces;
-    std::vector<glm::vec3> reflectance(albedo.begin(), albedo.end());
-    if (!surfaces.empty() && surfaces.size() == reflectance.size())
-        for (std::size_t i = 0; i < surfaces.size(); ++i)
-            reflectance[i] *= surfaces[i].albedo;
-    impl_->bounces->set_albedo(reflectance);
-    const BounceReport report = impl_->bounces->solve(relighter().diffuse_radiance(), limits);
-    impl_->bounce_albedo = std::move(reflectance);
-    const std::span<const glm::vec3> indirect = impl_->bounces->indirect();
-    impl_->bounced.assign(indirect.begin(), indirect.end());
-    for (std::size_t i = 0; i < surfaces.size(); ++i)
-        impl_->bounced[i] *= surfaces[i].albedo;
-    impl_->total.assign(impl_->direct().begin(), impl_->direct().end());
-    for (std::size_t i = 0; i < impl_->total.size(); ++i)
-        impl_->total[i] += impl_->bounced[i];
-    return report;
+    if (impl_->editor) {
+        impl_->editor->set_bounces(std::move(bounces));
+        return impl_->editor->settle(more);
+    }
+    impl_->relighter->set_bounces(std::move(bounces));
+    return impl_->relighter->bounce(more);
 }
 
 std::span<const glm::vec3> LitScene::bounced() const {
-    return impl_->bounced;
+    const relight::Relighter* lit = impl_->present_relighter();
+    return lit == nullptr ? std::span<const glm::vec3>() : lit->bounced();
 }
 
 const cubemap::CubeMap& LitScene::environment() const {
@@ -389,7 +369,7 @@ Verification LitScene::verify(const VerifyOptions& options) const {
     result.of_file = impl_->file.image != nullptr;
     std::vector<glm::dvec3> exact =
         result.of_file ? exact_under(impl_->file) : exact_under(relighter.environment());
-    if (!impl_->bounced.empty())
+    if (!bounced().empty())
         result.noise = impl_->add_traced(result.receivers, options, exact);
     result.error = relight::compare(result.receivers, exact, radiance());
     if (options.num_surface_points != 0 &&
@@ -439,8 +419,6 @@ Lighting LitScene::lighting() const {
         result.soft.resize(impl_->radiance.size());
     }
     result.radiance = radiance();
-    for (std::size_t i = 0; i < std::min(result.soft.size(), impl_->bounced.size()); ++i)
-        result.soft[i] += impl_->bounced[i];
     if (result.environment == nullptr || !impl_->sharp)
         return result;
     if (!impl_->editor)

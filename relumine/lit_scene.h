@@ -35,6 +35,14 @@ using relight::BounceReport;
 using relight::RelightTimes;
 using relight::UpdateReport;
 
+/// Returns what the light of a scene needs to bounce, for relight::Relighter. `albedo` is
+/// [num_receivers] what pictures multiply the radiance with, as picture_albedo(). The scene must
+/// outlive the result.
+///
+/// Throws:  std::invalid_argument for a scene without bounces.
+[[nodiscard]] relight::SurfaceBounces
+bounces_of(const Scene& scene, std::span<const glm::vec3> albedo, const BounceLimits& limits = {});
+
 struct LightOptions {
     /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
     bool clusters_only = false;
@@ -199,17 +207,20 @@ public:
     [[nodiscard]] const relight::Relighter& relighter() const;
 
     /// Adds the light that surfaces send to each other to radiance() and lighting(), all of its
-    /// bounces or so many. It is for the present light: every other light or edit takes it away
-    /// until the next call. Surfaces are Lambert for it; what mirrors would show of other surfaces
-    /// is left out.
+    /// bounces or so many. It is for the present light: light() takes it away until the next call.
+    /// Updates and layers show their direct light with the bounces of the light before, until the
+    /// next call here or of editor().settle() or step(). Surfaces are Lambert for it; what mirrors
+    /// would show of other surfaces is left out.
     ///
     /// `albedo` is [num_receivers] what pictures multiply the radiance with, as picture_albedo().
-    /// Radiance stays that of the receivers' own surfaces, or for albedo 1.
+    /// Radiance stays that of the receivers' own surfaces, or for albedo 1. `more` is direct light
+    /// for albedo 1, [num_receivers], that bounces as well but is no part of radiance() itself.
     ///
     /// Throws:  std::invalid_argument for a scene without bounces, and as
     ///          relight::BounceLight::set_albedo(); std::logic_error before the first light().
     /// Cost:    milliseconds, see docs/measurements.md.
-    BounceReport bounce(std::span<const glm::vec3> albedo, const BounceLimits& limits = {});
+    BounceReport bounce(std::span<const glm::vec3> albedo, const BounceLimits& limits = {},
+                        std::span<const glm::vec3> more = {});
 
     /// The part of radiance() that bounce() added, [num_receivers]; empty without it.
     [[nodiscard]] std::span<const glm::vec3> bounced() const;

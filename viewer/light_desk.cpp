@@ -107,6 +107,20 @@ void LightDesk::finish() {
     ++version_;
 }
 
+void LightDesk::go_on() {
+    if (editor_.is_settled())
+        return;
+    editor_.step();
+    ++version_;
+}
+
+void LightDesk::settle() {
+    if (editor_.is_settled())
+        return;
+    editor_.settle();
+    ++version_;
+}
+
 LightDesk::Held LightDesk::held_at(const glm::dvec3& direction, double tolerance_degrees) const {
     const glm::dvec3 before_turn = turned(direction, -editor_.rotation());
     if (selected_)

@@ -64,6 +64,11 @@ public:
     void set_base(cubemap::CubeMap base, const std::filesystem::path& path = {});
     void finish();
 
+    /// Brings the next bounce of light where the light changed: to be called once per frame.
+    void go_on();
+    /// Brings all bounces.
+    void settle();
+
     /// The file of the present base, also after an undo; empty where there is none.
     [[nodiscard]] std::filesystem::path base_path() const;
 

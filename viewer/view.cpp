@@ -200,7 +200,8 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
             scripted = player.step(state);
             is_last = player.is_done();
         }
-        window.begin_frame(options.script ? 0.0 : idleness.wait_seconds(), scripted.pointer);
+        const bool is_busy = options.script || !state.desk.editor().is_settled();
+        window.begin_frame(is_busy ? 0.0 : idleness.wait_seconds(), scripted.pointer);
         const auto start = Clock::now();
         for (const std::filesystem::path& path : window.take_dropped_files())
             drop(state, path);
@@ -215,9 +216,13 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
         status_panel(state, layout);
         drop_dialogue(state);
         idleness.count();
-        pictures.update(state);
         const bool is_kept =
             !scripted.screenshot.empty() || (is_last && !options.screenshot.empty());
+        if (is_kept)
+            state.desk.settle();
+        else
+            state.desk.go_on();
+        pictures.update(state);
         if (!options.script || is_kept)
             pictures.refine(state, window.in_framebuffer(layout.scene), is_kept);
         else

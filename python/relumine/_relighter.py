@@ -207,7 +207,8 @@ class Relighter:
         albedo   of the surfaces, as in picture()
 
         The command line adds all bounces where the scene was made for them; here they are asked
-        for. Every change of the light takes them away again.
+        for. A new environment or list takes them away again. Layers show their direct light with
+        the bounces of the light before, until the next call.
 
         Raises ValueError for a scene that was made without `bounces`.
         """

@@ -250,14 +250,19 @@ private:
     /// Returns |next_ - indirect_| over |B + next_|.
     [[nodiscard]] double step_size() const {
         const auto [steps, all] = sum_over_rows<2>([&](std::size_t begin, std::size_t end) {
-            std::array<double, 2> part{};
+            // The fourth channel is 0 everywhere.
+            std::array<double, 4> step_sums{}, light_sums{};
             for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    const double step = static_cast<double>(next_[i].rgb[c] - indirect_[i].rgb[c]);
-                    const double light = static_cast<double>(next_[i].rgb[c] + direct_[i].rgb[c]);
-                    part[0] += step * step;
-                    part[1] += light * light;
+                for (std::size_t c = 0; c < 4; ++c) {
+                    const auto step = static_cast<double>(next_[i].rgb[c] - indirect_[i].rgb[c]);
+                    const auto light = static_cast<double>(next_[i].rgb[c] + direct_[i].rgb[c]);
+                    step_sums[c] += step * step;
+                    light_sums[c] += light * light;
                 }
+            const auto sum_of = [](const std::array<double, 4>& sums) {
+                return sums[0] + sums[1] + sums[2];
+            };
+            const std::array<double, 2> part = {sum_of(step_sums), sum_of(light_sums)};
             return part;
         });
         return all > 0.0 ? std::sqrt(steps / all) : 0.0;
@@ -318,21 +323,26 @@ private:
         // Of each channel: products of each difference with the change, then with each other.
         constexpr std::size_t NumSums = AndersonDepth * (1 + AndersonDepth);
         const auto sums = sum_over_rows<3 * NumSums>([&](std::size_t begin, std::size_t end) {
-            std::array<double, 3 * NumSums> part{};
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    double* sum = part.data() + c * NumSums;
-                    const float change = now.change[i].rgb[c];
-                    std::array<double, AndersonDepth> differences{};
-                    for (std::size_t a = 0; a < depth; ++a)
-                        differences[a] =
-                            static_cast<double>(change - step_before(a).change[i].rgb[c]);
-                    for (std::size_t a = 0; a < depth; ++a) {
-                        sum[a] += static_cast<double>(change) * differences[a];
+            std::array<std::array<double, 4>, NumSums> sums_of_task{};
+            for (std::size_t i = begin; i < end; ++i) {
+                const std::array<float, 4>& change = now.change[i].rgb;
+                std::array<std::array<double, 4>, AndersonDepth> differences{};
+                for (std::size_t a = 0; a < depth; ++a)
+                    for (std::size_t c = 0; c < 4; ++c)
+                        differences[a][c] =
+                            static_cast<double>(change[c] - step_before(a).change[i].rgb[c]);
+                for (std::size_t a = 0; a < depth; ++a)
+                    for (std::size_t c = 0; c < 4; ++c) {
+                        sums_of_task[a][c] += static_cast<double>(change[c]) * differences[a][c];
                         for (std::size_t b = 0; b <= a; ++b)
-                            sum[AndersonDepth * (1 + a) + b] += differences[a] * differences[b];
+                            sums_of_task[AndersonDepth * (1 + a) + b][c] +=
+                                differences[a][c] * differences[b][c];
                     }
-                }
+            }
+            std::array<double, 3 * NumSums> part{};
+            for (std::size_t c = 0; c < 3; ++c)
+                for (std::size_t k = 0; k < NumSums; ++k)
+                    part[c * NumSums + k] = sums_of_task[k][c];
             return part;
         });
         std::array<std::array<float, 4>, AndersonDepth> factors{};
@@ -360,7 +370,10 @@ private:
         for_rows([&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place) {
                 const PaddedRgb& value = indirect_[place];
-                published_[transfer_.order[place]] = {value.rgb[0], value.rgb[1], value.rgb[2]};
+                // Corrections may go too far by the tolerance.
+                published_[transfer_.order[place]] = {std::max(value.rgb[0], 0.0f),
+                                                      std::max(value.rgb[1], 0.0f),
+                                                      std::max(value.rgb[2], 0.0f)};
             }
         });
     }

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -19,6 +20,15 @@ struct BounceLimits {
     std::optional<std::uint32_t> num_bounces = {};
     /// Relative error of the sum of all bounces, L2 over the receivers.
     double tolerance = 1e-3;
+};
+
+/// What the light of a scene needs to bounce.
+struct SurfaceBounces {
+    /// Must outlive its users. Null: light does not bounce.
+    const prt::BounceMatrix* matrix = nullptr;
+    /// [num_receivers] diffuse reflectance, in the receivers' order.
+    std::vector<glm::vec3> albedo = {};
+    BounceLimits limits = {};
 };
 
 /// The effect of a call that bounces light.
@@ -76,5 +86,16 @@ private:
     class Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Returns how much of each receiver's direct light reaches the chosen receivers from other
+/// surfaces: the transpose of BounceLight, its mean over them. The sum of these factors times the
+/// direct light is the mean of indirect().
+///
+/// Shape:   [num_receivers] in the receivers' order.
+/// Cost:    as many products with the matrix as light has bounces, on one thread.
+/// Throws:  std::invalid_argument as BounceLight, for no receivers, or an index out of range.
+[[nodiscard]] std::vector<glm::dvec3> bounce_factors(const SurfaceBounces& bounces,
+                                                     const prt::Transfer& transfer,
+                                                     std::span<const std::uint32_t> receivers);
 
 } // namespace relumine::relight

@@ -26,7 +26,6 @@ constexpr std::size_t NumTriedGroups = 32;
 /// The last level has so few groups that its products cost nothing.
 constexpr std::size_t FewGroups = 100;
 
-constexpr std::uint32_t NumCycles = 2;
 constexpr std::uint32_t MaxBouncesOfLastLevel = 100;
 
 /// The relative error at which the sum of the last level ends.
@@ -172,22 +171,18 @@ std::span<const PaddedRgb> CoarseBounces::sum_of_bounces(std::size_t level_index
     Level& coarse = levels_[level_index + 1];
     level.given.assign(sent.begin(), sent.end());
     std::fill(level.sum.begin(), level.sum.end(), PaddedRgb{});
+    level.multiply();
+    // What comes back goes on bouncing, as far as it is even within groups of the next level.
+    for (std::size_t i = 0; i < level.num_groups(); ++i)
+        for (std::size_t c = 0; c < 4; ++c)
+            level.sent[i].rgb[c] = level.albedo[i].rgb[c] * level.next[i].rgb[c];
     std::vector<PaddedRgb> coarse_sent(coarse.num_groups());
-    for (std::uint32_t cycle = 0; cycle < NumCycles; ++cycle) {
-        level.multiply();
-        // The change goes on bouncing, as far as it is even within groups of the next level.
-        for (std::size_t i = 0; i < level.num_groups(); ++i)
-            for (std::size_t c = 0; c < 4; ++c)
-                level.sent[i].rgb[c] =
-                    level.albedo[i].rgb[c] * (level.next[i].rgb[c] - level.sum[i].rgb[c]);
-        means_of_groups(level.sent, coarse.group_size, coarse_sent);
-        const std::span<const PaddedRgb> more = sum_of_bounces(level_index + 1, coarse_sent);
-        for (std::size_t i = 0; i < level.num_groups(); ++i)
-            for (std::size_t c = 0; c < 4; ++c)
-                level.next[i].rgb[c] += more[i / coarse.group_size].rgb[c];
-        level.sum.swap(level.next);
-    }
-    return level.sum;
+    means_of_groups(level.sent, coarse.group_size, coarse_sent);
+    const std::span<const PaddedRgb> more = sum_of_bounces(level_index + 1, coarse_sent);
+    for (std::size_t i = 0; i < level.num_groups(); ++i)
+        for (std::size_t c = 0; c < 4; ++c)
+            level.next[i].rgb[c] += more[i / coarse.group_size].rgb[c];
+    return level.next;
 }
 
 std::span<const PaddedRgb> CoarseBounces::sum_of_last_level(std::span<const PaddedRgb> sent) {

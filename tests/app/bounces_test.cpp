@@ -73,12 +73,65 @@ TEST_F(Bounces, AgreeWithAPathTracer) {
     EXPECT_GT(with["mean_radiance"], 1.03 * without["mean_radiance"].get<double>());
 }
 
+double largest_difference(const std::vector<std::array<float, 3>>& a,
+                          const std::vector<std::array<float, 3>>& b) {
+    double largest = a.size() == b.size() ? 0.0 : 1e30;
+    for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            largest = std::max(largest, std::abs(static_cast<double>(a[i][c] - b[i][c])));
+    return largest;
+}
+
+TEST_F(Bounces, GoThroughEditsFramesAndLightLists) {
+    precompute("scene.prt", {"--bounces", "0.05"});
+    const auto plain = relit("scene.prt", {});
+    // An edit of the whole sphere by 2.
+    succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--radius", "180", "--gain", "2",
+             "-o", "edited.npy", "-q"});
+    const auto edited = npy_values(read("edited.npy"));
+    EXPECT_NEAR(mean(edited), 2.0 * mean(plain), 2e-3 * mean(edited));
+    succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--radius", "180", "--gain", "2",
+             "-o", "direct.npy", "--bounces", "0", "-q"});
+    EXPECT_LT(mean(npy_values(read("direct.npy"))), 0.99 * mean(edited));
+    // What the whole sphere lights is everything.
+    const nlohmann::json share = succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0",
+                                          "--lit-by", "0,1,0,180", "-o", "part.png", "--json"})
+                                     .json();
+    EXPECT_NEAR(share["lit_by_share"], 1.0, 2e-3);
+    EXPECT_GT(share["bounces"], 0);
+    succeed({"edit", "scene.prt", "white.hdr", "--disc", "0,1,0", "--who", "0,0,0", "-o", "who.exr",
+             "-q"});
+
+    // Frames.
+    write("frame.0000.hdr", white_hdr());
+    write("frame.0001.hdr", white_hdr());
+    succeed({"animate", "scene.prt", "frame.%04d.hdr", "-o", "lit.###.npy", "-q"});
+    EXPECT_EQ(npy_values(read("lit.000.npy")), plain);
+    EXPECT_EQ(npy_values(read("lit.001.npy")), plain);
+
+    // A list and an environment bounce together.
+    write("sun.json", R"({"version": 1, "lights": [)"
+                      R"({"direction": [0, 1, 0], "irradiance": [3, 2, 1]}]})");
+    succeed({"relight", "scene.prt", "--lights", "sun.json", "-o", "list.npy", "-q"});
+    const auto list = npy_values(read("list.npy"));
+    auto sum = plain;
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[i][c] += list[i][c];
+    EXPECT_LT(largest_difference(relit("scene.prt", {"--lights", "sun.json"}), sum), 5e-3);
+}
+
 TEST_F(Bounces, WrongUseIsOneLine) {
     precompute("direct.prt");
     fail({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "all"},
          {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
     fail({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--only-bounces"},
          {"direct.prt: expected bounces for --only-bounces, got none"});
+    fail({"edit", "direct.prt", "white.hdr", "--disc", "0,1,0", "-o", "x.png", "--bounces", "2"},
+         {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
+    write("frame.0000.hdr", white_hdr());
+    fail({"animate", "direct.prt", "frame.%04d.hdr", "--vertices", "x.npy", "--bounces", "2"},
+         {"direct.prt: expected a scene made with `relumine precompute --bounces`"});
     misuse({"relight", "direct.prt", "white.hdr", "-o", "x.png", "--bounces", "many"},
            "--bounces: expected a number of bounces or 'all', got 'many'");
     misuse({"precompute", "colonnade.ply", "-o", "x.prt", "--bounces", "0"},

@@ -52,6 +52,14 @@ void require_sound(const prt::Scene& scene) {
     relighter.update_region({.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
                             red);
     require_moderate(relighter.radiance());
+    if (!scene.bounces)
+        return;
+    relighter.set_bounces(
+        {.matrix = &*scene.bounces, .albedo = std::vector(num_receivers, glm::vec3(0.5f))});
+    relighter.bounce();
+    require_moderate(relighter.radiance());
+    relighter.step();
+    require_moderate(relighter.radiance());
 }
 
 } // namespace relumine::fuzz

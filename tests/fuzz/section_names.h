@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 40> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 46> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -46,6 +46,12 @@ inline constexpr std::array<std::string_view, 40> SectionNames = {"settings",
                                                                   "t_materials",
                                                                   "corner_uvs",
                                                                   "block_positions",
-                                                                  "block_triangles"};
+                                                                  "block_triangles",
+                                                                  "bounce_radius",
+                                                                  "bounce_weights",
+                                                                  "bounce_hits_size",
+                                                                  "bounce_hits",
+                                                                  "bounce_near_size",
+                                                                  "bounce_near"};
 
 } // namespace relumine::fuzz

@@ -16,44 +16,10 @@
 #include "relight/exact.h"
 #include "relight/relighter.h"
 #include "tests/prt/scenes.h"
+#include "tests/relight/bounces/bouncing_scene.h"
 
 namespace relumine::relight {
 namespace {
-
-/// A mesh with its transfer and bounces.
-struct BouncingScene {
-    explicit BouncingScene(const mesh::TriangleMesh& given, float tolerance = 0.01f)
-        : mesh(given), receivers(prt::vertex_receivers(mesh)), rays(mesh),
-          bias(prt::automatic_bias(mesh)),
-          transfer(prt::precompute(receivers, rays,
-                                   {.tolerance = 0.01f, .face_resolution = 256, .bias = bias})),
-          matrix(prt::precompute_bounces(mesh, receivers, transfer, probe_radiance(transfer), rays,
-                                         {.tolerance = tolerance, .bias = bias}, &statistics)) {}
-
-    /// Returns one bounce of the emitters' radiance, [num_vertices].
-    [[nodiscard]] std::vector<float> bounce(const std::vector<float>& radiance) const {
-        BounceLight light(matrix, transfer);
-        std::vector<glm::vec3> albedo, direct;
-        for (const float value : radiance) {
-            albedo.emplace_back(value > 0.0f ? 0.5f : 0.0f);
-            direct.emplace_back(2.0f * value);
-        }
-        light.set_albedo(albedo);
-        light.solve(direct, {.num_bounces = 1});
-        std::vector<float> result;
-        for (const glm::vec3& value : light.indirect())
-            result.push_back(value.g);
-        return result;
-    }
-
-    mesh::TriangleMesh mesh;
-    prt::Receivers receivers;
-    prt::RayScene rays;
-    float bias;
-    prt::Transfer transfer;
-    prt::BounceStatistics statistics;
-    prt::BounceMatrix matrix;
-};
 
 /// n x n vertices of a unit square that starts at `corner` and faces cross(along, up).
 mesh::TriangleMesh square(std::uint32_t n, const glm::vec3& corner, const glm::vec3& along,
