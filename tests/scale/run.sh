@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Runs planned precomputes with the engines that users have: GNU parallel, mpirun, and Slurm with the scripts of
-# examples/slurm on a cluster of this one host. Both must give the bytes of a single part.
+# examples/slurm on a cluster of this one host. All must give the bytes of a single part.
 #   run.sh RELUMINE SOURCE_DIR
 set -euo pipefail
 relumine=$(realpath "$1")
