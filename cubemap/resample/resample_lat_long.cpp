@@ -586,7 +586,12 @@ void fill_poles(const EnvironmentImage& image, Sampling sampling, CubeMap& map) 
         };
         for (std::uint32_t y = row_range.begin(); y != row_range.end(); ++y) {
             texels.move_to(y);
-            for (std::uint32_t x = 0; x < (has_quarters ? num_rows : resolution); ++x) {
+            // Quarter turns take the middle row of an odd resolution to the middle column: only one
+            // of them is found here, so that no two threads write the same texel.
+            const bool has_centre = resolution % 2 == 1 && y == resolution / 2;
+            const std::uint32_t num_columns =
+                has_quarters ? resolution / 2 + (has_centre ? 1 : 0) : resolution;
+            for (std::uint32_t x = 0; x < num_columns; ++x) {
                 shares.clear();
                 const auto box = texels.box(x);
                 if (box) {
