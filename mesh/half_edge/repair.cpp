@@ -135,6 +135,7 @@ private:
             std::sort(set.begin(), set.end());
         }
         std::vector<std::vector<std::uint32_t>> result;
+        result.reserve(sets.size());
         for (auto& [key, set] : sets)
             result.push_back(std::move(set));
         return result;
