@@ -149,19 +149,12 @@ void Clustering::add_cluster(Cluster&& cluster) {
     clusters_.push_back(std::move(cluster));
 }
 
-std::vector<LatticePoint> Clustering::needed_points(const Cell& cell) const {
-    const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
-    if (is_single_texel(cell))
-        return {points[CentreSample]};
-    return {points.begin(), points.end()};
-}
-
 /// Siblings follow each other in `cells`. So the sixteen new points of a split follow each other in
 /// the result and make one packet.
 std::vector<LatticePoint> Clustering::needed_points(const std::vector<Cell>& cells) const {
     std::vector<LatticePoint> points;
     for (const Cell& cell : cells) {
-        const std::vector<LatticePoint> of_cell = needed_points(cell);
+        const std::vector<LatticePoint> of_cell = prt::needed_points(cell, is_single_texel(cell));
         points.insert(points.end(), of_cell.begin(), of_cell.end());
     }
     return points;
@@ -176,14 +169,14 @@ void Clustering::take_batch() {
     const std::size_t free = max_planes_ - std::min(num_planes, max_planes_);
     const std::size_t room = std::max(MinBatchPoints, has_room ? free : free / 2);
     std::unordered_set<LatticePoint> new_points;
-    batch_ =
-        pending_.take(has_room ? PendingCells::Order::CoarseFirst : PendingCells::Order::FineFirst,
-                      [&](const Cell& cell) {
-                          for (const LatticePoint point : needed_points(cell))
-                              if (!planes_->knows(point))
-                                  new_points.insert(point);
-                          return new_points.size() <= room;
-                      });
+    batch_ = pending_.take(
+        has_room ? PendingCells::Order::CoarseFirst : PendingCells::Order::FineFirst,
+        [&](const Cell& cell) {
+            for (const LatticePoint point : prt::needed_points(cell, is_single_texel(cell)))
+                if (!planes_->knows(point))
+                    new_points.insert(point);
+            return new_points.size() <= room;
+        });
 }
 
 /// Sets the part of the progress that tracing the batch takes: time, not cells.
@@ -220,18 +213,10 @@ void Clustering::trace_batch() {
 }
 
 Clustering::Decision Clustering::decide(const Cell& cell) const {
-    CellSamples samples;
-    const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
-    // A domain of one light has that light's transfer [JN, Section 4.1].
-    if (is_single_texel(cell)) {
-        samples.directions.fill(direction(points[CentreSample]));
-        samples.lit.fill(planes_->plane(points[CentreSample]));
+    const bool is_texel = is_single_texel(cell);
+    const CellSamples samples = planes_->samples_of(cell, is_texel);
+    if (is_texel)
         return {cell, leaf_column(normals_, samples, CentreWeights, origins_.size())};
-    }
-    for (std::size_t l = 0; l < SamplesPerCell; ++l) {
-        samples.directions[l] = direction(points[l]);
-        samples.lit[l] = planes_->plane(points[l]);
-    }
     const std::array<double, SamplesPerCell> distances = squared_distances(normals_, samples);
     const bool similar =
         std::all_of(distances.begin(), distances.end(), [&](double d) { return d < allowed_; });

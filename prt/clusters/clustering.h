@@ -55,7 +55,6 @@ private:
     void save_checkpoint();
     void add_cluster(Cluster&& cluster);
 
-    [[nodiscard]] std::vector<LatticePoint> needed_points(const Cell& cell) const;
     [[nodiscard]] std::vector<LatticePoint> needed_points(const std::vector<Cell>& cells) const;
     [[nodiscard]] Decision decide(const Cell& cell) const;
     [[nodiscard]] bool is_single_texel(const Cell& cell) const { return cell.level == max_level_; }

@@ -199,4 +199,22 @@ void VisibilityPlanes::keep_only(std::span<const LatticePoint> points) {
     planes_ = std::move(kept);
 }
 
+CellSamples VisibilityPlanes::samples_of(const Cell& cell, bool is_texel) const {
+    CellSamples samples;
+    const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
+    for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+        const LatticePoint point = points[is_texel ? CentreSample : l];
+        samples.directions[l] = direction(point);
+        samples.lit[l] = plane(point);
+    }
+    return samples;
+}
+
+std::vector<LatticePoint> needed_points(const Cell& cell, bool is_texel) {
+    const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
+    if (is_texel)
+        return {points[CentreSample]};
+    return {points.begin(), points.end()};
+}
+
 } // namespace relumine::prt

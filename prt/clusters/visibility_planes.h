@@ -18,6 +18,10 @@
 
 namespace relumine::prt {
 
+/// Returns the points that the test of a cell needs: nine, or the centre of a cell that is one
+/// texel.
+[[nodiscard]] std::vector<LatticePoint> needed_points(const Cell& cell, bool is_texel);
+
 /// Splits long work into steps. All known results are complete between two steps.
 struct TraceSteps {
     /// (receiver, direction) pairs per step; a step has at least one patch.
@@ -70,6 +74,10 @@ public:
     [[nodiscard]] const std::uint64_t* plane(LatticePoint point) const {
         return planes_.at(point).data();
     }
+
+    /// Returns the samples of a cell, whose points must be known. A cell that is one texel has its
+    /// centre for all of them: a domain of one light has that light's transfer [JN, Section 4.1].
+    [[nodiscard]] CellSamples samples_of(const Cell& cell, bool is_texel) const;
 
     [[nodiscard]] std::uint64_t num_directions() const { return num_directions_; }
     [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }

@@ -99,12 +99,7 @@ public:
     }
 
 private:
-    [[nodiscard]] std::vector<LatticePoint> points_of(const Cell& cell) const {
-        const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
-        if (cell.level == texel_level_)
-            return {points[CentreSample]};
-        return {points.begin(), points.end()};
-    }
+    [[nodiscard]] bool is_texel(const Cell& cell) const { return cell.level == texel_level_; }
 
     [[nodiscard]] std::size_t end_of_batch(std::span<const std::uint32_t> leaves,
                                            std::size_t begin) const {
@@ -114,7 +109,7 @@ private:
             const Cell& cell = leaves_[leaves[end]];
             if (cell.level != leaves_[leaves[begin]].level)
                 break;
-            for (const LatticePoint point : points_of(cell))
+            for (const LatticePoint point : needed_points(cell, is_texel(cell)))
                 points.insert(point);
             if (points.size() > max_planes_ && end > begin)
                 break;
@@ -125,7 +120,8 @@ private:
     void work_on(std::span<const std::uint32_t> leaves, double part_before, double part_after) {
         std::vector<LatticePoint> points;
         for (const std::uint32_t leaf : leaves) {
-            const std::vector<LatticePoint> of_cell = points_of(leaves_[leaf]);
+            const std::vector<LatticePoint> of_cell =
+                needed_points(leaves_[leaf], is_texel(leaves_[leaf]));
             points.insert(points.end(), of_cell.begin(), of_cell.end());
         }
         planes_->keep_only(points);
@@ -143,16 +139,8 @@ private:
     }
 
     [[nodiscard]] LeafColumn column(const Cell& cell) const {
-        CellSamples samples;
-        const std::array<LatticePoint, SamplesPerCell> points = lattice_points(cell);
-        const bool is_texel = cell.level == texel_level_;
-        for (std::size_t l = 0; l < SamplesPerCell; ++l) {
-            const LatticePoint point = points[is_texel ? CentreSample : l];
-            samples.directions[l] = direction(point);
-            samples.lit[l] = planes_->plane(point);
-        }
-        return leaf_column(normals_, samples, is_texel ? CentreWeights : SampleWeights,
-                           origins_.size());
+        return leaf_column(normals_, planes_->samples_of(cell, is_texel(cell)),
+                           is_texel(cell) ? CentreWeights : SampleWeights, origins_.size());
     }
 
     static std::uint64_t bytes_of(const LeafColumn& column) {
