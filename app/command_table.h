@@ -28,6 +28,8 @@ struct OptionTable {
     bool value_is_optional = false;
     /// May be given several times
     bool repeats = false;
+
+    [[nodiscard]] bool is_argument() const { return names.empty(); }
 };
 
 /// One command, with the commands below it.

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "app/command_line.h"
+#include "app/command_line/command_line.h"
 #include "app/session.h"
 #include "relumine/mesh.h"
 

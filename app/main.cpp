@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <tbb/global_control.h>
 
-#include "app/command_line.h"
+#include "app/command_line/command_line.h"
 #include "app/program.h"
 #include "prt/precompute.h"
 

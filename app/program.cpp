@@ -1,7 +1,7 @@
 #include "app/program.h"
 
+#include "app/command_line/documentation.h"
 #include "app/commands.h"
-#include "app/documentation.h"
 
 namespace relumine::app {
 

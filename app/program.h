@@ -1,7 +1,7 @@
 // The program's command line: all subcommands.
 #pragma once
 
-#include "app/command_line.h"
+#include "app/command_line/command_line.h"
 #include "app/session.h"
 
 namespace relumine::app {

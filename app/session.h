@@ -11,8 +11,12 @@
 
 #include <glm/vec3.hpp>
 
-#include "app/command_line.h"
+#include "app/command_line/command_line.h"
 #include "app/report.h"
+
+namespace relumine::prt {
+class Team;
+} // namespace relumine::prt
 
 namespace relumine::app {
 
@@ -24,6 +28,8 @@ public:
     bool verbose = false;
     /// 0: all
     unsigned num_threads = 0;
+    /// The processes that share the command's work, of `relumine-mpi`; null: there is but this one.
+    prt::Team* team = nullptr;
 
     Session();
 

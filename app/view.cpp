@@ -9,13 +9,13 @@
 
 #include <fmt/format.h>
 
-#include "app/bounce_option.h"
 #include "app/commands.h"
-#include "app/environment_options.h"
-#include "app/lit_scene.h"
-#include "app/output_options.h"
-#include "app/receiver_options.h"
-#include "app/size_text.h"
+#include "app/options/bounce_option.h"
+#include "app/options/environment_options.h"
+#include "app/options/output_options.h"
+#include "app/options/receiver_options.h"
+#include "app/options/size_text.h"
+#include "app/scenes/lit_scene.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"

@@ -51,13 +51,11 @@ function(relumine_library name)
         VERIFY_INTERFACE_HEADER_SETS ON
         VERSION ${PROJECT_VERSION}
         SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
-        INSTALL_RPATH "$ORIGIN")
-    if(RELUMINE_BUILD_PYTHON)
-        # The module is a shared object that holds the static libraries. Nobody replaces their functions, so calls
-        # are as direct, and as often inlined, as in a program.
-        set_target_properties(relumine_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-        target_compile_options(relumine_${name} PRIVATE -fno-semantic-interposition)
-    endif()
+        INSTALL_RPATH "$ORIGIN"
+        # Python's module is a shared object that holds the static libraries.
+        POSITION_INDEPENDENT_CODE ON)
+    # Nobody replaces their functions, so calls are as direct, and as often inlined, as in a program.
+    target_compile_options(relumine_${name} PRIVATE -fno-semantic-interposition)
     target_link_libraries(relumine_${name} PRIVATE $<BUILD_INTERFACE:relumine_warnings>)
     relumine_optimise(relumine_${name} -O2)
     # A shared library depends on no more than it uses.

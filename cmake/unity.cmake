@@ -1,5 +1,5 @@
 # Fewer, larger translation units: the sources of a room (a folder of sources) are compiled together, at most
-# RELUMINE_UNITY_SIZE at a time, because most of a small file's time goes into headers that its neighbours include, too.
+# RELUMINE_UNITY_SIZE (or the size given) at a time, because most of a small file's time goes into headers that its neighbours include, too.
 # So names in unnamed namespaces must differ within a room.
 #
 # A source stays alone if its text is compiled several times (Highway's foreach_target.h), if it holds the code of a
@@ -9,6 +9,10 @@ set(RELUMINE_UNITY_SIZE 12 CACHE STRING "How many sources are compiled together 
 mark_as_advanced(RELUMINE_UNITY_SIZE)
 
 function(relumine_compile_together target)
+    set(most ${RELUMINE_UNITY_SIZE})
+    if(ARGC GREATER 1)
+        set(most ${ARGV1})
+    endif()
     if(NOT RELUMINE_UNITY)
         return()
     endif()
@@ -20,7 +24,7 @@ function(relumine_compile_together target)
     set(rooms "")
     foreach(source ${sources})
         get_filename_component(path ${source} ABSOLUTE)
-        file(STRINGS ${path} alone REGEX "hwy/foreach_target.h|^#define STB_.*_IMPLEMENTATION|CLI/CLI.hpp|<draco/|<OpenMesh/" LIMIT_COUNT 1)
+        file(STRINGS ${path} alone REGEX "hwy/foreach_target.h|^#define STB_.*_IMPLEMENTATION|CLI/CLI.hpp|RELUMINE_VIEWER_MISSING|<draco/|<OpenMesh/" LIMIT_COUNT 1)
         if(alone)
             continue()
         endif()
@@ -33,7 +37,7 @@ function(relumine_compile_together target)
     foreach(room ${rooms})
         # Groups of equal size, so that no processor waits for a large one at the end.
         list(LENGTH ${room} size)
-        math(EXPR num_groups "(${size} + ${RELUMINE_UNITY_SIZE} - 1) / ${RELUMINE_UNITY_SIZE}")
+        math(EXPR num_groups "(${size} + ${most} - 1) / ${most}")
         set(index 0)
         foreach(source ${${room}})
             math(EXPR group "${index} * ${num_groups} / ${size}")

@@ -53,7 +53,9 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     const Bounds box = bounds(mesh);
     const double horizontal =
         std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
-    const double side = scale * (horizontal > 0.0 ? horizontal : double{box.diagonal()});
+    // Twice as high as wide, and a low sun's shadow would leave the floor.
+    const double size = std::max(horizontal, 0.5 * (double{box.max.y} - box.min.y));
+    const double side = scale * (horizontal > 0.0 ? size : double{box.diagonal()});
     const glm::dvec3 center = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
     const double farthest = std::max(std::abs(center.x), std::abs(center.z)) + 0.5 * side;
     if (!(side > 0.0) || !(farthest <= double{std::numeric_limits<float>::max()}))

@@ -11,9 +11,9 @@
 namespace relumine::mesh {
 
 /// Appends a square grid of n x n vertices that faces +Y. The grid is centred under the mesh's
-/// bounding box. Its sides are `scale` times the larger horizontal extent of the box, or times its
-/// diagonal if there is no horizontal extent. Rows and columns are 2.5 times as dense in the middle
-/// as even ones, and half as dense at the edge.
+/// bounding box. Its sides are `scale` times the larger horizontal extent of the box or half its
+/// height, whichever is more, or times its diagonal if there is no horizontal extent. Rows and
+/// columns are 2.5 times as dense in the middle as even ones, and half as dense at the edge.
 ///
 /// The floor lies a hair below the mesh's lowest point, so that it shares no plane with a face: by
 /// 1/5000 of the diagonal of all, which is twice the lift of rays, and more where floats are

@@ -1,6 +1,7 @@
 #include "mesh/glb_writer.h"
 
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -98,52 +99,113 @@ std::string container(std::string json, const std::string& bytes) {
     return file;
 }
 
-} // namespace
-
-std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
-    const std::uint64_t num_bytes =
-        std::uint64_t{mesh.num_vertices()} * 36 + std::uint64_t{mesh.num_triangles()} * 12;
+void check_size(const TriangleMesh& mesh, std::uint64_t bytes_per_vertex) {
+    const std::uint64_t num_bytes = std::uint64_t{mesh.num_vertices()} * bytes_per_vertex +
+                                    std::uint64_t{mesh.num_triangles()} * 12;
     // Leaves room for the JSON part.
     constexpr std::uint64_t MaxBytes = std::numeric_limits<std::uint32_t>::max() - 65536;
     if (num_bytes > MaxBytes)
         throw std::runtime_error(
             fmt::format("expected at most {} bytes in a .glb file, got {}", MaxBytes, num_bytes));
+}
 
+/// Appends positions and normals. Returns the attributes of primitives.
+files::Json append_shape(Arrays& arrays, const TriangleMesh& mesh) {
     std::vector<glm::vec3> normals = mesh.normals;
     normals.resize(mesh.num_vertices(), glm::vec3(0.0f));
     for (glm::vec3& normal : normals)
         if (normal == glm::vec3(0.0f))
             normal.y = 1.0f;
-
-    Arrays arrays;
-    arrays.bytes.reserve(num_bytes);
     files::Json attributes;
-    attributes.set("POSITION", arrays.append(mesh.positions));
+    attributes.set("POSITION", arrays.append(std::span<const glm::vec3>(mesh.positions)));
     set_bounds(arrays.accessors.back(), mesh.positions);
-    attributes.set("NORMAL", arrays.append(normals));
-    attributes.set("COLOR_0", arrays.append(colors));
-    const std::size_t indices =
-        arrays.append(std::span(mesh.triangles), {UnsignedInt, "SCALAR", ElementArrayBuffer},
-                      3 * mesh.num_triangles());
+    attributes.set("NORMAL", arrays.append(std::span<const glm::vec3>(normals)));
+    return attributes;
+}
 
+files::Json primitive(const files::Json& attributes, std::size_t indices, std::size_t material) {
+    return {{"attributes", attributes},
+            {"indices", indices},
+            {"material", material},
+            {"mode", Triangles}};
+}
+
+std::size_t append_indices(Arrays& arrays, std::span<const Triangle> triangles) {
+    return arrays.append(triangles, {UnsignedInt, "SCALAR", ElementArrayBuffer},
+                         3 * triangles.size());
+}
+
+/// A file with one mesh. `extensions` are the names of those that its materials use.
+std::string file_of(const Arrays& arrays, files::Json materials, files::Json primitives,
+                    const char* extension) {
     using files::Json;
-    const Json document = {
-        {"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
-        {"extensionsUsed", Json::array({"KHR_materials_unlit"})},
-        {"buffers", Json::array({{{"byteLength", arrays.bytes.size()}}})},
-        {"bufferViews", arrays.views},
-        {"accessors", arrays.accessors},
-        {"materials", Json::array({{{"name", "radiance"},
-                                    {"doubleSided", true},
-                                    {"extensions", {{"KHR_materials_unlit", Json::object()}}}}})},
-        {"meshes", Json::array({{{"primitives", Json::array({{{"attributes", attributes},
-                                                              {"indices", indices},
-                                                              {"material", 0},
-                                                              {"mode", Triangles}}})}}})},
-        {"nodes", Json::array({{{"mesh", 0}}})},
-        {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
-        {"scene", 0}};
+    Json document = {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
+                     {"buffers", Json::array({{{"byteLength", arrays.bytes.size()}}})},
+                     {"bufferViews", arrays.views},
+                     {"accessors", arrays.accessors},
+                     {"materials", std::move(materials)},
+                     {"meshes", Json::array({{{"primitives", std::move(primitives)}}})},
+                     {"nodes", Json::array({{{"mesh", 0}}})},
+                     {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                     {"scene", 0}};
+    if (extension != nullptr)
+        document.set("extensionsUsed", Json::array({extension}));
     return container(document.text(), arrays.bytes);
+}
+
+/// Phong's exponent becomes a roughness of about the same highlight.
+files::Json material_of(const Material& material) {
+    using files::Json;
+    const bool is_phong = material.model == MaterialModel::Phong;
+    const double roughness = !is_phong ? double{material.roughness}
+                             : material.specular == glm::vec3(0.0f)
+                                 ? 1.0
+                                 : std::pow(2.0 / (double{material.exponent} + 2.0), 0.25);
+    return {{"name", material.name},
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor",
+               Json::array({double{material.base_color.r}, double{material.base_color.g},
+                            double{material.base_color.b}, 1.0})},
+              {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
+              {"roughnessFactor", roughness}}}};
+}
+
+} // namespace
+
+std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
+    check_size(mesh, 36);
+    Arrays arrays;
+    files::Json attributes = append_shape(arrays, mesh);
+    attributes.set("COLOR_0", arrays.append(colors));
+    using files::Json;
+    const std::size_t indices = append_indices(arrays, mesh.triangles);
+    return file_of(arrays,
+                   Json::array({{{"name", "radiance"},
+                                 {"doubleSided", true},
+                                 {"extensions", {{"KHR_materials_unlit", Json::object()}}}}}),
+                   Json::array({primitive(attributes, indices, 0)}), "KHR_materials_unlit");
+}
+
+std::string glb(const TriangleMesh& mesh) {
+    check_size(mesh, 36);
+    Arrays arrays;
+    files::Json attributes = append_shape(arrays, mesh);
+    if (!mesh.colors.empty())
+        attributes.set("COLOR_0", arrays.append(std::span<const glm::vec3>(mesh.colors)));
+    std::vector<Material> materials = mesh.materials;
+    if (mesh.triangle_materials.empty())
+        materials = {Material{.name = "surface"}};
+    std::vector<std::vector<Triangle>> by_material(materials.size());
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        by_material[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[i]].push_back(
+            mesh.triangles[i]);
+    files::Json::Array descriptions, primitives;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        descriptions.push_back(material_of(materials[i]));
+        if (!by_material[i].empty())
+            primitives.push_back(primitive(attributes, append_indices(arrays, by_material[i]), i));
+    }
+    return file_of(arrays, std::move(descriptions), std::move(primitives), nullptr);
 }
 
 } // namespace relumine::mesh

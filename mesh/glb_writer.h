@@ -17,4 +17,11 @@ namespace relumine::mesh {
 ///          GiB).
 [[nodiscard]] std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors);
 
+/// Returns the mesh as it is: positions, normals, and colours where it has them; a primitive
+/// for each material that triangles use, with its numbers, without images. There are no uvs: other
+/// formats count v from the other end, and a mesh does not say which.
+///
+/// Throws:  as above.
+[[nodiscard]] std::string glb(const TriangleMesh& mesh);
+
 } // namespace relumine::mesh

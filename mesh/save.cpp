@@ -111,14 +111,26 @@ std::vector<std::string> save(const std::filesystem::path& path, const TriangleM
     std::vector<std::string> left_out;
     if (!mesh.textures.empty())
         left_out.emplace_back("images of textures");
-    if (extension == ".ply") {
-        if (!mesh.corner_uvs.empty())
-            left_out.emplace_back("uvs of corners, which .ply has no place for");
-        if (!mesh.triangle_materials.empty())
-            left_out.emplace_back("materials, which .ply has no place for");
-        if (!mesh.triangle_groups.empty())
-            left_out.emplace_back("groups, which .ply has no place for");
-        write(path, ply(mesh, "Relumine", mesh.colors, mesh.uvs));
+    if (extension == ".ply" || extension == ".glb") {
+        const auto leave_out = [&](bool has, const char* what) {
+            if (has)
+                left_out.push_back(
+                    fmt::format("{}, which a {} file of ours does not hold", what, extension));
+        };
+        leave_out(!mesh.corner_uvs.empty(), "uvs of corners");
+        leave_out(!mesh.uvs.empty() && extension == ".glb", "uvs");
+        leave_out(!mesh.triangle_materials.empty() && extension == ".ply", "materials");
+        leave_out(!mesh.triangle_groups.empty(), "groups");
+        if (extension == ".ply") {
+            write(path, ply(mesh, "Relumine", mesh.colors, mesh.uvs));
+        } else {
+            try {
+                check(mesh, mesh.colors.empty() ? mesh.positions : mesh.colors);
+                write(path, glb(mesh));
+            } catch (const std::runtime_error& error) {
+                throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
+            }
+        }
     } else if (extension == ".obj") {
         std::filesystem::path library;
         if (!mesh.triangle_materials.empty()) {
@@ -129,8 +141,8 @@ std::vector<std::string> save(const std::filesystem::path& path, const TriangleM
         write(path, obj(mesh, library.filename().string()));
     } else {
         throw std::runtime_error(
-            fmt::format("{}: expected a mesh file to write (.ply or .obj), got '{}'", path.string(),
-                        extension));
+            fmt::format("{}: expected a mesh file to write (.ply, .glb or .obj), got '{}'",
+                        path.string(), extension));
     }
     return left_out;
 }

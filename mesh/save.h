@@ -20,11 +20,12 @@ void save(const std::filesystem::path& path, const TriangleMesh& mesh,
           std::span<const glm::vec3> colors);
 
 /// Writes the mesh as it is, for other programs and for load(): .ply (binary little-endian:
-/// normals, float colours, uvs of vertices) or .obj (also uvs of corners, groups, and the names and
-/// numbers of materials in a .mtl file beside it). Each file appears whole or not at all.
+/// normals, float colours, uvs of vertices), .glb (also materials) or .obj (also uvs of corners,
+/// groups, and the names and numbers of materials in a .mtl file beside it). Each file appears
+/// whole or not at all.
 ///
-/// Returns what the format cannot hold, a line each: textures, and for .ply materials, groups and
-/// uvs of corners.
+/// Returns what is left out, a line each: textures; for .ply and .glb groups and uvs of corners,
+/// for .ply materials, for .glb uvs.
 /// Throws:  std::runtime_error naming the path.
 std::vector<std::string> save(const std::filesystem::path& path, const TriangleMesh& mesh);
 

@@ -33,6 +33,9 @@ constexpr std::uint64_t GlossyBytesPerReceiver = 120;
 constexpr double JoinedPerGlossyByte = 2.2;
 constexpr double SavedPerGlossyByte = 3.4;
 
+/// Bounces: samples, lists of similar receivers and probe lights.
+constexpr std::uint64_t BounceBytesPerReceiver = 450;
+
 /// The largest level needs this part of all directions; the planes of all levels are never needed
 /// together.
 constexpr double DirectionsPerCluster = 4.1;
@@ -120,6 +123,16 @@ std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_byt
                  left(without_triangles, SavedPerColumn, SavedPerGlossyByte)));
 }
 
+std::uint64_t max_bounce_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
+                               std::uint64_t max_bytes) {
+    SceneSizes without_beams = sizes;
+    without_beams.has_beams = false;
+    const double used = static_cast<double>(scene_bytes(without_beams)) +
+                        static_cast<double>(sizes.num_receivers * BounceBytesPerReceiver) +
+                        JoinedPerColumn * static_cast<double>(column_bytes);
+    return static_cast<std::uint64_t>(std::max(0.0, static_cast<double>(max_bytes) - used));
+}
+
 std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes) {
     const std::uint64_t scene = scene_bytes(sizes);
     const std::uint64_t left = max_bytes > scene ? max_bytes - scene : 0;
@@ -135,6 +148,7 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     trial_options.epsilon = {};
     trial_options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
     trial_options.checkpoint = nullptr;
+    trial_options.reduction = nullptr;
     trial_options.on_progress = {};
     const PrecomputeContext context{.column_scale = static_cast<double>(receivers.size()) /
                                                     static_cast<double>(trial.size())};

@@ -42,6 +42,10 @@ struct SceneSizes {
 [[nodiscard]] std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
                                              std::uint64_t max_bytes);
 
+/// The same for BounceOptions::max_bytes. Bounces come after the highlights.
+[[nodiscard]] std::uint64_t max_bounce_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,
+                                             std::uint64_t max_bytes);
+
 /// Returns the plane_bytes to use under a limit: a quarter of what the scene leaves, at most the
 /// default, at least 16 MiB.
 [[nodiscard]] std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_bytes);

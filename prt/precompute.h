@@ -10,6 +10,7 @@
 
 #include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
+#include "prt/reduction.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
 
@@ -39,6 +40,10 @@ struct PrecomputeOptions {
     /// planes, and joining and writing them takes as much again. Beyond the limit TooManyClusters
     /// is thrown.
     std::uint64_t max_column_bytes = std::numeric_limits<std::uint64_t>::max();
+    /// Where processes share the work: each has its part of the receivers, and what they decide
+    /// follows from figures of all. Null: this process does it all. `plane_bytes` is then for all
+    /// processes together, max_column_bytes for each; `stop` ends all when one is asked to.
+    Reduction* reduction = nullptr;
     /// Stores the work now and then, and gives back the work of an earlier run; may be null. Where
     /// the receivers have highlights, a last checkpoint is left for precompute_glossy(), which
     /// follows.
@@ -57,7 +62,9 @@ struct PrecomputeStatistics {
     std::uint64_t num_samples = 0;
     /// Samples above the receiver's horizon, which were traced.
     std::uint64_t num_rays = 0;
-    /// Bytes of all clusters' columns before they were joined.
+    /// The rays of this process.
+    std::uint64_t num_own_rays = 0;
+    /// Bytes of all clusters' columns before they were joined, of this process.
     std::uint64_t column_bytes = 0;
     std::uint32_t deepest_level = 0;
     double seconds = 0.0;
@@ -82,6 +89,9 @@ struct TooManyClusters : std::runtime_error {
 
 /// Clusters all directions of the sphere by their light transfer to the receivers [JN, Section 4].
 /// Each sample direction is traced once for each receiver, where plane_bytes allow it.
+///
+/// Where processes share the work, each gets the same quadtree, order and normals, and the counts
+/// of its own receivers.
 ///
 /// Memory:  twice the result, and plane_bytes.
 /// Threads: parallel over receivers (TBB). The result is the same bit by bit for any number of

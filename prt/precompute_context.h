@@ -15,6 +15,9 @@ struct PrecomputeContext {
     double column_scale = 1.0;
     /// Other work follows: a last checkpoint is left when the clusters are done.
     bool more_follows = false;
+    /// Order and quadtree are given: cells are split down to its leaves and not tested. May be
+    /// null.
+    const Transfer* plan = nullptr;
     /// For tests: work between two looks at the checkpoint, in samples.
     std::optional<std::uint64_t> samples_per_step = {};
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <numbers>
 
 #include "prt/clusters/lattice.h"
@@ -9,6 +10,7 @@
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "relight/block_kernels.cpp"
+#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
@@ -17,120 +19,50 @@ namespace relumine::relight::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Radiance of the 16 receivers from the mixed clusters of one word, [channel][receiver].
-using WordSum = std::array<std::array<float, prt::BlockSize>, 3>;
+/// Sums of float for the 16 receivers, [channel][receiver].
+using FloatSum = std::array<std::array<float, prt::BlockSize>, 3>;
 
 using Floats = hn::CappedTag<float, prt::BlockSize>;
-using FloatVec = hn::Vec<Floats>;
 
 /// Normals of some of a block's receivers.
+template<class D>
 struct Normals {
-    FloatVec x, y, z;
+    using Vec = hn::Vec<D>;
+    Vec x, y, z;
 
     Normals(const BlockNormals& normals, std::size_t lane)
-        : x(hn::LoadU(Floats(), normals.axes[0].data() + lane)),
-          y(hn::LoadU(Floats(), normals.axes[1].data() + lane)),
-          z(hn::LoadU(Floats(), normals.axes[2].data() + lane)) {}
+        : x(hn::LoadU(D(), normals.axes[0].data() + lane)),
+          y(hn::LoadU(D(), normals.axes[1].data() + lane)),
+          z(hn::LoadU(D(), normals.axes[2].data() + lane)) {}
 
-    /// Returns max(n.e, 0).
-    [[nodiscard]] FloatVec cosine(const float* e) const {
-        const Floats d;
+    /// Returns n.e.
+    [[nodiscard]] Vec dot(const float* e) const {
+        const D d;
         const auto along_z = hn::Mul(z, hn::Set(d, e[2]));
-        const auto n_dot_e =
-            hn::MulAdd(x, hn::Set(d, e[0]), hn::MulAdd(y, hn::Set(d, e[1]), along_z));
-        return hn::Max(n_dot_e, hn::Zero(d));
+        return hn::MulAdd(x, hn::Set(d, e[0]), hn::MulAdd(y, hn::Set(d, e[1]), along_z));
     }
 };
 
-FloatVec load_counts(const std::uint8_t* counts) {
-    const Floats d;
-    const hn::Rebind<std::uint8_t, Floats> bytes;
-    const hn::Rebind<std::int32_t, Floats> integers;
+template<class D>
+hn::Vec<D> load_counts(D d, const std::uint8_t* counts) {
+    const hn::Rebind<std::uint8_t, D> bytes;
+    const hn::Rebind<std::int32_t, D> integers;
     return hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts)));
 }
 
-/// Radiance of some receivers, per channel.
-struct Sum {
-    FloatVec red, green, blue;
-
-    // Written out: g++ compiles an implicit constructor without the instruction set of the
-    // functions around it.
-    Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
-
-    /// Adds max(n.E, 0).
-    void add_clamped(const Normals& n, const float* e) {
-        add(n.cosine(e), n.cosine(e + 3), n.cosine(e + 6));
-    }
-
-    void add(FloatVec r, FloatVec g, FloatVec b) {
-        red = hn::Add(red, r);
-        green = hn::Add(green, g);
-        blue = hn::Add(blue, b);
-    }
-
-    /// Gives all that was added so far the count of a whole cluster.
-    void count_full() {
-        const auto full = hn::Set(Floats(), static_cast<float>(prt::FullCount));
-        red = hn::Mul(red, full);
-        green = hn::Mul(green, full);
-        blue = hn::Mul(blue, full);
-    }
-
-    /// Adds c max(n.E, 0).
-    void add_clamped(FloatVec count, const Normals& n, const float* e) {
-        add(count, n.cosine(e), n.cosine(e + 3), n.cosine(e + 6));
-    }
-
-    void add(FloatVec count, FloatVec r, FloatVec g, FloatVec b) {
-        red = hn::MulAdd(count, r, red);
-        green = hn::MulAdd(count, g, green);
-        blue = hn::MulAdd(count, b, blue);
-    }
-
-    void store(WordSum& sum, std::size_t lane) const {
-        hn::StoreU(red, Floats(), sum[0].data() + lane);
-        hn::StoreU(green, Floats(), sum[1].data() + lane);
-        hn::StoreU(blue, Floats(), sum[2].data() + lane);
-    }
-};
-
-/// The sum of c E over clusters, per channel and axis, where no receiver needs the clamp.
-struct VectorSum {
-    FloatVec red_x, red_y, red_z, green_x, green_y, green_z, blue_x, blue_y, blue_z;
-
-    VectorSum()
-        : red_x(hn::Zero(Floats())), red_y(red_x), red_z(red_x), green_x(red_x), green_y(red_x),
-          green_z(red_x), blue_x(red_x), blue_y(red_x), blue_z(red_x) {}
-
-    void add(FloatVec count, const float* e) {
-        const Floats d;
-        red_x = hn::MulAdd(count, hn::Set(d, e[0]), red_x);
-        red_y = hn::MulAdd(count, hn::Set(d, e[1]), red_y);
-        red_z = hn::MulAdd(count, hn::Set(d, e[2]), red_z);
-        green_x = hn::MulAdd(count, hn::Set(d, e[3]), green_x);
-        green_y = hn::MulAdd(count, hn::Set(d, e[4]), green_y);
-        green_z = hn::MulAdd(count, hn::Set(d, e[5]), green_z);
-        blue_x = hn::MulAdd(count, hn::Set(d, e[6]), blue_x);
-        blue_y = hn::MulAdd(count, hn::Set(d, e[7]), blue_y);
-        blue_z = hn::MulAdd(count, hn::Set(d, e[8]), blue_z);
-    }
-
-    /// Returns n . sum.
-    [[nodiscard]] Sum on(const Normals& n) const {
-        Sum sum;
-        sum.red = hn::MulAdd(n.x, red_x, hn::MulAdd(n.y, red_y, hn::Mul(n.z, red_z)));
-        sum.green = hn::MulAdd(n.x, green_x, hn::MulAdd(n.y, green_y, hn::Mul(n.z, green_z)));
-        sum.blue = hn::MulAdd(n.x, blue_x, hn::MulAdd(n.y, blue_y, hn::Mul(n.z, blue_z)));
-        return sum;
-    }
-};
-
-std::size_t first_float(std::uint64_t bits) {
-    return static_cast<std::size_t>(std::countr_zero(bits)) * ClusterLights::Stride;
+std::size_t first_bit(std::uint64_t bits) {
+    return static_cast<std::size_t>(std::countr_zero(bits));
 }
 
+/// The light of a word's clusters.
+struct WordLights {
+    const float* vectors;
+    const float* beams;
+    std::uint64_t spread;
+};
+
 /// The clusters of a block and word that add up per receiver.
-struct MixedWord {
+struct PairWord {
     /// Seen in part.
     std::uint64_t mixed;
     /// Seen whole, across a horizon.
@@ -140,101 +72,124 @@ struct MixedWord {
     const BlockNormals& normals;
 };
 
-/// Sums c max(n.E, 0) over the word's clusters. `vectors` begins at the word's first cluster.
-void sum_clamped(const MixedWord& word, const float* vectors, WordSum& result) {
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
-        const Normals n(word.normals, lane);
-        Sum sum;
-        for (std::uint64_t bits = word.across; bits != 0; bits &= bits - 1)
-            sum.add_clamped(n, vectors + first_float(bits));
-        sum.count_full();
-        const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.mixed; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
-            sum.add_clamped(load_counts(counts), n, vectors + first_float(bits));
+/// Radiance of some receivers, per channel.
+struct Sum {
+    hn::Vec<Floats> red, green, blue;
+
+    // Written out: g++ compiles an implicit constructor without the instruction set of the
+    // functions around it.
+    Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
+    Sum(const FloatSum& sum, std::size_t lane)
+        : red(hn::LoadU(Floats(), sum[0].data() + lane)),
+          green(hn::LoadU(Floats(), sum[1].data() + lane)),
+          blue(hn::LoadU(Floats(), sum[2].data() + lane)) {}
+
+    void store(FloatSum& sum, std::size_t lane) const {
+        hn::StoreU(red, Floats(), sum[0].data() + lane);
+        hn::StoreU(green, Floats(), sum[1].data() + lane);
+        hn::StoreU(blue, Floats(), sum[2].data() + lane);
+    }
+    void add(hn::Vec<Floats> part, const float* colour) {
+        const Floats d;
+        red = hn::MulAdd(part, hn::Set(d, colour[0]), red);
+        green = hn::MulAdd(part, hn::Set(d, colour[1]), green);
+        blue = hn::MulAdd(part, hn::Set(d, colour[2]), blue);
+    }
+};
+
+/// Adds max(n.E, 0) of clusters.
+template<bool AnySpread>
+void add_whole(std::uint64_t bits, const Normals<Floats>& n, const WordLights& lights, Sum& sum) {
+    const auto zero = hn::Zero(Floats());
+    const float* beams = lights.beams;
+    for (; bits != 0; bits &= bits - 1) {
+        const std::size_t i = first_bit(bits);
+        if (AnySpread && (lights.spread >> i & 1u) != 0) {
+            const float* e = lights.vectors + i * ClusterLights::Stride;
+            sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
+            sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
+            sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
+        } else {
+            const float* beam = beams + i * ClusterLights::BeamStride;
+            sum.add(hn::Max(n.dot(beam), zero), beam + 3);
+        }
+    }
+}
+
+/// Adds c max(n.E, 0) of clusters.
+template<bool AnySpread>
+void add_counted(std::uint64_t bits, const std::uint8_t* counts, const Normals<Floats>& n,
+                 const WordLights& lights, Sum& sum) {
+    const Floats d;
+    const auto zero = hn::Zero(d);
+    const float* beams = lights.beams;
+    for (; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
+        const std::size_t i = first_bit(bits);
+        const auto count = load_counts(d, counts);
+        if (AnySpread && (lights.spread >> i & 1u) != 0) {
+            const float* e = lights.vectors + i * ClusterLights::Stride;
+            sum.red = hn::MulAdd(count, hn::Max(n.dot(e), zero), sum.red);
+            sum.green = hn::MulAdd(count, hn::Max(n.dot(e + 3), zero), sum.green);
+            sum.blue = hn::MulAdd(count, hn::Max(n.dot(e + 6), zero), sum.blue);
+        } else {
+            const float* beam = beams + i * ClusterLights::BeamStride;
+            sum.add(hn::Mul(count, hn::Max(n.dot(beam), zero)), beam + 3);
+        }
+    }
+}
+
+/// Adds the clusters of a block and word that add up per receiver.
+template<bool AnySpread>
+void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result) {
+    const Floats d;
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+        const Normals<Floats> n(word.normals, lane);
+        Sum sum(result, lane);
+        if (word.across != 0) {
+            Sum whole;
+            add_whole<AnySpread>(word.across, n, lights, whole);
+            const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
+            sum.red = hn::MulAdd(full, whole.red, sum.red);
+            sum.green = hn::MulAdd(full, whole.green, sum.green);
+            sum.blue = hn::MulAdd(full, whole.blue, sum.blue);
+        }
+        add_counted<AnySpread>(word.mixed, word.counts + lane, n, lights, sum);
         sum.store(result, lane);
     }
 }
 
-/// Sums c n.E over the word's clusters, where the clamp can be left out.
-void sum_unclamped(const MixedWord& word, const float* vectors, WordSum& result) {
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
-        VectorSum sum;
-        const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.mixed; bits != 0; bits &= bits - 1, counts += prt::BlockSize)
-            sum.add(load_counts(counts), vectors + first_float(bits));
-        sum.on(Normals(word.normals, lane)).store(result, lane);
-    }
-}
-
-/// Does sum_clamped() with two sets of vectors at once. They differ in `changed` clusters only.
-void sum_clamped_twice(const MixedWord& word, std::uint64_t changed, const float* before,
-                       const float* after, WordSum& result_before, WordSum& result_after) {
-    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(Floats())) {
-        const Normals n(word.normals, lane);
-        Sum sum_before;
-        Sum sum_after;
-        for (std::uint64_t bits = word.across; bits != 0; bits &= bits - 1) {
-            const float* e = before + first_float(bits);
-            const auto red = n.cosine(e), green = n.cosine(e + 3), blue = n.cosine(e + 6);
-            sum_before.add(red, green, blue);
-            if ((changed & bits & (~bits + 1)) == 0)
-                sum_after.add(red, green, blue);
-            else
-                sum_after.add_clamped(n, after + first_float(bits));
-        }
-        sum_before.count_full();
-        sum_after.count_full();
-        const std::uint8_t* counts = word.counts + lane;
-        for (std::uint64_t bits = word.mixed; bits != 0;
-             bits &= bits - 1, counts += prt::BlockSize) {
-            const auto count = load_counts(counts);
-            const float* e = before + first_float(bits);
-            const auto red = n.cosine(e), green = n.cosine(e + 3), blue = n.cosine(e + 6);
-            sum_before.add(count, red, green, blue);
-            if ((changed & bits & (~bits + 1)) == 0)
-                sum_after.add(count, red, green, blue);
-            else
-                sum_after.add_clamped(count, n, after + first_float(bits));
-        }
-        sum_before.store(result_before, lane);
-        sum_after.store(result_after, lane);
-    }
-}
-
-void add(const WordSum& sum, BlockLight& light) {
+void add(const FloatSum& sum, BlockLight& light) {
+    const hn::CappedTag<double, prt::BlockSize> d;
+    const hn::Rebind<float, decltype(d)> floats;
     for (std::size_t channel = 0; channel < 3; ++channel)
-        for (std::size_t i = 0; i < prt::BlockSize; ++i)
-            light.mixed[channel][i] += static_cast<double>(sum[channel][i]);
+        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+            double* total = light.mixed[channel].data() + lane;
+            const auto more = hn::PromoteTo(d, hn::LoadU(floats, sum[channel].data() + lane));
+            hn::StoreU(hn::Add(hn::LoadU(d, total), more), d, total);
+        }
 }
 
-void add_difference(const WordSum& before, const WordSum& after, BlockLight& light) {
-    for (std::size_t channel = 0; channel < 3; ++channel)
-        for (std::size_t i = 0; i < prt::BlockSize; ++i)
-            light.mixed[channel][i] +=
-                static_cast<double>(after[channel][i]) - static_cast<double>(before[channel][i]);
-}
-
-/// Adds the clusters of the set bits: one difference of prefix sums for each run of them. `prefix`
-/// begins at the word's first cluster.
-void add_runs(std::uint64_t bits, const double* prefix, double* sum) {
-    const hn::CappedTag<double, ClusterLights::Stride - 1> d;
-    for (std::size_t lane = 0; lane < ClusterLights::Stride - 1; lane += hn::Lanes(d)) {
+/// Sums the clusters of runs: a sum of all clusters before each run's end, minus a sum of those
+/// before its beginning. `edges` are the bits where a run begins, which is `visible` there, or
+/// ends. `prefix` begins at the word's first cluster.
+void add_runs(std::uint64_t edges, std::uint64_t visible, const double* prefix, double* sum) {
+    constexpr std::size_t Last = ClusterLights::Stride - 1;
+    constexpr std::array<double, 2> Signs = {1.0, -1.0};
+    const hn::CappedTag<double, Last> d;
+    double last = sum[Last];
+    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d)) {
         auto lanes = hn::LoadU(d, sum + lane);
-        double last = 0.0;
-        for (std::uint64_t rest = bits; rest != 0;) {
-            const std::size_t first = first_float(rest);
-            rest += rest & (~rest + 1); // the run carries into the zero above it, if there is one
-            const std::size_t end = rest == 0 ? 64 * ClusterLights::Stride : first_float(rest);
-            rest &= bits;
-            lanes = hn::Add(lanes, hn::Sub(hn::LoadU(d, prefix + end + lane),
-                                           hn::LoadU(d, prefix + first + lane)));
-            last +=
-                prefix[end + ClusterLights::Stride - 1] - prefix[first + ClusterLights::Stride - 1];
+        for (std::uint64_t bits = edges; bits != 0; bits &= bits - 1) {
+            const std::size_t i = first_bit(bits);
+            const double sign = Signs[visible >> i & 1u];
+            const double* before = prefix + i * ClusterLights::Stride;
+            lanes = hn::MulAdd(hn::Set(d, sign), hn::LoadU(d, before + lane), lanes);
+            if (lane == 0)
+                last += sign * before[Last];
         }
         hn::StoreU(lanes, d, sum + lane);
-        if (lane == 0)
-            sum[ClusterLights::Stride - 1] += last;
     }
+    sum[Last] = last;
 }
 
 void block_radiance(const BlockNormals& normals, const BlockLight& light,
@@ -262,123 +217,233 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light,
     }
 }
 
-/// Calls visit(block, word) for the set bits. `word` belongs to the tile's first block.
+/// Calls visit(block) for the set bits, blocks of a tile.
 template<class Visit>
-void for_blocks(std::uint64_t bits, std::size_t begin, std::size_t word, const Visit& visit) {
-    for (; bits != 0; bits &= bits - 1) {
-        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
-        visit(begin + i, word + i);
+void for_blocks(std::uint64_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1)
+        visit(first_bit(bits));
+}
+
+/// Returns the largest part of a block's light.
+double brightness(const BlockLight& light) {
+    const hn::CappedTag<double, prt::BlockSize> d;
+    auto largest = hn::Zero(d);
+    for (const auto& channel : light.mixed)
+        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d))
+            largest = hn::Max(largest, hn::Abs(hn::LoadU(d, channel.data() + lane)));
+    double result = hn::GetLane(hn::MaxOfLanes(d, largest));
+    for (const double value : light.visible)
+        result = std::max(result, static_cast<double>(prt::FullCount) * std::abs(value));
+    return result;
+}
+
+/// Adds up the clusters that the chosen blocks of a tile see whole.
+void add_visible(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                 std::uint64_t chosen, BlockLight* of_block) {
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile);
+    const std::size_t num_words = counts.words_per_block();
+    // Side by side, because BlockLights are too far apart for the nearest cache.
+    using Vector = std::array<double, ClusterLights::Stride>;
+    std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
+    const double* prefix = lights.prefix.data();
+    std::uint64_t inside = 0; // blocks in the middle of a run
+    for (std::size_t w = 0; w < num_words; ++w, prefix += 64 * ClusterLights::Stride) {
+        const TileWord& blocks = scene.words.words[tile * num_words + w];
+        const std::uint64_t* words = counts.visible.data() + counts.word(begin, w);
+        for_blocks(blocks.edges & chosen, [&](std::size_t block) {
+            const std::uint64_t visible = words[block] & ~scene.words.across_of(blocks, block);
+            add_runs(visible ^ (visible << 1 | (inside >> block & 1u)), visible, prefix,
+                     sums[block].data());
+            inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
+        });
+    }
+    for_blocks(chosen, [&](std::size_t block) {
+        // A run up to the last bit of the last word ends behind it.
+        add_runs(inside >> block & 1u, 0, prefix, sums[block].data());
+        of_block[block].visible = sums[block];
+    });
+}
+
+/// Adds up the clusters that the chosen blocks of a tile see in part or across a horizon.
+void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                      std::uint64_t chosen, BlockLight* of_block) {
+    // So many words add up in float.
+    constexpr std::size_t FloatWords = 8;
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile);
+    const std::size_t num_words = counts.words_per_block();
+    std::array<FloatSum, prt::VisibleCounts::TileBlocks> sums{};
+    std::uint64_t summed = 0;
+    for (std::size_t w = 0; w < num_words; ++w) {
+        const TileWord& blocks = scene.words.words[tile * num_words + w];
+        const std::size_t first_word = counts.word(begin, w);
+        const WordLights of_word{.vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride,
+                                 .beams = lights.beams.data() + w * 64 * ClusterLights::BeamStride,
+                                 .spread = lights.spread[w]};
+        const std::uint64_t pairs = (blocks.mixed | blocks.across) & chosen;
+        for_blocks(pairs, [&](std::size_t block) {
+            const PairWord word{
+                counts.mixed[first_word + block], scene.words.across_of(blocks, block),
+                counts.mixed_counts(first_word + block, 0), scene.normals[begin + block]};
+            if (((word.mixed | word.across) & of_word.spread) != 0)
+                add_pairs<true>(word, of_word, sums[block]);
+            else
+                add_pairs<false>(word, of_word, sums[block]);
+        });
+        summed |= pairs;
+        if (w % FloatWords == FloatWords - 1 || w == num_words - 1) {
+            for_blocks(summed, [&](std::size_t block) {
+                add(sums[block], of_block[block]);
+                sums[block] = {};
+            });
+            summed = 0;
+        }
     }
 }
 
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
-                BlockLight* light) {
-    const prt::VisibleCounts& counts = scene.counts;
-    const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t end = counts.tile_begin(tile + 1);
-    std::fill(light + begin, light + end, BlockLight{});
-    for (std::size_t w = 0; w < counts.words_per_block(); ++w) {
-        const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + w];
-        const std::size_t first_word = counts.word(begin, w);
-        const float* vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride;
-        const double* prefix = lights.prefix.data() + w * 64 * ClusterLights::Stride;
-        const auto mixed = [&](std::size_t block, std::size_t word, std::uint64_t across) {
-            return MixedWord{counts.mixed[word], across, counts.mixed_counts(word, 0),
-                             scene.normals[block]};
-        };
-        const auto add_clamped = [&](const MixedWord& word, std::size_t block) {
-            WordSum sum;
-            sum_clamped(word, vectors, sum);
-            add(sum, light[block]);
-        };
-        const std::uint64_t* across = scene.words.across.data() + blocks.across_before;
-        for_blocks(blocks.across, begin, first_word, [&](std::size_t block, std::size_t word) {
-            if (const std::uint64_t above = counts.visible[word] & ~*across; above != 0)
-                add_runs(above, prefix, light[block].visible.data());
-            add_clamped(mixed(block, word, *across++), block);
-        });
-        for_blocks(blocks.visible & ~blocks.across, begin, first_word,
-                   [&](std::size_t block, std::size_t word) {
-                       add_runs(counts.visible[word], prefix, light[block].visible.data());
-                   });
-        for_blocks(blocks.clamped & ~blocks.across, begin, first_word,
-                   [&](std::size_t block, std::size_t word) {
-                       add_clamped(mixed(block, word, 0), block);
-                   });
-        for_blocks(blocks.unclamped, begin, first_word, [&](std::size_t block, std::size_t word) {
-            WordSum sum;
-            sum_unclamped(mixed(block, word, 0), vectors, sum);
-            add(sum, light[block]);
-        });
-    }
+                BlockLight* light, std::uint64_t chosen) {
+    const std::size_t begin = scene.counts.tile_begin(tile);
+    chosen &= ~std::uint64_t{0} >>
+              (prt::VisibleCounts::TileBlocks - (scene.counts.tile_begin(tile + 1) - begin));
+    for_blocks(chosen, [&](std::size_t block) { light[begin + block] = {}; });
+    add_visible(scene, tile, lights, chosen, light + begin);
+    add_per_receiver(scene, tile, lights, chosen, light + begin);
+    for_blocks(chosen, [&](std::size_t block) {
+        light[begin + block].summed = brightness(light[begin + block]);
+        light[begin + block].largest = light[begin + block].summed;
+    });
 }
 
-/// The change of some clusters' vectors, summed over these clusters of a word.
-class VectorDifference {
+/// A channel's sums of some receivers in double: two vectors for one of Floats. (Where vectors have
+/// one lane, both are the same.)
+class DoubleSum {
+    using D = hn::CappedTag<double, prt::BlockSize>;
+
 public:
-    VectorDifference(std::uint64_t clusters, const float* before, const float* after) {
-        for (; clusters != 0; clusters &= clusters - 1) {
-            const std::size_t first = first_float(clusters);
-            for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
-                sum_[i] +=
-                    static_cast<double>(after[first + i]) - static_cast<double>(before[first + i]);
-        }
+    explicit DoubleSum(const double* sum)
+        : lower_(hn::LoadU(D(), sum)), upper_(hn::LoadU(D(), sum + begin_of_upper())) {}
+    void store(double* sum) const {
+        hn::StoreU(lower_, D(), sum);
+        hn::StoreU(upper_, D(), sum + begin_of_upper());
     }
 
-    void add_to(std::array<double, ClusterLights::Stride>& vector) const {
-        for (std::size_t i = 0; i < ClusterLights::Stride; ++i)
-            vector[i] += sum_[i];
+    /// Floats turned to double.
+    struct Part {
+        hn::Vec<D> lower, upper;
+
+        explicit Part(hn::Vec<Floats> part) : lower(hn::Zero(D())), upper(lower) {
+            const hn::Rebind<float, D> half;
+            std::array<float, prt::BlockSize> values;
+            hn::StoreU(part, Floats(), values.data());
+            lower = hn::PromoteTo(D(), hn::LoadU(half, values.data()));
+            upper = hn::PromoteTo(D(), hn::LoadU(half, values.data() + begin_of_upper()));
+        }
+    };
+    void add(const Part& part, double factor) {
+        const auto f = hn::Set(D(), factor);
+        lower_ = hn::MulAdd(part.lower, f, lower_);
+        upper_ = hn::MulAdd(part.upper, f, upper_);
     }
 
 private:
-    std::array<double, ClusterLights::Stride> sum_{};
+    static std::size_t begin_of_upper() { return hn::Lanes(Floats()) - hn::Lanes(D()); }
+
+    hn::Vec<D> lower_, upper_;
 };
 
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
-                          std::span<const ChangedWord> changes, const float* all_before,
-                          const float* all_after, BlockLight* light) {
+/// Adds the changes of a word's clusters to what adds up per receiver.
+void change_pairs(const PairWord& word, const LightChanges& changes, const ChangedWord& change,
+                  BlockLight& light) {
+    const Floats d;
+    const auto zero = hn::Zero(d);
+    const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+        const Normals<Floats> n(word.normals, lane);
+        DoubleSum red(light.mixed[0].data() + lane);
+        DoubleSum green(light.mixed[1].data() + lane);
+        DoubleSum blue(light.mixed[2].data() + lane);
+        for (std::uint64_t bits = (word.mixed | word.across) & change.clusters; bits != 0;
+             bits &= bits - 1) {
+            const std::uint64_t before = (bits & (~bits + 1)) - 1;
+            const std::size_t cluster =
+                change.first + static_cast<std::size_t>(std::popcount(change.clusters & before));
+            const bool is_mixed = (word.mixed & (before + 1)) != 0;
+            const std::uint8_t* counts =
+                word.counts +
+                static_cast<std::size_t>(std::popcount(word.mixed & before)) * prt::BlockSize;
+            const auto count = is_mixed ? load_counts(d, counts + lane) : full;
+            for (std::size_t i = changes.beams_before[cluster];
+                 i < changes.beams_before[cluster + 1]; ++i) {
+                const BeamChange& beam = changes.beams[i];
+                const auto cosine = n.dot(beam.direction.data());
+                const DoubleSum::Part part(hn::Mul(count, hn::Max(cosine, zero)));
+                red.add(part, beam.colour[0]);
+                green.add(part, beam.colour[1]);
+                blue.add(part, beam.colour[2]);
+            }
+        }
+        red.store(light.mixed[0].data() + lane);
+        green.store(light.mixed[1].data() + lane);
+        blue.store(light.mixed[2].data() + lane);
+    }
+}
+
+void add(const std::array<double, ClusterLights::Stride>& vector,
+         std::array<double, ClusterLights::Stride>& sum) {
+    constexpr std::size_t Last = ClusterLights::Stride - 1;
+    const hn::CappedTag<double, Last> d;
+    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d))
+        hn::StoreU(hn::Add(hn::LoadU(d, sum.data() + lane), hn::LoadU(d, vector.data() + lane)), d,
+                   sum.data() + lane);
+    sum[Last] += vector[Last];
+}
+
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
+                          BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
+    BlockLight* of_block = light + begin;
     std::uint64_t touched = 0;
-    for (const ChangedWord& change : changes) {
+    for (const ChangedWord& change : changes.words) {
         const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + change.word];
         const std::size_t first_word = counts.word(begin, change.word);
-        const float* before = all_before + std::size_t{change.word} * 64 * ClusterLights::Stride;
-        const float* after = all_after + std::size_t{change.word} * 64 * ClusterLights::Stride;
         // Most blocks that see one changed cluster whole see all of them, because these are
         // neighbours in the sky.
-        const VectorDifference all(change.clusters, before, after);
-        for_blocks(blocks.visible, begin, first_word, [&](std::size_t block, std::size_t word) {
-            const std::uint64_t seen = counts.visible[word] &
-                                       ~scene.words.across_of(blocks, block - begin) &
-                                       change.clusters;
+        for_blocks(blocks.visible, [&](std::size_t block) {
+            const std::uint64_t seen = counts.visible[first_word + block] &
+                                       ~scene.words.across_of(blocks, block) & change.clusters;
             if (seen == 0)
                 return;
-            touched |= std::uint64_t{1} << (block - begin);
+            touched |= std::uint64_t{1} << block;
             if (seen == change.clusters)
-                all.add_to(light[block].visible);
+                add(change.vector, of_block[block].visible);
             else
-                VectorDifference(seen, before, after).add_to(light[block].visible);
+                for (std::uint64_t bits = seen; bits != 0; bits &= bits - 1)
+                    add(changes.vectors[change.first +
+                                        static_cast<std::size_t>(std::popcount(
+                                            change.clusters & ((bits & (~bits + 1)) - 1)))],
+                        of_block[block].visible);
         });
-        for_blocks(blocks.clamped | blocks.unclamped, begin, first_word,
-                   [&](std::size_t block, std::size_t word) {
-                       const MixedWord mixed{counts.mixed[word],
-                                             scene.words.across_of(blocks, block - begin),
-                                             counts.mixed_counts(word, 0), scene.normals[block]};
-                       if (((mixed.mixed | mixed.across) & change.clusters) == 0)
-                           return;
-                       touched |= std::uint64_t{1} << (block - begin);
-                       WordSum sum_before;
-                       WordSum sum_after;
-                       if ((blocks.clamped >> (block - begin) & 1u) != 0) {
-                           sum_clamped_twice(mixed, change.clusters, before, after, sum_before,
-                                             sum_after);
-                       } else {
-                           sum_unclamped(mixed, before, sum_before);
-                           sum_unclamped(mixed, after, sum_after);
-                       }
-                       add_difference(sum_before, sum_after, light[block]);
-                   });
+        // The counts lie far apart: they are asked for before the first is needed.
+        std::uint64_t hit = 0;
+        for_blocks(blocks.mixed | blocks.across, [&](std::size_t block) {
+            const std::uint64_t mixed = counts.mixed[first_word + block] & change.clusters;
+            if ((mixed | (scene.words.across_of(blocks, block) & change.clusters)) == 0)
+                return;
+            hit |= std::uint64_t{1} << block;
+            if (mixed != 0)
+                hwy::Prefetch(counts.mixed_counts(first_word + block,
+                                                  static_cast<std::uint32_t>(first_bit(mixed))));
+        });
+        touched |= hit;
+        for_blocks(hit, [&](std::size_t block) {
+            const std::size_t word = first_word + block;
+            change_pairs({counts.mixed[word], scene.words.across_of(blocks, block),
+                          counts.mixed_counts(word, 0), scene.normals[begin + block]},
+                         changes, change, of_block[block]);
+        });
     }
     return touched;
 }
@@ -391,24 +456,140 @@ namespace relumine::relight {
 
 namespace {
 HWY_EXPORT(block_radiance);
+HWY_EXPORT(brightness);
 HWY_EXPORT(light_tile);
 HWY_EXPORT(update_tile);
 } // namespace
 
 ClusterLights::ClusterLights(std::size_t num_clusters)
-    : vectors(num_clusters * Stride), prefix((num_clusters + 1) * Stride) {}
+    : vectors(num_clusters * Stride), beams(num_clusters * BeamStride),
+      spread((num_clusters + 63) / 64), prefix((spread.size() * 64 + 1) * Stride) {}
 
 void ClusterLights::set(std::size_t cluster, const VectorIrradiance& irradiance) {
     constexpr double Scale = 1.0 / (16.0 * std::numbers::pi);
+    const std::array<glm::vec3, 3> channels = {glm::vec3(irradiance.red * Scale),
+                                               glm::vec3(irradiance.green * Scale),
+                                               glm::vec3(irradiance.blue * Scale)};
     float* vector = vectors.data() + cluster * Stride;
-    for (const glm::dvec3* channel : {&irradiance.red, &irradiance.green, &irradiance.blue})
+    float* beam = beams.data() + cluster * BeamStride;
+    for (const glm::vec3& channel : channels)
         for (int axis = 0; axis < 3; ++axis)
-            *vector++ = static_cast<float>((*channel)[axis] * Scale);
+            *vector++ = channel[axis];
+
+    // Directions are rounded to 2^-16, the last bit of this number, so that most clusters keep
+    // theirs when their light changes.
+    constexpr float Rounder = 3 << 6;
+    const glm::dvec3 luminance = irradiance.luminance();
+    const double length = glm::length(luminance);
+    const glm::vec3 direction =
+        length > 0.0 ? (glm::vec3(luminance / length) + Rounder) - Rounder : glm::vec3(0.0f);
+    const double per_square =
+        length > 0.0 ? 1.0 / glm::dot(glm::dvec3(direction), glm::dvec3(direction)) : 0.0;
+    double off = 0.0, all = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 channel(channels[static_cast<std::size_t>(i)]);
+        const double colour = glm::dot(channel, glm::dvec3(direction)) * per_square;
+        const glm::dvec3 rest = channel - colour * glm::dvec3(direction);
+        off += glm::dot(rest, rest);
+        all += glm::dot(channel, channel);
+        beam[i] = direction[i];
+        beam[3 + i] = static_cast<float>(colour);
+    }
+    const std::uint64_t bit = std::uint64_t{1} << (cluster % 64);
+    if (off > BeamTolerance * BeamTolerance * all)
+        spread[cluster / 64] |= bit;
+    else
+        spread[cluster / 64] &= ~bit;
 }
 
 void ClusterLights::sum_prefix() {
     for (std::size_t i = 0; i < vectors.size(); ++i)
         prefix[i + Stride] = prefix[i] + static_cast<double>(vectors[i]);
+}
+
+glm::dvec3 ClusterLights::of_vectors(std::size_t cluster, const glm::vec3& normal) const {
+    const float* vector = vectors.data() + cluster * Stride;
+    const auto on = [&](const float* e) {
+        return std::max(0.0, glm::dot(glm::dvec3(normal), glm::dvec3(e[0], e[1], e[2])));
+    };
+    return {on(vector), on(vector + 3), on(vector + 6)};
+}
+
+glm::dvec3 ClusterLights::of_beams(std::size_t cluster, const glm::vec3& normal) const {
+    if (is_spread(cluster))
+        return of_vectors(cluster, normal);
+    const float* beam = beams.data() + cluster * BeamStride;
+    return std::max(0.0, glm::dot(glm::dvec3(normal), glm::dvec3(beam[0], beam[1], beam[2]))) *
+           glm::dvec3(beam[3], beam[4], beam[5]);
+}
+
+void LightChanges::clear() {
+    words.clear();
+    vectors.clear();
+    beams_before.resize(1);
+    beams.clear();
+}
+
+void LightChanges::set(ClusterLights& lights, std::size_t cluster,
+                       const VectorIrradiance& irradiance) {
+    struct Light {
+        std::array<float, ClusterLights::Stride> vector;
+        std::array<float, ClusterLights::BeamStride> beam;
+        bool is_spread;
+        bool operator==(const Light&) const = default;
+
+        Light(const ClusterLights& all, std::size_t c) : is_spread(all.is_spread(c)) {
+            std::copy_n(all.vectors.begin() + static_cast<std::ptrdiff_t>(c * vector.size()),
+                        vector.size(), vector.begin());
+            std::copy_n(all.beams.begin() + static_cast<std::ptrdiff_t>(c * beam.size()),
+                        beam.size(), beam.begin());
+        }
+    };
+    const Light before(lights, cluster);
+    lights.set(cluster, irradiance);
+    const Light after(lights, cluster);
+    if (before == after)
+        return;
+
+    if (words.empty() || words.back().word != cluster / 64)
+        words.push_back({.word = static_cast<std::uint32_t>(cluster / 64),
+                         .first = static_cast<std::uint32_t>(vectors.size())});
+    words.back().clusters |= std::uint64_t{1} << (cluster % 64);
+    std::array<double, ClusterLights::Stride>& change = vectors.emplace_back();
+    for (std::size_t i = 0; i < change.size(); ++i) {
+        change[i] = static_cast<double>(after.vector[i]) - static_cast<double>(before.vector[i]);
+        words.back().vector[i] += change[i];
+    }
+
+    const auto add = [&](const Light& light, double sign) {
+        const auto& v = light.vector;
+        if (light.is_spread) {
+            beams.push_back({.direction = {v[0], v[1], v[2]}, .colour = {sign, 0.0, 0.0}});
+            beams.push_back({.direction = {v[3], v[4], v[5]}, .colour = {0.0, sign, 0.0}});
+            beams.push_back({.direction = {v[6], v[7], v[8]}, .colour = {0.0, 0.0, sign}});
+        } else {
+            beams.push_back({.direction = {light.beam[0], light.beam[1], light.beam[2]},
+                             .colour = {sign * static_cast<double>(light.beam[3]),
+                                        sign * static_cast<double>(light.beam[4]),
+                                        sign * static_cast<double>(light.beam[5])}});
+        }
+    };
+    add(before, -1.0);
+    add(after, 1.0);
+    // One beam instead of two where only the colour changes.
+    BeamChange& last = beams.back();
+    if (!before.is_spread && !after.is_spread && beams.end()[-2].direction == last.direction) {
+        for (std::size_t i = 0; i < 3; ++i)
+            last.colour[i] += beams.end()[-2].colour[i];
+        beams.erase(beams.end() - 2);
+    }
+    beams_before.push_back(static_cast<std::uint32_t>(beams.size()));
+}
+
+bool has_dimmed(BlockLight& light) {
+    const double now = HWY_DYNAMIC_DISPATCH(brightness)(light);
+    light.largest = std::max(light.largest, now);
+    return now < light.summed / 64.0 || now < std::ldexp(light.largest, -30);
 }
 
 void block_radiance(const BlockNormals& normals, const BlockLight& light,
@@ -417,15 +598,13 @@ void block_radiance(const BlockNormals& normals, const BlockLight& light,
 }
 
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
-                std::span<BlockLight> light) {
-    HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data());
+                std::span<BlockLight> light, std::uint64_t blocks) {
+    HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data(), blocks);
 }
 
-std::uint64_t update_tile(const BlockScene& scene, std::size_t tile,
-                          std::span<const ChangedWord> changes, std::span<const float> before,
-                          std::span<const float> after, std::span<BlockLight> light) {
-    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, before.data(), after.data(),
-                                             light.data());
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
+                          std::span<BlockLight> light) {
+    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, light.data());
 }
 
 } // namespace relumine::relight

@@ -8,7 +8,6 @@
 
 #include <tbb/parallel_for.h>
 
-#include "relight/block_kernels.h"
 #include "relight/light_packets.h"
 
 namespace relumine::relight {
@@ -140,18 +139,7 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t cluster) {
         for (const auto& [receiver, factor] : counted) {
             const std::size_t place = place_of[receiver];
-            const double count = transfer.counts.count(place, cluster);
-            if (count == 0.0)
-                continue;
-            const glm::dvec3 normal = transfer.normals[place];
-            const float* e =
-                relighter.cluster_lights().vectors.data() + cluster * ClusterLights::Stride;
-            for (int channel = 0; channel < 3; ++channel, e += 3)
-                from_cluster[cluster][channel] +=
-                    factor[channel] * count *
-                    std::max(0.0, normal.x * static_cast<double>(e[0]) +
-                                      normal.y * static_cast<double>(e[1]) +
-                                      normal.z * static_cast<double>(e[2]));
+            from_cluster[cluster] += factor * relighter.from_cluster(place, cluster);
         }
     });
     const ShadowRays& rays = relighter.shadow_rays();
@@ -170,7 +158,7 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     return spreader.take();
 }
 
-std::vector<glm::vec3> radiance_from(const Relighter& relighter, std::span<const float> weights) {
+Relighter relit_by_part(const Relighter& relighter, std::span<const float> weights) {
     cubemap::CubeMap part = relighter.environment();
     if (weights.size() != part.texels.size())
         throw std::invalid_argument("expected one weight per texel");
@@ -182,7 +170,7 @@ std::vector<glm::vec3> radiance_from(const Relighter& relighter, std::span<const
         other.set_bounces(relighter.bounces());
         other.bounce();
     }
-    return {other.radiance().begin(), other.radiance().end()};
+    return other;
 }
 
 } // namespace relumine::relight

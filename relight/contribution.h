@@ -24,13 +24,12 @@ namespace relumine::relight {
 [[nodiscard]] cubemap::CubeMap contribution_map(const Relighter& relighter,
                                                 std::span<const std::uint32_t> receivers);
 
-/// Returns the radiance that a part of the environment gives to each receiver, as
-/// Relighter::radiance(), with its bounces.
+/// Returns the relighter of the same scene in a part of the environment, with its bounces. The
+/// transfer must outlive it.
 ///
-/// Shape:   [num_receivers] in the receivers' own order. weights is [6 * R * R] in the relighter's
-///          environment: the part of each texel, 0 to 1.
+/// Shape:   weights is [6 * R * R] in the relighter's environment: the part of each texel, 0 to 1.
+/// Cost:    as a Relighter and its first relighting.
 /// Throws:  std::invalid_argument for another number of weights.
-[[nodiscard]] std::vector<glm::vec3> radiance_from(const Relighter& relighter,
-                                                   std::span<const float> weights);
+[[nodiscard]] Relighter relit_by_part(const Relighter& relighter, std::span<const float> weights);
 
 } // namespace relumine::relight

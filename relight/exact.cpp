@@ -354,12 +354,14 @@ std::vector<glm::dvec3> exact_radiance(const prt::Receivers& receivers,
 }
 
 std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer, std::size_t count,
-                                            std::uint64_t seed) {
-    const std::size_t num_receivers = transfer.num_receivers();
+                                            std::uint64_t seed, std::size_t end) {
+    std::vector<std::uint32_t> places;
+    for (std::uint32_t place = 0; place < transfer.num_receivers(); ++place)
+        if (transfer.order[place] < end)
+            places.push_back(place);
+    const std::size_t num_receivers = places.size();
     if (count == 0 || count > num_receivers)
         count = num_receivers;
-    std::vector<std::uint32_t> places(num_receivers);
-    std::iota(places.begin(), places.end(), 0u);
     // Fisher and Yates' shuffle of the first `count` places.
     cubemap::SplitMix64 random(seed);
     for (std::size_t i = 0; i < count; ++i)

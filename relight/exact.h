@@ -64,10 +64,11 @@ exact_radiance(const prt::Receivers& receivers, std::span<const std::uint32_t> r
                const ExactOptions& options = {});
 
 /// Returns `count` receivers chosen at random without repetition; all of them for 0, or for more
-/// than there are. The same seed gives the same receivers. Neighbours in space stand together, so
-/// that their rays are traced together.
-[[nodiscard]] std::vector<std::uint32_t> random_receivers(const prt::Transfer& transfer,
-                                                          std::size_t count, std::uint64_t seed);
+/// than there are. Only receivers below `end` are taken. The same seed gives the same receivers.
+/// Neighbours in space stand together, so that their rays are traced together.
+[[nodiscard]] std::vector<std::uint32_t>
+random_receivers(const prt::Transfer& transfer, std::size_t count, std::uint64_t seed,
+                 std::size_t end = static_cast<std::size_t>(-1));
 
 /// The difference between relit and exact radiance.
 struct ErrorReport {

@@ -4,16 +4,17 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
+#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
 #include "relight/block_kernels.h"
@@ -31,10 +32,10 @@ namespace {
 constexpr double UnitTolerance = 1e-3;
 
 /// Whether summing all clusters is less work than updating the changed ones, which ascend. An
-/// update sums each word of 64 clusters that holds a changed one twice. The weights are relative to
-/// the time of the full sum, and measured: `./dev bench frames`.
+/// update looks at each word of 64 clusters that holds a changed one, and at each changed cluster.
+/// The weights are relative to the time of the full sum, and measured: `./dev bench frames`.
 bool is_cheaper_to_sum_all(std::span<const std::uint32_t> changed, std::size_t num_clusters) {
-    constexpr double CostOfWords = 0.84, CostOfClusters = 2.3;
+    constexpr double CostOfWords = 0.4, CostOfClusters = 3.0;
     constexpr std::size_t ClustersPerWord = 64;
     std::size_t num_words = 0;
     for (std::size_t i = 0; i < changed.size(); ++i)
@@ -102,13 +103,13 @@ public:
     }
     [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
-    [[nodiscard]] const ClusterLights& cluster_lights() const { return lights_; }
+    [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
     [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
     [[nodiscard]] const ShadowRays& shadow_rays() const { return rays_; }
 
 private:
     void check(const TexelRectangle& rectangle) const;
-    void set_cluster_lights(std::span<const std::uint32_t> clusters);
+    [[nodiscard]] VectorIrradiance light_of(std::size_t cluster) const;
     void take(BinnedEnvironment binned);
     bool update_sharp_lights();
     bool replace_sharp_lights(std::vector<SharpLight> lights);
@@ -145,8 +146,6 @@ private:
     /// [num_blocks]
     std::vector<BlockLight> light_;
     ClusterLights lights_;
-    /// ClusterLights::vectors that light_ consists of.
-    std::vector<float> lit_by_;
     EnvironmentBinner binner_;
     /// For environment_.
     std::shared_ptr<const LightBinning> binning_;
@@ -161,10 +160,11 @@ private:
     /// [num_receivers] from other surfaces, and with it; empty without bounces.
     std::vector<glm::vec3> bounced_;
     std::vector<glm::vec3> total_;
-    /// Scratch: clusters whose light changes.
+    /// Scratch: clusters whose light changes, and how.
     std::vector<std::uint32_t> changed_;
-    /// Scratch: changed_ as the kernels read it.
-    std::vector<ChangedWord> changed_words_;
+    LightChanges changes_;
+    /// Scratch, [num_tiles]: blocks that a change touches, and those that are summed anew.
+    std::vector<std::uint64_t> touched_, dimmed_;
 };
 
 Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
@@ -172,7 +172,7 @@ Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
       powers_(transfer.num_clusters()), traced_(transfer, rays),
       normals_(block_normals(transfer.normals)), words_(tile_words(transfer, normals_)),
       light_(transfer.counts.num_blocks()), lights_(transfer.num_clusters()),
-      lit_by_(lights_.vectors), binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
+      binner_(transfer, rays.blockers != nullptr ? rays.tolerance : 0.0f),
       radiance_(transfer.num_receivers()), diffuse_(transfer.surfaces.size()) {
     if ((!transfer.surfaces.empty() || transfer.glossy) &&
         transfer.surfaces.size() != transfer.num_receivers())
@@ -305,9 +305,12 @@ RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> l
 }
 
 void Relighter::Impl::resum() {
-    changed_.resize(sums_.size());
-    std::iota(changed_.begin(), changed_.end(), 0u);
-    set_cluster_lights(changed_);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lights_.spread.size()),
+                      [&](const auto& words) {
+                          const std::size_t end = std::min(words.end() * 64, sums_.size());
+                          for (std::size_t cluster = words.begin() * 64; cluster < end; ++cluster)
+                              lights_.set(cluster, light_of(cluster));
+                      });
     lights_.sum_prefix();
     const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
     tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
@@ -318,7 +321,6 @@ void Relighter::Impl::resum() {
             write_radiance(block);
         }
     });
-    lit_by_ = lights_.vectors;
     finish_change();
 }
 
@@ -390,19 +392,15 @@ void Relighter::Impl::finish_change() {
                        std::plus<>());
 }
 
-/// Sets the light of clusters: all light of their cells minus the sharp lights in them. `clusters`
-/// ascend.
-void Relighter::Impl::set_cluster_lights(std::span<const std::uint32_t> clusters) {
-    auto sharp = sharp_lights_.begin();
-    for (const std::uint32_t cluster : clusters) {
-        VectorIrradiance rest = sums_[cluster];
-        sharp = std::lower_bound(
-            sharp, sharp_lights_.end(), cluster,
-            [](const SharpLight& light, std::uint32_t c) { return light.cluster < c; });
-        for (; sharp != sharp_lights_.end() && sharp->cluster == cluster; ++sharp)
-            rest -= sharp->irradiance;
-        lights_.set(cluster, rest);
-    }
+/// Returns the light of a cluster: all light of its cell minus the sharp lights in it.
+VectorIrradiance Relighter::Impl::light_of(std::size_t cluster) const {
+    VectorIrradiance rest = sums_[cluster];
+    for (auto sharp = std::lower_bound(
+             sharp_lights_.begin(), sharp_lights_.end(), cluster,
+             [](const SharpLight&light, std::size_t c) { return light.cluster < c; });
+         sharp != sharp_lights_.end() && sharp->cluster == cluster; ++sharp)
+        rest -= sharp->irradiance;
+    return rest;
 }
 
 void Relighter::Impl::check(const TexelRectangle& rectangle) const {
@@ -464,39 +462,63 @@ UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rec
             .seconds = seconds_since(start)};
 }
 
+glm::dvec3 Relighter::Impl::from_cluster(std::size_t place, std::size_t cluster) const {
+    const prt::VisibleCounts& counts = transfer_.counts;
+    const double count = counts.count(place, cluster);
+    if (count == 0.0)
+        return glm::dvec3(0.0);
+    const std::size_t block = place / prt::BlockSize, w = cluster / 64;
+    const std::size_t tile = block / prt::VisibleCounts::TileBlocks;
+    const std::uint64_t whole = counts.visible[counts.word(block, w)] &
+                                ~words_.across_of(words_.words[tile * counts.words_per_block() + w],
+                                                  block % prt::VisibleCounts::TileBlocks);
+    const glm::vec3& normal = transfer_.normals[place];
+    return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
+                                                        : lights_.of_beams(cluster, normal));
+}
+
 /// Updates the radiance for the clusters in `changed_`, which ascend and whose sums_ are new.
 /// Returns the number of receivers that see any of them.
 std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
-    set_cluster_lights(changed_);
-    changed_words_.clear();
-    for (const std::uint32_t cluster : changed_) {
-        if (changed_words_.empty() || changed_words_.back().word != cluster / 64)
-            changed_words_.push_back({.word = cluster / 64});
-        changed_words_.back().clusters |= std::uint64_t{1} << (cluster % 64);
-    }
-    std::atomic<std::size_t> num_blocks = 0;
+    changes_.clear();
+    for (const std::uint32_t cluster : changed_)
+        changes_.set(lights_, cluster, light_of(cluster));
     const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
-    tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
-        std::uint64_t touched =
-            update_tile(scene, tile, changed_words_, lit_by_, lights_.vectors, light_);
-        if (sharp_changed || transfer_.glossy)
-            touched = ~std::uint64_t{0};
+    const std::size_t num_tiles = transfer_.counts.num_tiles();
+    const auto for_blocks = [&](std::size_t tile, std::uint64_t bits, const auto& visit) {
         const std::size_t begin = transfer_.counts.tile_begin(tile);
-        const std::size_t end = transfer_.counts.tile_begin(tile + 1);
-        std::size_t num_touched = 0;
-        for (std::size_t block = begin; block < end; ++block)
-            if ((touched >> (block - begin) & 1u) != 0) {
-                light_glossy(block);
-                write_radiance(block);
-                ++num_touched;
-            }
-        num_blocks += num_touched;
+        for (; bits != 0; bits &= bits - 1)
+            visit(begin + static_cast<std::size_t>(std::countr_zero(bits)));
+    };
+    touched_.resize(num_tiles);
+    dimmed_.assign(num_tiles, 0);
+    tbb::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+        touched_[tile] = update_tile(scene, tile, changes_, light_);
+        for_blocks(tile, touched_[tile], [&](std::size_t block) {
+            if (has_dimmed(light_[block]))
+                dimmed_[tile] |= std::uint64_t{1} << (block - transfer_.counts.tile_begin(tile));
+        });
     });
-    for (const std::uint32_t cluster : changed_) {
-        const auto first = static_cast<std::ptrdiff_t>(cluster * ClusterLights::Stride);
-        std::copy_n(lights_.vectors.begin() + first, ClusterLights::Stride,
-                    lit_by_.begin() + first);
-    }
+    const auto any = [](std::uint64_t blocks) {
+        return blocks != 0;
+    };
+    if (std::any_of(dimmed_.begin(), dimmed_.end(), any))
+        lights_.sum_prefix();
+
+    std::atomic<std::size_t> num_blocks = 0;
+    tbb::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+        if (dimmed_[tile] != 0)
+            light_tile(scene, tile, lights_, light_, dimmed_[tile]);
+        const std::size_t size =
+            transfer_.counts.tile_begin(tile + 1) - transfer_.counts.tile_begin(tile);
+        if (sharp_changed || transfer_.glossy)
+            touched_[tile] = ~std::uint64_t{0} >> (prt::VisibleCounts::TileBlocks - size);
+        for_blocks(tile, touched_[tile], [&](std::size_t block) {
+            light_glossy(block);
+            write_radiance(block);
+        });
+        num_blocks += static_cast<std::size_t>(std::popcount(touched_[tile]));
+    });
     finish_change();
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
@@ -650,8 +672,8 @@ const cubemap::CubeMap& Relighter::environment() const {
 const prt::Transfer& Relighter::transfer() const {
     return impl_->transfer();
 }
-const ClusterLights& Relighter::cluster_lights() const {
-    return impl_->cluster_lights();
+glm::dvec3 Relighter::from_cluster(std::size_t place, std::size_t cluster) const {
+    return impl_->from_cluster(place, cluster);
 }
 std::span<const SharpLight> Relighter::sharp_lights() const {
     return impl_->sharp_lights();

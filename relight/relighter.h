@@ -23,8 +23,6 @@ namespace relumine::relight {
 
 using cubemap::TexelRectangle;
 
-struct ClusterLights;
-
 /// The time that set_environment() took, by its parts.
 struct RelightTimes {
     /// Summing the environment into clusters.
@@ -175,8 +173,9 @@ public:
     [[nodiscard]] const cubemap::CubeMap& environment() const;
 
     [[nodiscard]] const prt::Transfer& transfer() const;
-    /// Clusters' light without the sharp lights.
-    [[nodiscard]] const ClusterLights& cluster_lights() const;
+    /// Returns the direct radiance of the receiver at a place of the transfer for albedo 1, as far
+    /// as it comes from one cluster without its sharp lights.
+    [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
     [[nodiscard]] std::span<const SharpLight> sharp_lights() const;
     [[nodiscard]] const ShadowRays& shadow_rays() const;
 

@@ -8,8 +8,6 @@
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
-#include "prt/clusters/lattice.h"
-
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "relight/tile_words.cpp"
@@ -26,11 +24,9 @@ constexpr std::size_t WordClusters = 64;
 /// Corners of a cell: x, y, z of four directions.
 constexpr std::size_t CornerFloats = 12;
 
-/// Whether a receiver that counts the cell has one of its four corners below its horizon.
-bool lies_across(const std::uint8_t* counts, const BlockNormals& normals, const float* corners) {
+/// Whether a receiver has one of the cell's four corners below its horizon.
+bool lies_across(const BlockNormals& normals, const float* corners) {
     const hn::CappedTag<float, prt::BlockSize> d;
-    const hn::Rebind<std::uint8_t, decltype(d)> bytes;
-    const hn::Rebind<std::int32_t, decltype(d)> integers;
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
         const auto x = hn::LoadU(d, normals.axes[0].data() + lane);
         const auto y = hn::LoadU(d, normals.axes[1].data() + lane);
@@ -41,9 +37,7 @@ bool lies_across(const std::uint8_t* counts, const BlockNormals& normals, const 
             const auto along_yz = hn::MulAdd(y, hn::Set(d, corner[1]), along_z);
             lowest = hn::Min(lowest, hn::MulAdd(x, hn::Set(d, corner[0]), along_yz));
         }
-        const auto count = hn::PromoteTo(integers, hn::LoadU(bytes, counts + lane));
-        const auto counted = hn::RebindMask(d, hn::Gt(count, hn::Zero(integers)));
-        if (!hn::AllFalse(d, hn::And(counted, hn::Lt(lowest, hn::Zero(d)))))
+        if (!hn::AllFalse(d, hn::Lt(lowest, hn::Zero(d))))
             return true;
     }
     return false;
@@ -75,33 +69,15 @@ std::uint64_t near_horizon(const float* bounds, std::size_t stride, const glm::v
     return near;
 }
 
-/// Returns the clusters of `near` that the block sees whole across a horizon.
-std::uint64_t visible_across(std::uint64_t near, const BlockNormals& normals,
-                             const float* corners) {
-    static constexpr auto All = [] {
-        std::array<std::uint8_t, prt::BlockSize> counts{};
-        counts.fill(prt::FullCount);
-        return counts;
-    }();
+/// Returns the clusters of `near` that lie across a horizon of the block.
+std::uint64_t across_of(std::uint64_t near, const BlockNormals& normals, const float* corners) {
     std::uint64_t across = 0;
     for (; near != 0; near &= near - 1) {
         const auto bit = static_cast<std::size_t>(std::countr_zero(near));
-        if (lies_across(All.data(), normals, corners + bit * CornerFloats))
+        if (lies_across(normals, corners + bit * CornerFloats))
             across |= std::uint64_t{1} << bit;
     }
     return across;
-}
-
-/// Whether the block sees a part of any cluster of `near` across a horizon. `counts` begins at the
-/// first entry of the word's `mixed` clusters.
-bool any_mixed_across(std::uint64_t near, std::uint64_t mixed, const std::uint8_t* counts,
-                      const BlockNormals& normals, const float* corners) {
-    for (; mixed != 0; mixed &= mixed - 1, counts += prt::BlockSize) {
-        const auto bit = static_cast<std::size_t>(std::countr_zero(mixed));
-        if ((near >> bit & 1u) != 0 && lies_across(counts, normals, corners + bit * CornerFloats))
-            return true;
-    }
-    return false;
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE
@@ -112,9 +88,8 @@ namespace relumine::relight {
 
 namespace {
 
-HWY_EXPORT(any_mixed_across);
+HWY_EXPORT(across_of);
 HWY_EXPORT(near_horizon);
-HWY_EXPORT(visible_across);
 
 /// The cells' places on the sphere.
 struct CellBounds {
@@ -188,37 +163,35 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
         std::vector<NormalBounds> blocks;
         for (std::size_t block = begin; block < end; ++block)
             blocks.emplace_back(normals[block]);
+        std::vector<std::uint64_t> last(end - begin, 0); // of each block: the word before
         for (std::size_t w = 0; w < num_words; ++w) {
             TileWord& of_tile = result.words[tile * num_words + w];
             of_tile.across_before = all_across.size();
             const float* corners = &cells.corners[w * 64].front().x;
             for (std::size_t block = begin; block < end; ++block) {
                 const std::size_t word = counts.word(block, w);
-                const std::uint64_t visible = counts.visible[word];
-                const std::uint64_t mixed = counts.mixed[word];
-                if ((visible | mixed) == 0)
-                    continue;
                 const std::uint64_t bit = std::uint64_t{1} << (block - begin);
-                const NormalBounds& of_block = blocks[block - begin];
-                const std::uint64_t near = HWY_DYNAMIC_DISPATCH(near_horizon)(
-                    cells.bounds.data() + w * 64, cells.stride, of_block.mean, of_block.length,
-                    of_block.radius);
-                const std::uint64_t across =
-                    HWY_DYNAMIC_DISPATCH(visible_across)(near & visible, normals[block], corners);
-                if ((visible & ~across) != 0)
-                    of_tile.visible |= bit;
-                if (across != 0) {
-                    of_tile.across |= bit;
-                    all_across.push_back(across);
+                std::uint64_t visible = counts.visible[word];
+                if (counts.mixed[word] != 0)
+                    of_tile.mixed |= bit;
+                if (visible != 0) {
+                    const NormalBounds& of_block = blocks[block - begin];
+                    const std::uint64_t near = HWY_DYNAMIC_DISPATCH(near_horizon)(
+                        cells.bounds.data() + w * 64, cells.stride, of_block.mean, of_block.length,
+                        of_block.radius);
+                    const std::uint64_t across =
+                        HWY_DYNAMIC_DISPATCH(across_of)(near & visible, normals[block], corners);
+                    if (across != 0) {
+                        of_tile.across |= bit;
+                        all_across.push_back(across);
+                        visible &= ~across;
+                    }
                 }
-                const bool clamped = across != 0 || ((near & mixed) != 0 &&
-                                                     HWY_DYNAMIC_DISPATCH(any_mixed_across)(
-                                                         near, mixed, counts.mixed_counts(word, 0),
-                                                         normals[block], corners));
-                if (clamped)
-                    of_tile.clamped |= bit;
-                else if (mixed != 0)
-                    of_tile.unclamped |= bit;
+                if (visible != 0)
+                    of_tile.visible |= bit;
+                if ((visible ^ (visible << 1 | last[block - begin] >> 63)) != 0)
+                    of_tile.edges |= bit;
+                last[block - begin] = visible;
             }
         }
     });

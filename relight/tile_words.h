@@ -12,17 +12,16 @@
 
 namespace relumine::relight {
 
-/// Blocks of a tile of prt::VisibleCounts that see any of a word's 64 clusters; bit b stands for
-/// the tile's block b. Loops over these bits jump to the work. Loops over all words would ask each
-/// word, and the processor would guess the branch wrong.
+/// Blocks of a tile of prt::VisibleCounts that have work to do for a word of 64 clusters; bit b
+/// stands for the tile's block b. Loops over these bits jump to the work. Loops over all words
+/// would ask each word, and the processor would guess the branch wrong.
 struct TileWord {
-    /// The block sees some clusters whole, and all of them lie above its receivers' horizons.
+    /// The block sees some clusters whole, and these lie above its receivers' horizons.
     std::uint64_t visible = 0;
-    /// The block sees some clusters in part, or whole but across a receiver's horizon, and the sums
-    /// need max(n.E, 0).
-    std::uint64_t clamped = 0;
-    /// The block sees some clusters in part, and the sums need no clamp. Never set with `clamped`.
-    std::uint64_t unclamped = 0;
+    /// A run of such clusters begins or ends here. Runs go on from word to word.
+    std::uint64_t edges = 0;
+    /// The block sees some clusters in part.
+    std::uint64_t mixed = 0;
     /// The block sees some clusters whole across a receiver's horizon: it has an entry in
     /// TileWords::across.
     std::uint64_t across = 0;
@@ -32,11 +31,10 @@ struct TileWord {
 
 /// The words of all tiles.
 ///
-/// A cluster lies across a block's horizons when a receiver that counts it has a part of its cell
+/// A cluster lies across a block's horizons when a receiver of the block has a part of its cell
 /// below its horizon. There n.E may be negative, and max(n.E, 0) must be taken for each receiver
-/// and colour. Elsewhere n.E >= 0 for any light of the cell: whole clusters add up before they meet
-/// the normals, and the sum of c max(n.E, 0) over the parts of a word is n . sum of c E, which
-/// costs a third less.
+/// and colour. Elsewhere n.E >= 0 for any light of the cell, and whole clusters add up before they
+/// meet the normals.
 struct TileWords {
     /// [num_tiles * words_per_block], tile by tile.
     std::vector<TileWord> words;
@@ -55,7 +53,7 @@ struct TileWords {
 
 /// Finds the work of all tiles.
 ///
-/// Cost:    O(mixed pairs, and visible pairs near the horizon); parallel (TBB).
+/// Cost:    O(visible pairs near the horizon); parallel (TBB).
 [[nodiscard]] TileWords tile_words(const prt::Transfer& transfer,
                                    std::span<const BlockNormals> normals);
 

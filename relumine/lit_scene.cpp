@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -28,6 +30,36 @@ relight::SurfaceBounces bounces_of(const Scene& scene, std::span<const glm::vec3
             bounces.albedo[i] *= surfaces[i].albedo;
     return bounces;
 }
+
+namespace {
+
+/// The pixels of an environment's file as a backdrop, made when it is first drawn: to resample
+/// pictures of faces takes as long as to light a scene.
+class FileBackdrop {
+public:
+    FileBackdrop() = default;
+    explicit FileBackdrop(relight::EnvironmentFile file) : state_(std::make_shared<State>()) {
+        state_->file = std::move(file);
+    }
+    /// Returns the backdrop; empty without a file.
+    [[nodiscard]] relight::Backdrop get() const {
+        if (!state_)
+            return {};
+        std::call_once(state_->once,
+                       [&] { state_->backdrop = relight::backdrop_of(state_->file); });
+        return state_->backdrop;
+    }
+
+private:
+    struct State {
+        relight::EnvironmentFile file;
+        std::once_flag once;
+        relight::Backdrop backdrop;
+    };
+    std::shared_ptr<State> state_;
+};
+
+} // namespace
 
 struct LitScene::Impl {
     Impl(std::shared_ptr<const Scene>&& given, const LightOptions& options)
@@ -108,14 +140,16 @@ struct LitScene::Impl {
     /// sum, relative to it, L2 over the receivers.
     double add_traced(std::span<const std::uint32_t> receivers, const VerifyOptions& options,
                       std::vector<glm::dvec3>& exact) const {
-        const std::vector<relight::TracedBounces> traced =
-            relight::trace_bounces(scene.mesh, lit_relighter().bounces().albedo, scene.receivers,
-                                   receivers, rays, lit_relighter().environment(),
-                                   {.num_paths = options.num_paths,
-                                    .seed = options.seed,
-                                    .bias = scene.settings.bias,
-                                    .stop = options.stop,
-                                    .on_progress = options.on_progress});
+        const std::vector<relight::TracedBounces> traced = relight::trace_bounces(
+            scene.mesh,
+            prt::vertex_values(scene.mesh, scene.receivers, lit_relighter().bounces().albedo),
+            scene.receivers, receivers, rays, lit_relighter().environment(),
+            {.num_paths = options.num_paths,
+             .seed = options.seed,
+             .two_sided = scene.settings.two_sided_bounces,
+             .bias = scene.settings.bias,
+             .stop = options.stop,
+             .on_progress = options.on_progress});
         double errors = 0.0, all = 0.0;
         for (std::size_t i = 0; i < exact.size(); ++i) {
             const glm::dvec3 albedo =
@@ -176,7 +210,7 @@ struct LitScene::Impl {
     bool is_lit_by_list = false;
     /// The pixels of the environment that was given to light(). Empty: there are none, or the
     /// environment has changed without a layer.
-    relight::Backdrop sharp;
+    FileBackdrop sharp;
     /// Of a scene without clusters
     std::vector<glm::vec3> radiance;
     std::vector<lights::DistantLight> list;
@@ -232,7 +266,7 @@ RelightTimes LitScene::light(cubemap::CubeMap environment) {
 
 RelightTimes LitScene::light(Environment environment) {
     const RelightTimes times = light(std::move(environment.map));
-    impl_->sharp = relight::backdrop_of(environment.file);
+    impl_->sharp = FileBackdrop(environment.file);
     if (!impl_->editor)
         impl_->file = std::move(environment.file);
     return times;
@@ -240,7 +274,7 @@ RelightTimes LitScene::light(Environment environment) {
 
 UpdateReport LitScene::update(Environment environment) {
     const UpdateReport report = impl_->edited().update_base(std::move(environment.map));
-    impl_->sharp = relight::backdrop_of(environment.file);
+    impl_->sharp = FileBackdrop(environment.file);
     return report;
 }
 
@@ -256,7 +290,7 @@ void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFi
     else
         impl_->plain_relighter().set_frame(std::move(environment));
     impl_->is_lit_by_list = false;
-    impl_->sharp = relight::backdrop_of(file);
+    impl_->sharp = FileBackdrop(file);
 }
 
 RelightTimes LitScene::light(std::span<const lights::DistantLight> lights) {
@@ -357,8 +391,8 @@ const relight::Relighter& LitScene::relighter() const {
 Verification LitScene::verify(const VerifyOptions& options) const {
     const relight::Relighter& relighter = impl_->lit_relighter();
     Verification result;
-    result.receivers =
-        relight::random_receivers(impl_->scene.transfer, options.num_samples, options.seed);
+    result.receivers = relight::random_receivers(impl_->scene.transfer, options.num_samples,
+                                                 options.seed, impl_->scene.receivers.num_own());
     const relight::ExactOptions exact_options{.bias = impl_->scene.settings.bias,
                                               .stop = options.stop,
                                               .on_progress = options.on_progress};
@@ -396,10 +430,18 @@ Share LitScene::lit_by(const cubemap::Region& region) const {
     const std::vector<float> weights = cubemap::coverage_map(region, result.environment.resolution);
     for (std::size_t texel = 0; texel < weights.size(); ++texel)
         result.environment.texels[texel] *= weights[texel];
-    result.radiance = relight::radiance_from(relighter, weights);
+    const relight::Relighter part = relight::relit_by_part(relighter, weights);
+    Lighting light = lighting_of(part);
+    result.radiance.assign(light.radiance.begin(), light.radiance.end());
+    result.lights = std::move(light.lights);
+    result.soft = std::move(light.soft);
     const double all = sum_of(relighter.radiance());
     result.share = all > 0.0 ? sum_of(result.radiance) / all : 0.0;
     return result;
+}
+
+Lighting Share::lighting() const {
+    return {.radiance = radiance, .environment = &environment, .lights = lights, .soft = soft};
 }
 
 Lighting LitScene::lighting() const {
@@ -419,13 +461,14 @@ Lighting LitScene::lighting() const {
         result.soft.resize(impl_->radiance.size());
     }
     result.radiance = radiance();
-    if (result.environment == nullptr || !impl_->sharp)
+    relight::Backdrop sharp = impl_->sharp.get();
+    if (result.environment == nullptr || !sharp)
         return result;
     if (!impl_->editor)
-        result.sharp = impl_->sharp;
+        result.sharp = std::move(sharp);
     else if (impl_->editor->rotation() == 0.0)
         result.sharp =
-            relight::edited_backdrop(impl_->sharp, *impl_->editor->base(), *result.environment);
+            relight::edited_backdrop(std::move(sharp), *impl_->editor->base(), *result.environment);
     return result;
 }
 

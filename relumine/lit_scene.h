@@ -36,7 +36,7 @@ using relight::RelightTimes;
 using relight::UpdateReport;
 
 /// Returns what the light of a scene needs to bounce, for relight::Relighter. `albedo` is
-/// [num_receivers] what pictures multiply the radiance with, as picture_albedo(). The scene must
+/// [num_receivers] what pictures multiply the radiance with, as bounce_albedo(). The scene must
 /// outlive the result.
 ///
 /// Throws:  std::invalid_argument for a scene without bounces.
@@ -91,6 +91,12 @@ struct Share {
     cubemap::CubeMap environment;
     /// The part of the scene's reflected light that comes from the region, 0 to 1.
     double share = 0.0;
+    /// As those of Lighting.
+    std::vector<relight::SharpLight> lights = {};
+    std::vector<glm::vec3> soft = {};
+
+    /// Returns what a picture is drawn of. It points into this object.
+    [[nodiscard]] Lighting lighting() const;
 };
 
 /// Owns a scene, its ray accelerator and its light, so that nothing can dangle. Movable; references
@@ -212,7 +218,7 @@ public:
     /// next call here or of editor().settle() or step(). Surfaces are Lambert for it; what mirrors
     /// would show of other surfaces is left out.
     ///
-    /// `albedo` is [num_receivers] what pictures multiply the radiance with, as picture_albedo().
+    /// `albedo` is [num_receivers] what pictures multiply the radiance with, as bounce_albedo().
     /// Radiance stays that of the receivers' own surfaces, or for albedo 1. `more` is direct light
     /// for albedo 1, [num_receivers], that bounces as well but is no part of radiance() itself.
     ///

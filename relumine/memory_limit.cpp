@@ -48,6 +48,13 @@ std::optional<std::uint64_t> MemoryLimit::max_glossy_bytes(const prt::SceneSizes
     return prt::max_glossy_bytes(sizes, column_bytes, *max_bytes_);
 }
 
+std::optional<std::uint64_t> MemoryLimit::max_bounce_bytes(const prt::SceneSizes& sizes,
+                                                           std::uint64_t column_bytes) const {
+    if (!max_bytes_)
+        return {};
+    return prt::max_bounce_bytes(sizes, column_bytes, *max_bytes_);
+}
+
 MemoryLimitExceeded MemoryLimit::stopped(const prt::TooManyClusters& error) const {
     return {MemoryLimitExceeded::Part::ClustersFound,
             fmt::format("{}expected work within {}, got at least {} clusters, which take more; "
@@ -60,6 +67,13 @@ MemoryLimitExceeded MemoryLimit::too_many_highlights(std::uint64_t max_bytes, st
     return {MemoryLimitExceeded::Part::Highlights,
             fmt::format("{}expected highlights within {} of memory, got {} {}", prefix_,
                         megabytes(max_bytes), kind, megabytes(num_entries * prt::BytesPerEntry))};
+}
+
+MemoryLimitExceeded MemoryLimit::too_many_hits(std::uint64_t max_bytes,
+                                               std::uint64_t num_hits) const {
+    return {MemoryLimitExceeded::Part::Bounces,
+            fmt::format("{}expected bounces within {} of memory, got {}", prefix_,
+                        megabytes(max_bytes), megabytes(num_hits * prt::BytesPerHit))};
 }
 
 } // namespace relumine

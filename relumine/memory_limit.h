@@ -32,6 +32,10 @@ public:
     [[nodiscard]] std::optional<std::uint64_t> max_glossy_bytes(const prt::SceneSizes& sizes,
                                                                 std::uint64_t column_bytes) const;
 
+    /// The same for bounces.
+    [[nodiscard]] std::optional<std::uint64_t> max_bounce_bytes(const prt::SceneSizes& sizes,
+                                                                std::uint64_t column_bytes) const;
+
     /// For a run that found more clusters than estimated.
     [[nodiscard]] MemoryLimitExceeded stopped(const prt::TooManyClusters& error) const;
 
@@ -39,6 +43,9 @@ public:
     [[nodiscard]] MemoryLimitExceeded too_many_highlights(std::uint64_t max_bytes,
                                                           std::string_view kind,
                                                           std::uint64_t num_entries) const;
+
+    [[nodiscard]] MemoryLimitExceeded too_many_hits(std::uint64_t max_bytes,
+                                                    std::uint64_t num_hits) const;
 
 private:
     std::optional<std::uint64_t> max_bytes_;

@@ -1,6 +1,7 @@
 #include "relumine/mesh.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <vector>
@@ -137,12 +138,26 @@ Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     return mesh;
 }
 
+namespace {
+
+float lowest(std::span<const glm::vec3> positions) {
+    float result = std::numeric_limits<float>::infinity();
+    for (const glm::vec3& position : positions)
+        result = std::min(result, position.y);
+    return result;
+}
+
+} // namespace
+
 Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
     const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
     const std::size_t num_old = mesh.geometry.num_vertices();
+    const std::size_t n = mesh.floor_vertices;
+    const std::size_t first_of_floor = num_old - (n == 0 ? 0 : n * n + mesh.floor_added);
+    const float lowest_before = lowest(std::span(mesh.geometry.positions).first(first_of_floor));
     mesh::TriangleMesh after;
     try {
-        const prt::RayScene rays(before);
+        const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
         const prt::BeamScene beams(before, rays);
         after = prt::refine(mesh.geometry, beams, options, report);
     } catch (const std::invalid_argument& error) {
@@ -153,9 +168,16 @@ Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
     else if (!mesh.blockers)
         mesh.blockers = blockers_of(mesh.geometry);
     mesh.geometry = std::move(after);
-    if (const std::size_t n = mesh.floor_vertices; n != 0)
-        mesh.floor_added +=
-            move_floor_last(mesh.geometry, num_old - n * n - mesh.floor_added, num_old);
+    if (n == 0)
+        return mesh;
+    mesh.floor_added += move_floor_last(mesh.geometry, first_of_floor, num_old);
+    // Curved surfaces may bulge downwards. The floor goes down with the lowest point.
+    const std::span<glm::vec3> positions(mesh.geometry.positions);
+    const std::size_t num_of_mesh = positions.size() - n * n - mesh.floor_added;
+    const float sunk = lowest_before - lowest(positions.first(num_of_mesh));
+    if (sunk > 0.0f)
+        for (glm::vec3& position : positions.subspan(num_of_mesh))
+            position.y -= sunk;
     return mesh;
 }
 

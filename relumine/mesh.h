@@ -43,7 +43,7 @@ struct MeshOptions {
     std::optional<float> crease = {};
     /// n: adds a floor of n x n vertices under the mesh; 193 gives the scenes of [JN]
     std::optional<std::uint32_t> floor_vertices = {};
-    /// Side of the floor, in widths of the mesh.
+    /// Side of the floor over the mesh's width, or half its height if that is more.
     float floor_scale = 4.0f;
 };
 
@@ -60,7 +60,8 @@ using prt::RefineReport;
 /// Returns the mesh with more vertices where its light changes between two of them, or where edges
 /// are long: prt::refine(). The original triangles remain what blocks light, unless the new
 /// vertices lie on a curved surface, which then does. The vertices of the file keep their places;
-/// those of an added floor follow the new ones.
+/// those of an added floor follow the new ones. Where a curved surface bulges downwards the floor
+/// sinks as much.
 ///
 /// Throws:  std::runtime_error "SOURCE: ..." where prt::refine() throws std::invalid_argument;
 ///          Cancelled.

@@ -46,8 +46,8 @@ void require_fit(const Scene& scene, std::span<const glm::vec3> radiance) {
                                                 scene.receivers.size(), radiance.size()));
 }
 
-/// Whether the colours are looked at or computed with.
-enum class Purpose { Show, Compute };
+/// Whether the colours are looked at, computed with, or send light on.
+enum class Purpose { Show, Compute, Bounce };
 
 constexpr float PlasterAlbedo = 0.5f, FloorAlbedo = 0.3f;
 
@@ -61,7 +61,8 @@ std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
 /// The same with what the options leave open.
 std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
     const bool is_shown =
-        purpose == Purpose::Show && !std::holds_alternative<prt::TexelLayout>(scene.layout);
+        purpose == Purpose::Bounce ||
+        (purpose == Purpose::Show && !std::holds_alternative<prt::TexelLayout>(scene.layout));
     Albedo albedo = options.albedo;
     if (std::holds_alternative<AutomaticAlbedo>(albedo)) {
         if (!is_shown || !scene.receivers.surfaces.empty())
@@ -103,6 +104,10 @@ std::vector<glm::vec3> product(std::span<const glm::vec3> a, std::span<const glm
 
 std::vector<glm::vec3> picture_albedo(const Scene& scene, const OutputOptions& options) {
     return factors(scene, options, Purpose::Show);
+}
+
+std::vector<glm::vec3> bounce_albedo(const Scene& scene, const OutputOptions& options) {
+    return factors(scene, options, Purpose::Bounce);
 }
 
 relight::FadingFloor picture_floor(const Scene& scene, const OutputOptions& options) {
@@ -149,6 +154,11 @@ struct Painter::Impl {
         return std::holds_alternative<prt::VertexLayout>(scene.layout);
     }
 
+    /// The part of values of all receivers that pixels or texels show.
+    [[nodiscard]] std::span<const glm::vec3> own(std::span<const glm::vec3> values) const {
+        return values.first(scene.receivers.num_own());
+    }
+
     [[nodiscard]] relight::PictureOptions size() const {
         return {.width = options.width,
                 .height = options.height,
@@ -164,8 +174,9 @@ struct Painter::Impl {
         return shown;
     }
 
-    /// The mesh alone, of a scene of vertices.
-    [[nodiscard]] Picture cut_out(const relight::PictureView& from, const Lighting& lighting) {
+    /// A scene of vertices. Null: the mesh alone.
+    [[nodiscard]] Picture drawn(const relight::PictureView& from, const Lighting& lighting,
+                                const relight::Backdrop* behind) {
         const bool traces = options.sun == SunShadows::Pixels && !lighting.lights.empty();
         const std::vector<glm::vec3> colors =
             product(traces ? lighting.soft : lighting.radiance, shown_factors());
@@ -178,7 +189,7 @@ struct Painter::Impl {
                 light.eye = scene.settings.view->eye;
             light.bias = scene.settings.bias;
         }
-        return from.cut_out(light);
+        return behind == nullptr ? from.cut_out(light) : from.draw(light, *behind);
     }
 
     [[nodiscard]] relight::Backdrop backdrop(const Lighting& lighting) const {
@@ -192,13 +203,13 @@ struct Painter::Impl {
         return lighting.sharp ? lighting.sharp : relight::map_backdrop(*lighting.environment);
     }
 
-    /// [num_receivers] of pixels; empty where all are opaque.
+    /// Of pixels, without added vertices; empty where all are opaque.
     [[nodiscard]] std::vector<float> opacity() const {
         std::vector<float> result;
         if (!(options.floor_fade > 0.0f) || !first_floor_vertex(scene))
             return result;
         const prt::Receivers& receivers = scene.receivers;
-        result.assign(receivers.size(), 1.0f);
+        result.assign(receivers.num_own(), 1.0f);
         for (std::size_t i = 0; i < result.size(); ++i)
             if (floor.has(scene.mesh.triangles[receivers.points[i].triangle]))
                 result[i] = floor.opacity(receivers.positions[i]);
@@ -217,12 +228,10 @@ struct Painter::Impl {
             else if (!view)
                 view.emplace(scene.mesh, rays, camera(), size(), floor);
             const relight::PictureView& used = is_first ? *once : *view;
-            Picture picture = cut_out(used, lighting);
-            if (!is_transparent)
-                used.put_behind(picture, backdrop(lighting));
-            return picture;
+            const relight::Backdrop behind = is_transparent ? nullptr : backdrop(lighting);
+            return drawn(used, lighting, is_transparent ? nullptr : &behind);
         }
-        const std::vector<glm::vec3> colors = product(lighting.radiance, shown_factors());
+        const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
         if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
             return relight::compose(*texels, colors, options.gutter);
         const auto& pixels = std::get<prt::PixelLayout>(scene.layout);
@@ -234,7 +243,7 @@ struct Painter::Impl {
     void meter(const Lighting& lighting) {
         require_fit(scene, lighting.radiance);
         if (!is_on_vertices()) {
-            const std::vector<glm::vec3> colors = product(lighting.radiance, shown_factors());
+            const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
             metered_colors.insert(metered_colors.end(), colors.begin(), colors.end());
             std::vector<float> weights(colors.size(), 1.0f);
             if (std::holds_alternative<prt::PixelLayout>(scene.layout))
@@ -255,7 +264,7 @@ struct Painter::Impl {
                                                   .samples_per_axis = 1},
                           floor);
         }
-        const Picture seen = cut_out(*small, lighting);
+        const Picture seen = drawn(*small, lighting, nullptr);
         for (std::size_t i = 0; i < seen.pixels.size(); ++i)
             if (seen.alpha[i] > 0.0f) {
                 metered_colors.push_back(seen.pixels[i] / seen.alpha[i]);
@@ -281,7 +290,7 @@ struct Painter::Impl {
     std::vector<glm::vec3> exposed(std::span<const glm::vec3> radiance,
                                    std::span<const glm::vec3> albedo, double ev) const {
         require_fit(scene, radiance);
-        std::vector<glm::vec3> values = product(radiance, albedo);
+        std::vector<glm::vec3> values = product(own(radiance), albedo);
         const auto scale = static_cast<float>(std::exp2(ev));
         for (glm::vec3& value : values)
             value *= scale;

@@ -114,6 +114,13 @@ struct OutputOptions {
 [[nodiscard]] std::vector<glm::vec3> picture_albedo(const Scene& scene,
                                                     const OutputOptions& options = {});
 
+/// Returns the albedo with which light bounces, [num_receivers]: that of pictures, also for texels,
+/// which themselves stay for albedo 1.
+///
+/// Throws:  as picture_albedo().
+[[nodiscard]] std::vector<glm::vec3> bounce_albedo(const Scene& scene,
+                                                   const OutputOptions& options = {});
+
 /// Returns how pictures fade the added floor out.
 [[nodiscard]] relight::FadingFloor picture_floor(const Scene& scene,
                                                  const OutputOptions& options = {});

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
+#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -10,6 +12,8 @@
 #include <glm/common.hpp>
 
 #include "prt/parts/part_file.h"
+#include "prt/parts/shared_work.h"
+#include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/pixel_receivers.h"
 #include "prt/scene/checkpoint_file.h"
 #include "prt/scene/fingerprint.h"
@@ -22,6 +26,31 @@
 namespace relumine {
 
 namespace {
+
+/// The share of one process, while it lasts.
+class Work {
+public:
+    explicit Work(const prt::Team* team) : team_(team), waiting_before_(waiting()) {}
+
+    [[nodiscard]] ProcessFigures figures(const prt::PrecomputeStatistics& clusters) const {
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
+        return {.num_rays = clusters.num_own_rays,
+                .seconds = seconds.count(),
+                .seconds_waiting = waiting() - waiting_before_,
+                .seconds_of_processors =
+                    static_cast<double>(std::clock() - processors_before_) / CLOCKS_PER_SEC};
+    }
+
+private:
+    [[nodiscard]] double waiting() const {
+        return team_ != nullptr ? team_->seconds_waiting() : 0.0;
+    }
+
+    const prt::Team* team_;
+    double waiting_before_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    std::clock_t processors_before_ = std::clock();
+};
 
 /// One precompute, step by step.
 class Precompute {
@@ -71,9 +100,6 @@ public:
 
 private:
     void check_options() const {
-        if (options_.bounce_tolerance && !std::holds_alternative<Vertices>(options_.receivers))
-            throw std::invalid_argument(
-                "expected vertices for bounces, got pixels or texels, which have none yet");
         if (options_.bounce_tolerance && !(*options_.bounce_tolerance > 0.0f))
             throw std::invalid_argument(fmt::format("expected a tolerance of bounces > 0, got {}",
                                                     *options_.bounce_tolerance));
@@ -85,6 +111,9 @@ private:
             throw std::invalid_argument("expected a plan without bounces, which have no parts yet");
         if (options_.output.empty() && options_.resume)
             throw std::invalid_argument("expected an output to resume the work of, got none");
+        if (options_.team != nullptr && options_.max_memory)
+            throw std::invalid_argument(
+                "expected no limit of memory where processes share the work");
         if (!(options_.checkpoint_seconds >= 0.0))
             throw std::invalid_argument(fmt::format("expected checkpoint seconds >= 0, got {}",
                                                     options_.checkpoint_seconds));
@@ -107,21 +136,24 @@ private:
         set_surfaces();
         poll();
         const bool has_highlights = prt::has_highlights(scene_.receivers);
-        if (is_plan_ && has_highlights)
-            throw std::invalid_argument(
-                prefix_ + "expected a plan without highlights, which have no parts yet");
         open_checkpoint(has_highlights);
         keep_settings();
+        if (has_highlights)
+            scene_.settings.glossy_tolerance = options_.glossy_tolerance;
+        hand_out(has_highlights);
+        const Work work(options_.team);
         try {
             cluster(rays, sizes);
         } catch (const std::invalid_argument& error) {
             throw std::invalid_argument(prefix_ + error.what());
         }
-        if (has_highlights)
+        if (has_highlights && !is_plan_)
             add_highlights(rays, sizes);
-        if (options_.bounce_tolerance)
-            add_bounces(rays);
+        if (options_.team != nullptr)
+            take_in(work.figures(report_.clusters));
         prt::set_surfaces(scene_.transfer, scene_.receivers);
+        if (options_.bounce_tolerance)
+            add_bounces(rays, sizes);
     }
 
     [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
@@ -186,6 +218,11 @@ private:
                 const std::optional<prt::Camera>& own = options_.view->camera;
                 scene_.settings.view = own ? *own : relight::framed(scene_.mesh);
                 prt::look_from(scene_.receivers, scene_.settings.view->eye);
+            }
+            if (options_.bounce_tolerance && !scene_.receivers.points.empty()) {
+                prt::add_vertices(scene_.receivers, scene_.mesh);
+                note(fmt::format("and {} vertices, from which light bounces",
+                                 scene_.receivers.num_added));
             }
         } catch (const std::invalid_argument& error) {
             throw std::runtime_error(prefix_ + error.what());
@@ -259,6 +296,9 @@ private:
         }
         if (receivers.to_eye.empty())
             leave_highlights_out();
+        // Vertices that only send light on are seen by nobody.
+        for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i)
+            receivers.surfaces[i].highlight = prt::Highlight::None;
     }
 
     /// Pictures take the light of the vertices and the colours of the textures. So the option's
@@ -304,20 +344,61 @@ private:
             if (std::exchange(last, message) != message)
                 warn(Warning::Checkpoint, message);
         };
+        prt::Fingerprint fingerprint = prt::fingerprint(
+            blocking_mesh(), scene_.receivers, clustering_,
+            {.glossy_tolerance =
+                 has_highlights ? std::optional(options_.glossy_tolerance) : std::nullopt,
+             .bounce_tolerance = options_.bounce_tolerance,
+             .two_sided_bounces = options_.two_sided_bounces});
+        fingerprint.emplace_back(
+            "number of processes",
+            fmt::format("{}", options_.team != nullptr ? options_.team->part().count : 1));
         checkpoint_ = std::make_unique<prt::CheckpointFile>(
-            options_.output,
-            prt::fingerprint(blocking_mesh(), scene_.receivers, clustering_,
-                             has_highlights ? std::optional(options_.glossy_tolerance)
-                                            : std::nullopt),
+            options_.output, std::move(fingerprint),
             prt::CheckpointFile::Options{
                 .resume = options_.resume,
                 .interval = std::chrono::duration<double>(
                     options_.checkpoint_seconds > 0.0 ? options_.checkpoint_seconds : Never),
                 .on_problem = warn_once});
         clustering_.checkpoint = checkpoint_.get();
+        if (options_.team != nullptr)
+            clustering_.checkpoint = &team_checkpoint_.emplace(*options_.team, checkpoint_.get());
         if (checkpoint_->exists())
             note(fmt::format("going on from {}",
                              prt::CheckpointFile::folder_for(options_.output).string()));
+    }
+
+    /// Tells the other processes what there is to do.
+    void hand_out(bool has_highlights) {
+        if (options_.team == nullptr)
+            return;
+        clustering_.reduction = options_.team;
+        prt::SharedWork work{.receivers = scene_.receivers,
+                             .clusters = clustering_,
+                             .has_beams = options_.engine == Engine::Beams,
+                             .has_checkpoint = clustering_.checkpoint != nullptr};
+        work.blockers.positions = blocking_mesh().positions;
+        work.blockers.triangles = blocking_mesh().triangles;
+        if (has_highlights)
+            work.highlights = {.tolerance = options_.glossy_tolerance};
+        static_cast<void>(options_.team->broadcast(prt::packed_work(work)));
+    }
+
+    /// Joins the light of all processes.
+    void take_in(const ProcessFigures& own_figures) {
+        prt::Transfer& transfer = scene_.transfer;
+        std::vector<prt::PartLight> light(1);
+        light[0].counts = std::exchange(transfer.counts, {});
+        light[0].glossy = std::exchange(transfer.glossy, {});
+        report_.processes = {own_figures};
+        for (const std::vector<std::byte>& bytes : options_.team->gather({}))
+            if (!bytes.empty())
+                light.push_back(prt::unpacked_light(bytes));
+        for (const std::vector<std::byte>& bytes : options_.team->gather({}))
+            if (!bytes.empty())
+                std::memcpy(&report_.processes.emplace_back(), bytes.data(),
+                            sizeof(ProcessFigures));
+        prt::join_light(transfer, light);
     }
 
     /// What the scene remembers of how it was made.
@@ -365,7 +446,8 @@ private:
         prt::GlossyOptions glossy{.tolerance = options_.glossy_tolerance,
                                   .face_resolution = options_.face_resolution,
                                   .bias = clustering_.bias,
-                                  .checkpoint = checkpoint_.get(),
+                                  .reduction = options_.team,
+                                  .checkpoint = clustering_.checkpoint,
                                   .stop = options_.stop,
                                   .on_progress = progress(Stage::Highlights)};
         const std::optional<std::uint64_t> max_bytes =
@@ -380,29 +462,40 @@ private:
         }
         prt::GlossyStatistics statistics;
         try {
-            scene_.transfer.glossy = prt::precompute_glossy(scene_.receivers, rays, scene_.transfer,
-                                                            glossy, &statistics);
+            scene_.transfer.glossy =
+                options_.team != nullptr
+                    ? prt::part_highlights(scene_.receivers, scene_.transfer, rays, glossy,
+                                           options_.team->part(), &statistics)
+                    : prt::precompute_glossy(scene_.receivers, rays, scene_.transfer, glossy,
+                                             &statistics);
         } catch (const prt::TooManyEntries& error) {
             throw limit_.too_many_highlights(glossy.max_bytes, "at least", error.num_entries);
         }
         report_.highlights = statistics;
-        scene_.settings.glossy_tolerance = options_.glossy_tolerance;
     }
 
-    void add_bounces(const prt::RayScene& rays) {
-        prt::BounceStatistics statistics;
+    void add_bounces(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
         std::optional<prt::RayScene> of_mesh;
         if (scene_.blockers)
             of_mesh.emplace(ray_scene(scene_.mesh));
-        scene_.bounces = prt::precompute_bounces(scene_.mesh, scene_.receivers, scene_.transfer,
-                                                 relight::probe_radiance(scene_.transfer),
-                                                 of_mesh ? *of_mesh : rays,
-                                                 {.tolerance = *options_.bounce_tolerance,
-                                                  .two_sided = options_.two_sided_bounces,
-                                                  .bias = clustering_.bias,
-                                                  .stop = options_.stop,
-                                                  .on_progress = progress(Stage::Bounces)},
-                                                 &statistics);
+        prt::BounceOptions bounces{.tolerance = *options_.bounce_tolerance,
+                                   .two_sided = options_.two_sided_bounces,
+                                   .bias = clustering_.bias,
+                                   .checkpoint = checkpoint_.get(),
+                                   .stop = options_.stop,
+                                   .on_progress = progress(Stage::Bounces)};
+        if (const auto bytes = limit_.max_bounce_bytes(sizes, report_.clusters.column_bytes))
+            bounces.max_bytes = *bytes;
+        prt::BounceStatistics statistics;
+        try {
+            scene_.bounces =
+                prt::precompute_bounces(scene_.mesh, scene_.receivers, scene_.transfer,
+                                        relight::probe_radiance(scene_.transfer),
+                                        of_mesh ? *of_mesh : rays, bounces, &statistics);
+        } catch (const prt::TooManyHits& error) {
+            throw limit_.too_many_hits(bounces.max_bytes, error.num_hits);
+        }
+        scene_.settings.two_sided_bounces = options_.two_sided_bounces;
         report_.bounces = statistics;
     }
 
@@ -434,6 +527,7 @@ private:
     Scene scene_;
     prt::PrecomputeOptions clustering_;
     std::unique_ptr<prt::CheckpointFile> checkpoint_;
+    std::optional<prt::TeamCheckpoint> team_checkpoint_;
 };
 
 } // namespace
@@ -443,6 +537,37 @@ Scene precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* 
     PrecomputeReport& facts = report != nullptr ? *report : local;
     facts = {};
     return Precompute(std::move(mesh), options, facts).run();
+}
+
+void assist(prt::Team& team, const std::stop_token& stop) {
+    prt::SharedWork shared = prt::unpacked_work(team.broadcast({}));
+    const Work work(&team);
+    const prt::RayScene rays(shared.blockers);
+    std::optional<prt::BeamScene> beams;
+    if (shared.has_beams)
+        beams.emplace(shared.blockers, rays);
+    prt::TeamCheckpoint checkpoint(team, nullptr);
+    shared.clusters.checkpoint = shared.has_checkpoint ? &checkpoint : nullptr;
+    shared.clusters.reduction = &team;
+    shared.clusters.stop = stop;
+    prt::PrecomputeStatistics statistics;
+    prt::Transfer transfer =
+        prt::precompute(shared.receivers, beams ? static_cast<const prt::Blockers&>(*beams) : rays,
+                        shared.clusters, &statistics);
+    beams.reset();
+    prt::PartLight light;
+    if (shared.highlights) {
+        shared.highlights->checkpoint = shared.clusters.checkpoint;
+        shared.highlights->reduction = &team;
+        shared.highlights->stop = stop;
+        light.glossy =
+            prt::part_highlights(shared.receivers, transfer, rays, *shared.highlights, team.part());
+    }
+    light.counts = std::move(transfer.counts);
+    const ProcessFigures figures = work.figures(statistics);
+    static_cast<void>(team.gather(prt::packed_light(light)));
+    const auto bytes = std::as_bytes(std::span(&figures, 1));
+    static_cast<void>(team.gather({bytes.begin(), bytes.end()}));
 }
 
 void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
@@ -455,7 +580,7 @@ void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report)
 }
 
 void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics) {
-    const prt::Plan plan = prt::load_plan(options.plan);
+    prt::Plan plan = prt::load_plan(options.plan);
     const prt::Scene& scene = plan.scene;
     const mesh::TriangleMesh& triangles = scene.blockers ? *scene.blockers : scene.mesh;
     const prt::RayScene rays(triangles);
@@ -463,15 +588,27 @@ void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* stat
     if (options.engine == Engine::Beams)
         beams.emplace(triangles, rays);
     const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-    const prt::VisibleCounts counts =
-        prt::part_counts(scene.receivers, scene.transfer, blockers,
-                         {.face_resolution = scene.settings.face_resolution,
-                          .bias = scene.settings.bias,
-                          .stop = options.stop,
-                          .on_progress = options.on_progress},
-                         options.part, statistics);
+    prt::VisibleCounts counts = prt::part_counts(scene.receivers, scene.transfer, blockers,
+                                                 {.min_level = scene.settings.min_level,
+                                                  .face_resolution = scene.settings.face_resolution,
+                                                  .bias = scene.settings.bias,
+                                                  .stop = options.stop,
+                                                  .on_progress = options.on_progress},
+                                                 options.part, statistics);
     beams.reset();
-    prt::save_part(options.output, plan, options.part, counts);
+    prt::PartLight light;
+    if (scene.settings.glossy_tolerance) {
+        plan.scene.transfer.counts = std::move(counts);
+        light.glossy = prt::part_highlights(scene.receivers, scene.transfer, rays,
+                                            {.tolerance = *scene.settings.glossy_tolerance,
+                                             .face_resolution = scene.settings.face_resolution,
+                                             .bias = scene.settings.bias,
+                                             .stop = options.stop},
+                                            options.part);
+        counts = std::exchange(plan.scene.transfer.counts, {});
+    }
+    light.counts = std::move(counts);
+    prt::save_part(options.output, plan, options.part, light);
 }
 
 std::uint64_t join(std::span<const std::filesystem::path> parts,

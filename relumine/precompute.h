@@ -11,12 +11,14 @@
 #include <stop_token>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/glossy/surface_sampling.h"
 #include "prt/memory_estimate.h"
 #include "prt/parts/parts.h"
+#include "prt/parts/team.h"
 #include "prt/precompute.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
@@ -110,10 +112,11 @@ struct PrecomputeOptions {
     /// Relative error of a highlight under a small light anywhere
     float glossy_tolerance = prt::GlossyOptions{}.tolerance;
 
-    /// Light bounces from surface to surface, of vertices only; prt::BounceOptions::tolerance.
-    /// Empty: direct light alone.
+    /// Light bounces from surface to surface; prt::BounceOptions::tolerance. Empty: direct light
+    /// alone. Surfaces send what their vertices have, so pixels and texels get the mesh's vertices
+    /// as receivers behind them (prt::Receivers::num_added).
     std::optional<float> bounce_tolerance = {};
-    /// Surfaces send bounced light from both sides; otherwise their backs are black.
+    /// Backs of surfaces send the bounced light that their fronts do; otherwise they are black.
     bool two_sided_bounces = false;
 
     /// Bytes. Work that is estimated to take more is refused before it begins. Work that turns out
@@ -128,6 +131,11 @@ struct PrecomputeOptions {
     /// Continues from a checkpoint of the same work if there is one.
     bool resume = false;
 
+    /// Processes that share the work; null: this one does it all. precompute() runs in the first
+    /// process, assist() in the others. Bounces are the first one's alone. There must be no limit
+    /// of memory.
+    prt::Team* team = nullptr;
+
     /// Polled a few times a second. A stop request makes precompute() throw Cancelled.
     std::stop_token stop = {};
     /// Estimated fraction of a stage in [0, 1], never falling; one call at a time
@@ -136,6 +144,18 @@ struct PrecomputeOptions {
     std::function<void(Warning, const std::string&)> on_warning = {};
     /// Gets a sentence that helps to understand a run. One call at a time.
     std::function<void(const std::string&)> on_note = {};
+};
+
+/// What one of the processes that share a precompute did.
+struct ProcessFigures {
+    /// Rays of the clusters
+    std::uint64_t num_rays = 0;
+    /// From the moment when it got the work to its result
+    double seconds = 0.0;
+    /// Of these, waiting for the others and sending
+    double seconds_waiting = 0.0;
+    /// Processor time of all threads
+    double seconds_of_processors = 0.0;
 };
 
 /// What a precompute found and took.
@@ -162,6 +182,9 @@ struct PrecomputeReport {
 
     /// Only with bounces
     std::optional<prt::BounceStatistics> bounces = {};
+
+    /// By index; only where processes share the work
+    std::vector<ProcessFigures> processes = {};
 
     /// Of the scene file, 0 without one
     std::uint64_t file_bytes = 0;
@@ -192,6 +215,8 @@ struct MemoryLimitExceeded : std::runtime_error {
         ClustersFound,
         /// The highlights. A larger glossy_tolerance helps.
         Highlights,
+        /// The bounces. A larger bounce_tolerance helps.
+        Bounces,
     };
     MemoryLimitExceeded(Part what, const std::string& message)
         : std::runtime_error(message), part(what) {}
@@ -212,13 +237,21 @@ struct MemoryLimitExceeded : std::runtime_error {
 [[nodiscard]] Scene precompute(Mesh mesh, const PrecomputeOptions& options = {},
                                PrecomputeReport* report = nullptr);
 
+/// Helps the first of the processes that share a precompute, whose mesh and options it gets:
+/// computes its part and hands it over.
+///
+/// Memory:  the mesh, all receivers, and twice its share of the result.
+/// Throws:  Cancelled when any of the processes was asked to stop; as precompute() does for what
+/// goes
+///          wrong here; what the team throws where another process has failed.
+void assist(prt::Team& team, const std::stop_token& stop = {});
+
 /// Plans a precompute that is done in parts, by any number of processes on any number of machines:
 /// chooses the clusters from a sample of the receivers and writes the plan, a file that ends in
 /// .plan, to options.output. There are no checkpoints.
 ///
 /// Cost:    a sixteenth of a precompute where receivers are many; see prt::plan_clusters().
-/// Throws:  as precompute() does; std::invalid_argument for highlights and bounces, which have no
-///          parts.
+/// Throws:  as precompute() does; std::invalid_argument for bounces, which have no parts.
 void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report = nullptr);
 
 /// One part of a plan.

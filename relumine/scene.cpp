@@ -68,8 +68,9 @@ Camera camera_of(const Scene& scene, float aspect) {
 
 std::uint32_t nearest_receiver(const Scene& scene, const glm::vec3& position) {
     const std::vector<glm::vec3>& positions = scene.receivers.positions;
+    const auto end = positions.begin() + static_cast<std::ptrdiff_t>(scene.receivers.num_own());
     const auto nearest =
-        std::min_element(positions.begin(), positions.end(), [&](const auto& a, const auto& b) {
+        std::min_element(positions.begin(), end, [&](const auto& a, const auto& b) {
             return glm::dot(a - position, a - position) < glm::dot(b - position, b - position);
         });
     return static_cast<std::uint32_t>(nearest - positions.begin());

@@ -23,17 +23,15 @@ relight::Picture drawn(const mesh::TriangleMesh& mesh, const prt::RayScene& rays
                                      .height = moment.height,
                                      .samples_per_axis = samples_per_axis,
                                      .stop = stop},
-                                    shading.floor);
-    relight::Picture picture = view.cut_out({.radiance = colors,
-                                             .lights = moment.lights,
-                                             .albedo = shading.albedo,
-                                             .surfaces = shading.surfaces,
-                                             .textures = &shading.textures,
-                                             .eye = shading.eye,
-                                             .bias = shading.bias});
-    if (moment.backdrop)
-        view.put_behind(picture, moment.backdrop);
-    return picture;
+                                    shading.floor, 0);
+    const relight::MeshLight light{.radiance = colors,
+                                   .lights = moment.lights,
+                                   .albedo = shading.albedo,
+                                   .surfaces = shading.surfaces,
+                                   .textures = &shading.textures,
+                                   .eye = shading.eye,
+                                   .bias = shading.bias};
+    return moment.backdrop ? view.draw(light, moment.backdrop) : view.cut_out(light);
 }
 
 } // namespace

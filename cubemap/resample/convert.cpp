@@ -18,6 +18,7 @@
 #include "cubemap/resample/pixel_points.h"
 #include "cubemap/resample/resample.h"
 #include "cubemap/resample/resample_lat_long.h"
+#include "cubemap/resample/resize_lat_long.h"
 
 namespace relumine::cubemap {
 
@@ -98,11 +99,20 @@ class Path {
 public:
     Path(const ImageShape& source, const ImageShape& target, const glm::dmat3& target_from_source)
         : source_(source), target_(target), target_from_source_(target_from_source) {}
+    /// Whether both ways go without a cube map.
+    [[nodiscard]] bool is_direct() const {
+        return source_.layout == Layout::LatLong && target_.layout == Layout::LatLong &&
+               keeps_vertical(target_from_source_);
+    }
     /// Each target pixel is the mean over its footprint.
     [[nodiscard]] EnvironmentImage forth(const EnvironmentImage& image) const {
+        if (is_direct())
+            return resize_lat_long(image, target_, target_from_source_);
         return averaged(image, source_, target_, target_from_source_);
     }
     [[nodiscard]] EnvironmentImage back(const EnvironmentImage& image) const {
+        if (is_direct())
+            return resize_lat_long(image, source_, glm::transpose(target_from_source_));
         return averaged(image, target_, source_, glm::transpose(target_from_source_));
     }
 
@@ -261,11 +271,12 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
                        const glm::dmat3& target_from_source) {
     const ImageShape source = shape_of(image);
     EnvironmentImage result = interpolated(image, target, target_from_source);
+    constexpr int MostRounds = 200; // a sun in a disc's rim needs most of them
     // In pictures this large a sun is never smaller than a pixel, and the links would take
     // gigabytes.
     constexpr std::size_t Large = std::size_t{1} << 22;
-    if (std::max(image.pixels.size(), result.pixels.size()) > Large) {
-        const Path path(source, target, target_from_source);
+    const Path path(source, target, target_from_source);
+    if (path.is_direct() || std::max(image.pixels.size(), result.pixels.size()) > Large) {
         const auto over = [](const ImageShape& shape, const Pixels& pixels) {
             EnvironmentImage picture = empty_image(shape);
             picture.pixels = pixels;
@@ -274,14 +285,13 @@ EnvironmentImage grown(const EnvironmentImage& image, const ImageShape& target,
         correct(
             image.pixels,
             [&](const Pixels& pixels) { return path.forth(over(source, pixels)).pixels; },
-            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; }, 2,
-            result.pixels);
+            [&](const Pixels& pixels) { return path.back(over(target, pixels)).pixels; },
+            path.is_direct() ? MostRounds : 2, result.pixels);
         return result;
     }
     const PixelLinks links(source, target, target_from_source, resolution_between(source, target),
                            has_faces(source.layout) ? PixelLinks::Axes::Source
                                                     : PixelLinks::Axes::Target);
-    constexpr int MostRounds = 200; // a sun in a disc's rim needs most of them
     correct(
         image.pixels, [&](const Pixels& pixels) { return links.to_target(pixels); },
         [&](const Pixels& pixels) { return links.to_source(pixels); }, MostRounds, result.pixels);

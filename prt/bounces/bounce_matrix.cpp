@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -51,10 +52,31 @@ void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers) {
             "expected bounces that keep 0 to 1 of the light, got {}", matrix.spectral_radius));
 }
 
+std::size_t first_emitter(const BounceMatrix& matrix) {
+    const std::vector<std::uint32_t>& emitters = matrix.emitters.places;
+    if (emitters.empty())
+        return 0;
+    std::size_t first = *std::min_element(emitters.begin(), emitters.end());
+    // Those that share samples with rows from there on belong to them.
+    for (std::size_t end = matrix.num_rows(); first < end;) {
+        std::size_t lowest = first;
+        for (std::size_t row = first; row < end; ++row)
+            for (const std::uint32_t place : matrix.averaged[row])
+                lowest = std::min(lowest, std::size_t{place});
+        end = std::exchange(first, lowest);
+    }
+    const auto end = static_cast<std::ptrdiff_t>(matrix.averaged.begin[first]);
+    const bool are_apart =
+        std::all_of(matrix.averaged.places.begin(), matrix.averaged.places.begin() + end,
+                    [first](std::uint32_t place) { return place < first; });
+    return are_apart ? first : 0;
+}
+
 float spectral_radius(const BounceMatrix& matrix) {
     const std::size_t n = matrix.num_rows();
     if (matrix.emitters.places.empty())
         return 0.0f;
+    const std::size_t first = first_emitter(matrix);
     std::vector<float> x(n, 1.0f);
     std::vector<float> gathered(n);
     std::vector<float> product(n);
@@ -64,13 +86,13 @@ float spectral_radius(const BounceMatrix& matrix) {
             sum += static_cast<double>(from[place]);
         return sum;
     };
-    double norm = std::sqrt(static_cast<double>(n));
+    double norm = std::sqrt(static_cast<double>(n - first));
     double radius = 0.0;
     for (int iteration = 0; iteration < NumPowerIterations; ++iteration) {
-        tbb::parallel_for(std::size_t{0}, n, [&](std::size_t place) {
+        tbb::parallel_for(first, n, [&](std::size_t place) {
             gathered[place] = static_cast<float>(sum_of(matrix.emitters[place], x));
         });
-        tbb::parallel_for(std::size_t{0}, n, [&](std::size_t place) {
+        tbb::parallel_for(first, n, [&](std::size_t place) {
             product[place] = static_cast<float>(static_cast<double>(matrix.weights[place]) *
                                                 sum_of(matrix.averaged[place], gathered));
         });

@@ -53,6 +53,10 @@ struct BounceMatrix {
 ///          receivers, a weight is negative or not finite, or a row's sum is above 1.
 void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers);
 
+/// Returns a place before which no receiver sends light to another, and from which on receivers get
+/// light from each other only: where added vertices begin, or 0.
+[[nodiscard]] std::size_t first_emitter(const BounceMatrix& matrix);
+
 /// Returns the largest eigenvalue of a square matrix of bounces, from below, by power iteration.
 ///
 /// Cost:    some 30 bounces.

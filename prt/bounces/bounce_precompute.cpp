@@ -6,8 +6,8 @@
 #include <limits>
 #include <mutex>
 #include <numbers>
-#include <numeric>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +17,7 @@
 
 #include "cubemap/face.h"
 #include "cubemap/split_mix64.h"
+#include "files/packed_parts.h"
 #include "prt/bounces/similar_receivers.h"
 #include "prt/precompute.h"
 #include "prt/receivers/mesh_point.h"
@@ -95,9 +96,14 @@ public:
             std::span<const ProbeRadiance> probes, const RayScene& rays,
             const BounceOptions& options)
         : mesh_(mesh), receivers_(receivers), transfer_(transfer), probes_(probes), rays_(rays),
-          options_(options), place_of_(receivers.size()) {
-        for (std::uint32_t place = 0; place < transfer.order.size(); ++place)
-            place_of_[transfer.order[place]] = place;
+          options_(options), place_of_(mesh.num_vertices(), NoEmitter) {
+        for (std::uint32_t place = 0; place < transfer.order.size(); ++place) {
+            const std::uint32_t receiver = transfer.order[place];
+            if (receivers.points.empty())
+                place_of_[receiver] = place;
+            else if (receiver >= receivers.num_own())
+                place_of_[vertex_at(mesh, receivers.points[receiver])] = place;
+        }
     }
 
     /// Returns the part of the hemisphere that surfaces close.
@@ -181,15 +187,250 @@ private:
     std::span<const ProbeRadiance> probes_;
     const RayScene& rays_;
     const BounceOptions& options_;
-    /// [num_receivers] place by receiver.
+    /// [num_vertices] place of each vertex.
     std::vector<std::uint32_t> place_of_;
+};
+
+/// Finds the rows of all receivers, block by block, in two passes: the first finds how far away
+/// surfaces are and how different the samples, the second adds samples where those of similar
+/// receivers together are too few. A checkpoint has the blocks of each pass.
+class BouncePrecompute {
+public:
+    BouncePrecompute(const Receivers& receivers, const Transfer& transfer, const Sampler& sampler,
+                     const BounceOptions& options)
+        : receivers_(receivers), transfer_(transfer), sampler_(sampler), options_(options),
+          samples_(transfer.num_receivers()), blocks_(transfer.counts.num_blocks()) {}
+
+    BounceMatrix run(BounceStatistics& found) {
+        run_pass("bounces", 0.0, [this](std::size_t block) {
+            for (std::size_t place = begin_of(block); place < begin_of(block + 1); ++place)
+                blocks_[block].num_rays +=
+                    sampler_.look(place, options_.min_directions, samples_[place]);
+        });
+        BounceMatrix result;
+        result.averaged = lists_of_similar();
+        std::vector<std::uint32_t> factors(samples_.size());
+        choose_factors(result.averaged, factors);
+        require_memory(factors);
+        run_pass("more_bounces", 0.5, [&](std::size_t block) {
+            for (std::size_t place = begin_of(block); place < begin_of(block + 1); ++place)
+                blocks_[block].num_rays +=
+                    sampler_.look(place, factors[place] * options_.min_directions, samples_[place]);
+        });
+        collect(result, found);
+        return result;
+    }
+
+private:
+    /// What is known of a block beside its samples.
+    struct Block {
+        std::uint64_t num_rays = 0;
+        /// Sum over its receivers, with the samples of the second pass.
+        double squared_errors = 0.0;
+    };
+
+    [[nodiscard]] std::size_t begin_of(std::size_t block) const {
+        return std::min(block * BlockSize, samples_.size());
+    }
+
+    /// Calls work(block) for every block that a checkpoint does not have.
+    template<typename Work>
+    void run_pass(const std::string& part, double progress_before, const Work& work) {
+        // Work between two looks at the checkpoint: about a tenth of a second.
+        constexpr std::size_t BlocksPerStep = 256;
+        std::size_t num_saved = options_.checkpoint != nullptr ? take_up(part) : 0;
+        std::size_t num_done = num_saved;
+        std::mutex mutex;
+        std::size_t num_reported = num_done;
+        const auto save = [&] {
+            if (options_.checkpoint->save(part, record(num_saved, num_done), {}))
+                num_saved = num_done;
+        };
+        while (num_done < blocks_.size()) {
+            const std::size_t end = std::min(num_done + BlocksPerStep, blocks_.size());
+            tbb::parallel_for(num_done, end, [&](std::size_t block) {
+                if (options_.stop.stop_requested())
+                    return;
+                work(block);
+                const std::scoped_lock lock(mutex);
+                ++num_reported;
+                if (options_.on_progress && num_reported % 64 == 0)
+                    options_.on_progress(progress_before + 0.5 * static_cast<double>(num_reported) /
+                                                               static_cast<double>(blocks_.size()));
+            });
+            const bool is_stopped = options_.stop.stop_requested();
+            if (is_stopped && options_.checkpoint != nullptr && num_saved != num_done &&
+                options_.checkpoint->is_worthwhile())
+                save();
+            if (is_stopped)
+                throw Cancelled();
+            num_done = end;
+            if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
+                save();
+        }
+    }
+
+    /// Writes all that is known of some blocks.
+    [[nodiscard]] std::vector<std::byte> record(std::size_t first, std::size_t last) const {
+        return files::pack(1, [&](std::size_t) {
+            files::ByteWriter writer;
+            for (std::size_t block = first; block < last; ++block) {
+                writer.add(blocks_[block].num_rays);
+                for (std::size_t place = begin_of(block); place < begin_of(block + 1); ++place) {
+                    const Samples& samples = samples_[place];
+                    writer.add(samples.num_directions);
+                    writer.add(samples.sum_inverse_distances);
+                    for (const std::vector<std::uint32_t>& half : samples.halves) {
+                        writer.add<std::uint64_t>(half.size());
+                        writer.add_all(std::span(half));
+                    }
+                }
+            }
+            return writer.take();
+        });
+    }
+
+    /// Takes up the blocks of an earlier run; returns how many there are.
+    std::size_t take_up(const std::string& part) {
+        std::size_t block = 0;
+        for (const std::vector<std::byte>& record : options_.checkpoint->load(part, false).records)
+            files::unpack(record, [&](std::span<const std::byte> bytes) {
+                for (files::ByteReader reader(bytes); !reader.at_end(); ++block) {
+                    if (block == blocks_.size())
+                        throw std::runtime_error("checkpoint: expected fewer blocks");
+                    blocks_[block].num_rays = reader.next<std::uint64_t>();
+                    for (std::size_t place = begin_of(block); place < begin_of(block + 1);
+                         ++place) {
+                        Samples& samples = samples_[place];
+                        samples.num_directions = reader.next<std::uint32_t>();
+                        samples.sum_inverse_distances = reader.next<double>();
+                        for (std::vector<std::uint32_t>& half : samples.halves) {
+                            const auto size = reader.next<std::uint64_t>();
+                            half = reader.next_all<std::uint32_t>(static_cast<std::size_t>(size));
+                        }
+                    }
+                }
+            });
+        return block;
+    }
+
+    /// Added vertices share samples among themselves: they are lit again and again, the pixels or
+    /// texels before them once.
+    [[nodiscard]] PlaceLists lists_of_similar() const {
+        std::vector<glm::vec3> positions(samples_.size());
+        std::vector<float> distances(samples_.size());
+        for (std::size_t place = 0; place < samples_.size(); ++place) {
+            positions[place] = receivers_.positions[transfer_.order[place]];
+            distances[place] = samples_[place].num_hits() == 0 ? 0.0f : samples_[place].distance();
+        }
+        const auto is_added = [this](std::uint32_t receiver) {
+            return receiver >= receivers_.num_own();
+        };
+        const auto first = static_cast<std::size_t>(
+            std::find_if(transfer_.order.begin(), transfer_.order.end(), is_added) -
+            transfer_.order.begin());
+        PlaceLists lists;
+        for (const auto& [begin, end] :
+             {std::pair(std::size_t{0}, first), std::pair(first, samples_.size())}) {
+            const std::size_t size = end - begin;
+            PlaceLists part = similar_receivers(std::span(positions).subspan(begin, size),
+                                                std::span(transfer_.normals).subspan(begin, size),
+                                                std::span(distances).subspan(begin, size));
+            for (std::uint32_t& place : part.places)
+                place += static_cast<std::uint32_t>(begin);
+            for (std::size_t i = 0; i < size; ++i)
+                lists.append(part[i]);
+        }
+        return lists;
+    }
+
+    /// How many times the directions of the first pass each receiver needs: the variance falls as
+    /// the number of directions and of those who share them grows. Where surfaces meet, few share;
+    /// their noise would stand as a line beside even walls.
+    void choose_factors(const PlaceLists& averaged, std::vector<std::uint32_t>& factors) {
+        const double allowed = static_cast<double>(options_.tolerance * options_.tolerance);
+        tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
+            const std::size_t begin = begin_of(block), end = begin_of(block + 1);
+            double error = 0.0;
+            for (std::size_t place = begin; place < end; ++place)
+                error += sampler_.squared_error(place, samples_[place]) /
+                         static_cast<double>(end - begin);
+            blocks_[block].squared_errors = 0.0;
+            for (std::size_t place = begin; place < end; ++place) {
+                constexpr std::size_t LeastShared = 4;
+                const std::size_t num_shared = averaged[place].size();
+                const double shared = error / static_cast<double>(num_shared);
+                const std::size_t least = samples_[place].num_hits() == 0 ? 1 : LeastShared;
+                factors[place] = 1;
+                while ((shared > factors[place] * allowed || factors[place] * num_shared < least) &&
+                       2 * factors[place] * options_.min_directions <= options_.max_directions)
+                    factors[place] *= 2;
+                blocks_[block].squared_errors += shared / factors[place];
+            }
+        });
+    }
+
+    void require_memory(const std::vector<std::uint32_t>& factors) const {
+        std::uint64_t num_hits = 0;
+        for (std::size_t place = 0; place < samples_.size(); ++place)
+            num_hits += factors[place] * samples_[place].num_hits();
+        if (num_hits * BytesPerHit > options_.max_bytes)
+            throw TooManyHits(num_hits);
+    }
+
+    /// Makes the rows of the samples, and frees these.
+    void collect(BounceMatrix& result, BounceStatistics& found) {
+        const auto num_rows = static_cast<double>(samples_.size());
+        for (std::size_t place = 0; place < samples_.size(); ++place) {
+            const double closure = sampler_.closure_of(place);
+            double num_hits = 0.0, num_emitters = 0.0;
+            for (const std::uint32_t other : result.averaged[place]) {
+                num_hits += static_cast<double>(samples_[other].num_hits());
+                num_emitters += static_cast<double>(samples_[other].num_hits());
+                for (const std::vector<std::uint32_t>& half : samples_[other].halves)
+                    num_emitters -=
+                        static_cast<double>(std::count(half.begin(), half.end(), NoEmitter));
+            }
+            result.weights.push_back(num_emitters > 0.0 ? static_cast<float>(closure / num_hits)
+                                                        : 0.0f);
+            found.mean_closure += closure / num_rows;
+            found.num_hits += samples_[place].num_hits();
+        }
+        for (Samples& each : samples_) {
+            std::vector<std::uint32_t>& row = each.halves[0];
+            row.insert(row.end(), each.halves[1].begin(), each.halves[1].end());
+            std::erase(row, NoEmitter);
+            std::sort(row.begin(), row.end());
+            result.emitters.append(row);
+            each = {};
+        }
+        result.spectral_radius = spectral_radius(result);
+        double squared_errors = 0.0;
+        for (const Block& block : blocks_) {
+            found.num_rays += block.num_rays;
+            squared_errors += block.squared_errors;
+        }
+        found.num_emitters = result.emitters.places.size();
+        found.mean_averaged = static_cast<double>(result.averaged.places.size()) / num_rows;
+        found.rms_error = std::sqrt(squared_errors / num_rows);
+    }
+
+    const Receivers& receivers_;
+    const Transfer& transfer_;
+    const Sampler& sampler_;
+    const BounceOptions& options_;
+    /// By place.
+    std::vector<Samples> samples_;
+    std::vector<Block> blocks_;
 };
 
 void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
                      const Transfer& transfer, std::span<const ProbeRadiance> probes,
                      const BounceOptions& options) {
-    if (!receivers.points.empty() || receivers.size() != mesh.num_vertices() ||
-        transfer.num_receivers() != receivers.size() || probes.size() != receivers.size())
+    const bool has_vertices = receivers.points.empty() ? receivers.size() == mesh.num_vertices()
+                                                       : receivers.num_added != 0;
+    if (!has_vertices || transfer.num_receivers() != receivers.size() ||
+        probes.size() != receivers.size())
         throw std::invalid_argument("expected bounces between the vertices of the mesh");
     if (!(options.tolerance > 0.0f))
         throw std::invalid_argument(
@@ -200,6 +441,9 @@ void require_options(const mesh::TriangleMesh& mesh, const Receivers& receivers,
 
 } // namespace
 
+TooManyHits::TooManyHits(std::uint64_t hits)
+    : std::runtime_error(fmt::format("too many hits of bounces: {}", hits)), num_hits(hits) {}
+
 BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh, const Receivers& receivers,
                                 const Transfer& transfer, std::span<const ProbeRadiance> probes,
                                 const RayScene& rays, const BounceOptions& options,
@@ -207,90 +451,8 @@ BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh, const Receivers&
     const auto start = std::chrono::steady_clock::now();
     require_options(mesh, receivers, transfer, probes, options);
     const Sampler sampler(mesh, receivers, transfer, probes, rays, options);
-    const std::size_t num_rows = transfer.num_receivers();
-    const std::size_t num_blocks = transfer.counts.num_blocks();
-
-    // Two rounds over all blocks: the first finds how far surfaces are and how different samples,
-    // the second adds samples where those of similar receivers together are too few.
-    std::size_t num_done = 0;
-    std::mutex progress;
-    const auto for_blocks = [&](const auto& work) {
-        tbb::parallel_for(std::size_t{0}, num_blocks, [&](std::size_t block) {
-            if (options.stop.stop_requested())
-                return;
-            work(block * BlockSize, std::min((block + 1) * BlockSize, num_rows), block);
-            const std::scoped_lock lock(progress);
-            ++num_done;
-            if (options.on_progress && num_done % 64 == 0)
-                options.on_progress(0.5 * static_cast<double>(num_done) /
-                                    static_cast<double>(num_blocks));
-        });
-        if (options.stop.stop_requested())
-            throw Cancelled();
-    };
-    std::vector<Samples> samples(num_rows);
-    std::vector<std::uint64_t> num_rays(num_blocks);
-    std::vector<glm::vec3> positions(num_rows);
-    std::vector<float> distances(num_rows);
-    for_blocks([&](std::size_t begin, std::size_t end, std::size_t block) {
-        for (std::size_t place = begin; place < end; ++place) {
-            num_rays[block] += sampler.look(place, options.min_directions, samples[place]);
-            positions[place] = receivers.positions[transfer.order[place]];
-            distances[place] = samples[place].num_hits() == 0 ? 0.0f : samples[place].distance();
-        }
-    });
-
-    BounceMatrix result;
-    result.averaged = similar_receivers(positions, transfer.normals, distances);
-    std::vector<double> squared_errors(num_blocks);
-    for_blocks([&](std::size_t begin, std::size_t end, std::size_t block) {
-        double error = 0.0;
-        for (std::size_t place = begin; place < end; ++place)
-            error +=
-                sampler.squared_error(place, samples[place]) / static_cast<double>(end - begin);
-        // The variance falls as the number of directions and of those who share them grows.
-        for (std::size_t place = begin; place < end; ++place) {
-            const double shared = error / static_cast<double>(result.averaged[place].size());
-            std::uint32_t factor = 1;
-            while (shared > factor * static_cast<double>(options.tolerance * options.tolerance) &&
-                   2 * factor * options.min_directions <= options.max_directions)
-                factor *= 2;
-            num_rays[block] += sampler.look(place, factor * options.min_directions, samples[place]);
-            squared_errors[block] += shared / factor;
-        }
-    });
-
     BounceStatistics found;
-    for (std::size_t place = 0; place < num_rows; ++place) {
-        const double closure = sampler.closure_of(place);
-        double num_hits = 0.0, num_emitters = 0.0;
-        for (const std::uint32_t other : result.averaged[place]) {
-            num_hits += static_cast<double>(samples[other].num_hits());
-            num_emitters += static_cast<double>(samples[other].num_hits());
-            for (const std::vector<std::uint32_t>& half : samples[other].halves)
-                num_emitters -=
-                    static_cast<double>(std::count(half.begin(), half.end(), NoEmitter));
-        }
-        result.weights.push_back(num_emitters > 0.0 ? static_cast<float>(closure / num_hits)
-                                                    : 0.0f);
-        found.mean_closure += closure / static_cast<double>(num_rows);
-        found.num_hits += samples[place].num_hits();
-    }
-    for (Samples& each : samples) {
-        std::vector<std::uint32_t>& row = each.halves[0];
-        row.insert(row.end(), each.halves[1].begin(), each.halves[1].end());
-        std::erase(row, NoEmitter);
-        std::sort(row.begin(), row.end());
-        result.emitters.append(row);
-        each = {};
-    }
-    result.spectral_radius = spectral_radius(result);
-    found.num_rays = std::accumulate(num_rays.begin(), num_rays.end(), std::uint64_t{0});
-    found.num_emitters = result.emitters.places.size();
-    found.mean_averaged =
-        static_cast<double>(result.averaged.places.size()) / static_cast<double>(num_rows);
-    found.rms_error = std::sqrt(std::accumulate(squared_errors.begin(), squared_errors.end(), 0.0) /
-                                static_cast<double>(num_rows));
+    BounceMatrix result = BouncePrecompute(receivers, transfer, sampler, options).run(found);
     found.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (statistics != nullptr)
         *statistics = found;

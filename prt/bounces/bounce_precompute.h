@@ -5,11 +5,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
+#include <stdexcept>
 #include <stop_token>
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
+#include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
 #include "prt/transfer.h"
 #include "prt/visibility/ray_scene.h"
@@ -34,14 +37,28 @@ struct BounceOptions {
     std::uint32_t min_directions = 64;
     /// A power of two times min_directions at which the doubling ends.
     std::uint32_t max_directions = 4096;
-    /// Surfaces radiate from both sides; otherwise their backs are black.
+    /// Backs send the light that their fronts do; otherwise they are black.
     bool two_sided = false;
     /// Lift of the rays' origins, as in PrecomputeOptions.
     float bias = 0.0f;
+    /// Rows that take more are refused, as soon as a first look tells.
+    std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+    /// Gets the finished blocks now and then, and gives back those of an earlier run. May be null.
+    Checkpoint* checkpoint = nullptr;
     /// Polled a few times a second or more often.
     std::stop_token stop = {};
     /// Receives the fraction done in [0, 1]; one call at a time.
     std::function<void(double)> on_progress = {};
+};
+
+/// Memory for each hit of a ray: in its receiver's samples, in the matrix, and in the file that is
+/// written.
+inline constexpr std::uint64_t BytesPerHit = 12;
+
+/// Thrown by precompute_bounces() when the rows would take more than max_bytes.
+struct TooManyHits : std::runtime_error {
+    explicit TooManyHits(std::uint64_t hits);
+    std::uint64_t num_hits;
 };
 
 struct BounceStatistics {
@@ -58,17 +75,19 @@ struct BounceStatistics {
     double seconds = 0.0;
 };
 
-/// Finds the emitters of each vertex: cosine-distributed directions, without those in clusters that
-/// it sees whole, are traced to the first surface, and a vertex of the triangle is drawn by its
-/// barycentric weight, which is unbiased where the nearest is not. Similar receivers share their
-/// samples (similar_receivers.h). A row's sum is the closed part of the hemisphere, exact to the
-/// transfer's tolerance: 1 - B under a white sky.
+/// Finds the emitters of each receiver, a vertex, or a pixel or texel before added vertices:
+/// cosine-distributed directions, without those in clusters that it sees whole, are traced to the
+/// first surface, and a vertex of the triangle is drawn by its barycentric weight, which is
+/// unbiased where the nearest is not. Similar receivers share their samples (similar_receivers.h).
+/// A row's sum is the closed part of the hemisphere, exact to the transfer's tolerance: 1 - B under
+/// a white sky.
 ///
 /// Shape:   `probes` is [num_receivers] by place.
 /// Memory:  4 bytes per emitter and per similar receiver, some 100 to 400 bytes per receiver.
-/// Threads: parallel over blocks (TBB). A row depends on the receivers around it, not on threads.
-/// Throws:  std::invalid_argument where sizes differ, receivers are no vertices of the mesh, or
-///          options are out of range; Cancelled.
+/// Threads: parallel over blocks (TBB). A row depends on the receivers around it, not on threads,
+///          nor on a checkpoint that is taken up.
+/// Throws:  std::invalid_argument where sizes differ, there are no vertices of the mesh among the
+///          receivers, or options are out of range; TooManyHits; Cancelled.
 [[nodiscard]] BounceMatrix precompute_bounces(const mesh::TriangleMesh& mesh,
                                               const Receivers& receivers, const Transfer& transfer,
                                               std::span<const ProbeRadiance> probes,

@@ -1,6 +1,7 @@
 #include "prt/clusters/cluster_kernels.h"
 
 #include <bit>
+#include <cmath>
 #include <cstring>
 
 #include "prt/clusters/horizon.h"
@@ -16,9 +17,9 @@ namespace relumine::prt::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Float sums run over at most this many words (1,024 receivers) before they go to double. The
-// relative error is below 1e-4 of the tolerance test's threshold, and the threshold is itself a
-// choice.
+// Float sums run over at most this many words (1,024 receivers, a tile of VisibleCounts) before
+// they become whole numbers. The relative error of the floats is below 1e-4 of the tolerance test's
+// threshold, and the threshold is itself a choice.
 constexpr std::size_t WordsPerRun = 16;
 
 /// Returns bits [first, first + Lanes) of a word as a lane mask.
@@ -30,12 +31,13 @@ hn::Mask<D> mask_of(D d, std::uint64_t word, std::size_t first) {
     return hn::LoadMaskBits(d, bytes);
 }
 
-void squared_distances(const NormalArrays& normals, const CellSamples& samples, double* sums) {
+void squared_distances(const NormalArrays& normals, const CellSamples& samples,
+                       std::int64_t* sums) {
     const hn::CappedTag<float, 16> d;
     using Vector = hn::Vec<decltype(d)>;
     const std::size_t num_lanes = hn::Lanes(d);
     for (std::size_t l = 0; l < SamplesPerCell; ++l)
-        sums[l] = 0.0;
+        sums[l] = 0;
 
     for (std::size_t run = 0; run < normals.num_words(); run += WordsPerRun) {
         Vector square_sums[SamplesPerCell];
@@ -73,7 +75,8 @@ void squared_distances(const NormalArrays& normals, const CellSamples& samples, 
             }
         }
         for (std::size_t l = 0; l < SamplesPerCell; ++l)
-            sums[l] += static_cast<double>(hn::GetLane(hn::SumOfLanes(d, square_sums[l])));
+            sums[l] += std::llrint(double{hn::GetLane(hn::SumOfLanes(d, square_sums[l]))} /
+                                   SquaredDistanceUnit);
     }
 }
 
@@ -103,7 +106,8 @@ constexpr std::array<std::array<std::uint8_t, FullCount + 1>, FullCount + 1> vis
     for (std::size_t above = 1; above <= FullCount; ++above)
         for (std::size_t seen = 0; seen <= FullCount; ++seen)
             table[above][seen] = static_cast<std::uint8_t>(
-                seen >= above ? FullCount : (2 * FullCount * seen + above) / (2 * above));
+                seen >= above ? FullCount
+                              : (std::size_t{2} * FullCount * seen + above) / (2 * above));
     return table;
 }
 
@@ -121,9 +125,9 @@ NormalArrays::NormalArrays(std::span<const glm::vec3> normals) {
     }
 }
 
-std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
-                                                     const CellSamples& samples) {
-    std::array<double, SamplesPerCell> sums{};
+std::array<std::int64_t, SamplesPerCell> squared_distances(const NormalArrays& normals,
+                                                           const CellSamples& samples) {
+    std::array<std::int64_t, SamplesPerCell> sums{};
     HWY_DYNAMIC_DISPATCH(squared_distances)(normals, samples, sums.data());
     return sums;
 }

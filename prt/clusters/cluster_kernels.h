@@ -35,11 +35,17 @@ struct CellSamples {
     std::array<const std::uint64_t*, SamplesPerCell> lit{};
 };
 
+/// The unit of squared_distances().
+inline constexpr double SquaredDistanceUnit = 0x1p-30;
+
 /// Returns ||T_C - T_l||^2 for all nine samples l, where T = V max(n.w, 0), which is the transfer
-/// times pi, and T_C is the weighted mean [JN, Eqs. 9-11]. Sums are in double over fixed runs of
-/// receivers.
-[[nodiscard]] std::array<double, SamplesPerCell> squared_distances(const NormalArrays& normals,
-                                                                   const CellSamples& samples);
+/// times pi, and T_C is the weighted mean [JN, Eqs. 9-11].
+///
+/// Unit:    SquaredDistanceUnit. Each run of 1,024 receivers contributes a whole number, so sums
+///          over parts of the receivers that begin at runs add up to the sum over all, exactly.
+///          2^32 receivers stay below 2^63.
+[[nodiscard]] std::array<std::int64_t, SamplesPerCell>
+squared_distances(const NormalArrays& normals, const CellSamples& samples);
 
 /// Returns the visible counts of the cell for all receivers. A sample counts by its weight;
 /// `weights` sum to 16.

@@ -13,6 +13,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "prt/clusters/dealt_tiles.h"
 #include "prt/clusters/lattice.h"
 #include "prt/free_memory.h"
 #include "prt/receivers/receiver_order.h"
@@ -22,7 +23,7 @@ namespace relumine::prt {
 namespace {
 
 /// Name of this part in a checkpoint.
-constexpr const char* Part = "clusters";
+constexpr const char* CheckpointPart = "clusters";
 
 /// Points that a batch may always add, with or without room: the points of a few splits.
 constexpr std::size_t MinBatchPoints = 128;
@@ -45,6 +46,10 @@ constexpr std::uint64_t OverheadOfPlane = 112;
 constexpr std::uint64_t OverheadOfCluster = 256;
 
 constexpr std::size_t BytesPerSlice = std::size_t{64} << 20;
+
+std::ptrdiff_t index_of(std::size_t i) {
+    return static_cast<std::ptrdiff_t>(i);
+}
 
 std::uint64_t bytes_of(const LeafColumn& column, double scale) {
     const std::size_t bytes = column.counts.size() +
@@ -87,27 +92,42 @@ Quadtree quadtree_of(const std::vector<Cell>& leaves) {
 
 Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
                        const PrecomputeOptions& options, const PrecomputeContext& context)
-    : options_(options), context_(context), order_(spatial_order(receivers)),
-      progress_(options.stop, options.on_progress),
+    : options_(options), context_(context),
+      reduction_(options.reduction != nullptr ? *options.reduction : alone_),
+      order_(context.plan != nullptr ? context.plan->order : spatial_order(receivers)),
+      // One process must not leave the others waiting: look_up() asks all of them.
+      progress_(reduction_.has_others() ? std::stop_token() : options.stop, options.on_progress),
       max_level_(texel_level(options.face_resolution)),
       allowed_(allowed_squared_distance(options, receivers.size())), estimate_(max_level_) {
     ordered_normals_.reserve(order_.size());
-    origins_.reserve(order_.size());
-    for (const std::uint32_t receiver : order_) {
-        const glm::vec3& normal = receivers.normals[receiver];
-        ordered_normals_.push_back(normal);
-        origins_.push_back(ray_origin(receivers.positions[receiver], normal, options.bias));
+    for (const std::uint32_t receiver : order_)
+        ordered_normals_.push_back(receivers.normals[receiver]);
+    const std::vector<std::uint32_t> places = places_of(reduction_.part(), order_.size());
+    std::vector<glm::vec3> normals;
+    normals.reserve(places.size());
+    origins_.reserve(places.size());
+    for (const std::uint32_t place : places) {
+        normals.push_back(ordered_normals_[place]);
+        origins_.push_back(
+            ray_origin(receivers.positions[order_[place]], normals.back(), options.bias));
     }
-    normals_ = NormalArrays(ordered_normals_);
-    max_planes_ = static_cast<std::size_t>(options.plane_bytes /
-                                           (normals_.num_words() * sizeof(std::uint64_t)));
+    normals_ = NormalArrays(normals);
+    const std::size_t num_words = (order_.size() + WordSize - 1) / WordSize;
+    max_planes_ =
+        static_cast<std::size_t>(options.plane_bytes / (num_words * sizeof(std::uint64_t)));
     planes_.emplace(origins_, normals_, blockers);
+    if (context.plan != nullptr)
+        for (const Cell& cell : context.plan->quadtree.leaves())
+            given_keys_.push_back(depth_first_key(cell));
 }
 
 /// Pushes all cells of the first level to be tested, depth first, so that siblings follow each
 /// other.
 void Clustering::start() {
-    const std::uint32_t first_level = std::min(options_.min_level, max_level_);
+    std::uint32_t first_level = std::min(options_.min_level, max_level_);
+    if (context_.plan != nullptr)
+        for (const Cell& cell : context_.plan->quadtree.leaves())
+            first_level = std::min<std::uint32_t>(first_level, cell.level);
     const auto push = [&](const auto& self, const Cell& cell) -> void {
         if (cell.level == first_level)
             return pending_.push(cell);
@@ -121,7 +141,7 @@ void Clustering::start() {
 void Clustering::resume(const Checkpoint::Saved& saved) {
     std::vector<Cluster> clusters;
     for (const std::vector<std::byte>& record : saved.records)
-        read_clusters(record, order_.size(), clusters);
+        read_clusters(record, origins_.size(), clusters);
     read_work(saved.state, batch_, pending_, *planes_);
     // The cells must cover the sphere, each place once.
     std::vector<Cell> cells = pending_.cells();
@@ -179,6 +199,17 @@ void Clustering::take_batch() {
         });
 }
 
+/// Returns the patches that make SamplesPerThreadAndStep on this process's receivers.
+std::uint64_t Clustering::patches_per_step() const {
+    if (context_.samples_per_step)
+        return *context_.samples_per_step / (order_.size() * DirectionPatch::Size);
+    const std::size_t num_receivers =
+        std::max<std::size_t>(order_.size() / reduction_.part().count, 1);
+    return SamplesPerThreadAndStep *
+           static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()) /
+           (num_receivers * DirectionPatch::Size);
+}
+
 /// Sets the part of the progress that tracing the batch takes: time, not cells.
 void Clustering::start_progress() {
     WorkEstimate::Counts cells{};
@@ -195,34 +226,58 @@ void Clustering::start_progress() {
 void Clustering::trace_batch() {
     start_progress();
     TraceSteps steps;
-    if (options_.checkpoint != nullptr) {
-        steps.samples_per_step =
-            SamplesPerThreadAndStep *
-            static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency());
+    if (options_.checkpoint != nullptr || reduction_.has_others()) {
+        steps.patches_per_step = patches_per_step_;
         steps.between = [this] {
-            if (options_.checkpoint->is_due())
-                save_checkpoint();
+            look_up();
         };
     }
-    if (context_.samples_per_step)
-        steps.samples_per_step = *context_.samples_per_step;
     // A patch is at most four cells wide: the new points of four splits of siblings reach as far.
     const double patch_width = 4 * 2.0 * batch_.front().size();
     planes_->trace(
         needed_points(batch_), patch_width, [this](double part) { progress_.report(part); }, steps);
 }
 
-Clustering::Decision Clustering::decide(const Cell& cell) const {
+/// Whether the cell is one of the given clusters.
+bool Clustering::is_given(const Cell& cell) const {
+    const auto found =
+        std::lower_bound(given_keys_.begin(), given_keys_.end(), depth_first_key(cell));
+    return found != given_keys_.end() &&
+           context_.plan->quadtree
+                   .leaves()[static_cast<std::size_t>(found - given_keys_.begin())] == cell;
+}
+
+/// Returns for each cell whether it is a cluster; the others are to be split.
+std::vector<std::uint8_t> Clustering::find_clusters(std::span<const Cell> cells) {
+    std::vector<std::uint8_t> is_cluster(cells.size());
+    if (context_.plan != nullptr) {
+        std::transform(cells.begin(), cells.end(), is_cluster.begin(),
+                       [this](const Cell& cell) { return is_given(cell) ? 1 : 0; });
+        return is_cluster;
+    }
+    std::vector<std::int64_t> sums(cells.size() * SamplesPerCell);
+    tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+        progress_.poll();
+        if (is_single_texel(cells[i]))
+            return; // nothing to compare
+        const auto of_cell = squared_distances(normals_, planes_->samples_of(cells[i], false));
+        std::copy(of_cell.begin(), of_cell.end(), sums.begin() + index_of(i * SamplesPerCell));
+    });
+    reduction_.sum(sums);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const auto of_cell = std::span(sums).subspan(i * SamplesPerCell, SamplesPerCell);
+        is_cluster[i] = is_single_texel(cells[i]) ||
+                        std::all_of(of_cell.begin(), of_cell.end(), [this](std::int64_t sum) {
+                            return static_cast<double>(sum) * SquaredDistanceUnit < allowed_;
+                        });
+    }
+    return is_cluster;
+}
+
+LeafColumn Clustering::column(const Cell& cell) const {
     const bool is_texel = is_single_texel(cell);
-    const CellSamples samples = planes_->samples_of(cell, is_texel);
-    if (is_texel)
-        return {cell, leaf_column(normals_, samples, CentreWeights, origins_.size())};
-    const std::array<double, SamplesPerCell> distances = squared_distances(normals_, samples);
-    const bool similar =
-        std::all_of(distances.begin(), distances.end(), [&](double d) { return d < allowed_; });
-    if (!similar)
-        return {cell, std::nullopt};
-    return {cell, leaf_column(normals_, samples, SampleWeights, origins_.size())};
+    return leaf_column(normals_, planes_->samples_of(cell, is_texel),
+                       is_texel ? CentreWeights : SampleWeights, origins_.size());
 }
 
 /// Keeps the clusters, goes on with the children of the other cells, and forgets the planes that
@@ -230,43 +285,62 @@ Clustering::Decision Clustering::decide(const Cell& cell) const {
 /// column takes at most a byte per receiver), and checkpoints can be saved between slices.
 void Clustering::decide_batch() {
     const std::size_t max_slice = std::max<std::size_t>(64, BytesPerSlice / order_.size());
-    const std::size_t num_words = (order_.size() / BlockSize + 63) / 64;
+    const std::size_t num_words = (origins_.size() / BlockSize + 63) / 64;
     LeafColumn empty;
     empty.visible.resize(num_words);
     empty.mixed.resize(num_words);
     const std::uint64_t min_bytes = bytes_of(empty, context_.column_scale);
     while (!batch_.empty()) {
-        std::vector<Decision> slice(std::min(max_slice, batch_.size()));
+        const std::span<const Cell> slice =
+            std::span<const Cell>(batch_).first(std::min(max_slice, batch_.size()));
+        const std::vector<std::uint8_t> is_cluster = find_clusters(slice);
+        std::vector<LeafColumn> columns(slice.size());
         tbb::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
             progress_.poll();
-            slice[i] = decide(batch_[i]);
+            if (is_cluster[i] != 0)
+                columns[i] = column(slice[i]);
         });
         std::uint64_t num_bytes = column_bytes_;
-        std::size_t num_clusters = clusters_.size();
-        std::size_t num_split = 0;
-        for (const Decision& decision : slice) {
-            num_bytes += decision.column ? bytes_of(*decision.column, context_.column_scale) : 0;
-            num_clusters += decision.column ? 1 : 0;
-            num_split += decision.column ? 0 : 1;
+        std::size_t num_found = 0;
+        for (std::size_t i = 0; i < slice.size(); ++i) {
+            num_bytes += is_cluster[i] != 0 ? bytes_of(columns[i], context_.column_scale) : 0;
+            num_found += is_cluster[i];
         }
         // Every waiting cell becomes one cluster at least.
-        num_clusters += batch_.size() - slice.size() + pending_.size() + 4 * num_split;
-        num_bytes += (num_clusters - clusters_.size() - (slice.size() - num_split)) * min_bytes;
-        if (num_bytes > options_.max_column_bytes)
-            throw TooManyClusters(num_clusters, num_bytes);
-        for (Decision& decision : slice) {
-            if (decision.column) {
-                add_cluster({decision.cell, std::move(*decision.column)});
+        const std::size_t num_waiting =
+            batch_.size() - slice.size() + pending_.size() + 4 * (slice.size() - num_found);
+        num_bytes += num_waiting * min_bytes;
+        num_bytes = largest_of_all(num_bytes > options_.max_column_bytes ? num_bytes : 0);
+        if (num_bytes != 0)
+            throw TooManyClusters(clusters_.size() + num_found + num_waiting, num_bytes);
+        for (std::size_t i = 0; i < slice.size(); ++i) {
+            if (is_cluster[i] != 0) {
+                add_cluster({slice[i], std::move(columns[i])});
                 continue;
             }
-            for (std::uint32_t i = 0; i < 4; ++i)
-                pending_.push(decision.cell.child(i));
+            for (std::uint32_t child = 0; child < 4; ++child)
+                pending_.push(slice[i].child(child));
         }
-        batch_.erase(batch_.begin(), batch_.begin() + static_cast<std::ptrdiff_t>(slice.size()));
-        if (!batch_.empty() && options_.checkpoint != nullptr && options_.checkpoint->is_due())
-            save_checkpoint();
+        batch_.erase(batch_.begin(), batch_.begin() + index_of(slice.size()));
+        if (!batch_.empty())
+            look_up();
     }
     planes_->keep_only(needed_points(pending_.cells()));
+}
+
+/// Returns the largest value of all processes.
+std::uint64_t Clustering::largest_of_all(std::uint64_t value) {
+    std::array<std::int64_t, 1> values = {static_cast<std::int64_t>(value)};
+    reduction_.max(values);
+    return static_cast<std::uint64_t>(values[0]);
+}
+
+/// Between two steps of the work: whether any process is to stop, and whether a checkpoint is due.
+void Clustering::look_up() {
+    if (largest_of_all(options_.stop.stop_requested() ? 1 : 0) != 0)
+        throw Cancelled();
+    if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
+        save_checkpoint();
 }
 
 void Clustering::save_checkpoint() {
@@ -275,7 +349,7 @@ void Clustering::save_checkpoint() {
         std::span(std::as_const(clusters_)).subspan(num_saved_);
     const std::vector<std::byte> record =
         unsaved.empty() ? std::vector<std::byte>() : clusters_record(unsaved);
-    if (options_.checkpoint->save(Part, record, work_state(batch_, pending_, *planes_)))
+    if (options_.checkpoint->save(CheckpointPart, record, work_state(batch_, pending_, *planes_)))
         num_saved_ = clusters_.size();
     seconds_saving_ +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -294,8 +368,7 @@ void Clustering::work() {
         estimate_.add(
             level, num_cells, num_cells - (clusters_.size() - num_clusters),
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-        if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
-            save_checkpoint();
+        look_up();
     }
 }
 
@@ -303,12 +376,13 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
     Checkpoint* const checkpoint = options_.checkpoint;
     Checkpoint::Saved saved;
     if (checkpoint != nullptr)
-        saved = checkpoint->load(Part, true);
+        saved = checkpoint->load(CheckpointPart, true);
     if (saved.state.empty())
         start();
     else
         resume(saved);
     saved = {};
+    patches_per_step_ = largest_of_all(patches_per_step());
     try {
         work();
     } catch (const TooManyClusters&) {
@@ -323,8 +397,11 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
     if (checkpoint != nullptr && context_.more_follows && num_saved_ != clusters_.size() &&
         checkpoint->is_worthwhile())
         save_checkpoint();
+    std::array<std::int64_t, 1> num_rays = {static_cast<std::int64_t>(planes_->num_rays())};
+    reduction_.sum(num_rays);
     statistics.num_directions = planes_->num_directions();
-    statistics.num_rays = planes_->num_rays();
+    statistics.num_rays = static_cast<std::uint64_t>(num_rays[0]);
+    statistics.num_own_rays = planes_->num_rays();
     statistics.column_bytes = column_bytes_;
     statistics.deepest_level = deepest_;
     statistics.seconds_checkpoints = seconds_saving_;
@@ -344,7 +421,7 @@ Transfer Clustering::result() {
         columns.push_back(std::move(cluster.column));
     }
     clusters_.clear();
-    const std::size_t num_receivers = order_.size();
+    const std::size_t num_receivers = origins_.size();
     return {.quadtree = quadtree_of(leaves),
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -29,6 +30,10 @@ namespace relumine::prt {
 /// PrecomputeOptions::plane_bytes. Otherwise a batch is the part of a level that fits, and fine
 /// cells come first while little room is left. A cell's fate depends on its nine samples alone, so
 /// batches do not change the result.
+///
+/// Processes that share the work have a part of the receivers each. Batches, steps and decisions
+/// follow from figures of all receivers, so they are the same in each process and for any number of
+/// processes: which rays are traced together, too.
 class Clustering {
 public:
     /// The arguments must outlive this object; precompute() has checked them.
@@ -39,12 +44,6 @@ public:
     [[nodiscard]] Transfer run(PrecomputeStatistics& statistics);
 
 private:
-    /// A cell that became a cluster, or a cell to be split, which has no column.
-    struct Decision {
-        Cell cell;
-        std::optional<LeafColumn> column;
-    };
-
     void start();
     void resume(const Checkpoint::Saved& saved);
     void work();
@@ -52,18 +51,29 @@ private:
     void start_progress();
     void trace_batch();
     void decide_batch();
+    [[nodiscard]] std::uint64_t largest_of_all(std::uint64_t value);
+    void look_up();
     void save_checkpoint();
     void add_cluster(Cluster&& cluster);
 
     [[nodiscard]] std::vector<LatticePoint> needed_points(const std::vector<Cell>& cells) const;
-    [[nodiscard]] Decision decide(const Cell& cell) const;
+    [[nodiscard]] std::vector<std::uint8_t> find_clusters(std::span<const Cell> cells);
+    [[nodiscard]] bool is_given(const Cell& cell) const;
+    [[nodiscard]] LeafColumn column(const Cell& cell) const;
+    [[nodiscard]] std::uint64_t patches_per_step() const;
     [[nodiscard]] bool is_single_texel(const Cell& cell) const { return cell.level == max_level_; }
     [[nodiscard]] Transfer result();
 
     const PrecomputeOptions& options_;
     const PrecomputeContext context_;
+    NoReduction alone_;
+    Reduction& reduction_;
+    /// Of all receivers, as are the normals
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;
+    /// depth_first_key() of the given clusters, ascending
+    std::vector<std::uint64_t> given_keys_;
+    /// Of this process's receivers, as are the normals in arrays
     std::vector<glm::vec3> origins_;
     NormalArrays normals_;
     Progress progress_;
@@ -72,6 +82,7 @@ private:
     /// The limit on ||T_C - T_l||^2 for a cluster, T times pi.
     double allowed_;
     std::size_t max_planes_;
+    std::uint64_t patches_per_step_ = 1;
 
     std::optional<VisibilityPlanes> planes_;
     /// The cells in work.

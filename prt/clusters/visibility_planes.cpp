@@ -86,10 +86,8 @@ void VisibilityPlanes::trace(std::span<const LatticePoint> points, double patch_
                              const std::function<void(double)>& on_progress,
                              const TraceSteps& steps) {
     std::vector<TracedPatch> patches = new_patches(points, patch_width);
-    const std::uint64_t samples_per_patch =
-        std::max<std::size_t>(origins_.size(), 1) * DirectionPatch::Size;
-    const auto patches_per_step = static_cast<std::size_t>(std::clamp<std::uint64_t>(
-        steps.samples_per_step / samples_per_patch, 1, patches.size() + 1));
+    const auto patches_per_step = static_cast<std::size_t>(
+        std::clamp<std::uint64_t>(steps.patches_per_step, 1, patches.size() + 1));
     const std::size_t num_rows = (normals_.num_words() + WordsPerTask - 1) / WordsPerTask;
     const auto num_tasks = [&](std::size_t num_patches) {
         return num_rows * ((num_patches + PatchesPerTask - 1) / PatchesPerTask);

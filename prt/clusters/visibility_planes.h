@@ -24,8 +24,8 @@ namespace relumine::prt {
 
 /// Splits long work into steps. All known results are complete between two steps.
 struct TraceSteps {
-    /// (receiver, direction) pairs per step; a step has at least one patch.
-    std::uint64_t samples_per_step = std::numeric_limits<std::uint64_t>::max();
+    /// Patches of up to 64 directions per step, at least one
+    std::uint64_t patches_per_step = std::numeric_limits<std::uint64_t>::max();
     /// Called by the calling thread between steps; may throw to cancel.
     std::function<void()> between = {};
 };

@@ -3,6 +3,7 @@
 #include "prt/glossy/glossy_precompute.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <chrono>
@@ -31,7 +32,7 @@ namespace relumine::prt {
 namespace {
 
 /// Name of this part in a checkpoint.
-constexpr const char* Part = "highlights";
+constexpr const char* GlossyPart = "highlights";
 
 /// Work between two looks at the checkpoint: about a second. A block takes some milliseconds.
 constexpr std::size_t BlocksPerThreadAndStep = 256;
@@ -135,7 +136,8 @@ class GlossyPrecompute {
 public:
     GlossyPrecompute(const Receivers& receivers, const Blockers& blockers, const Transfer& transfer,
                      const GlossyOptions& options)
-        : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options) {}
+        : receivers_(receivers), blockers_(blockers), transfer_(transfer), options_(options),
+          reduction_(options.reduction != nullptr ? *options.reduction : alone_) {}
 
     /// `blocks_per_step`: work between two looks at the checkpoint.
     GlossyTransfer run(std::size_t blocks_per_step, GlossyStatistics& statistics);
@@ -149,12 +151,15 @@ private:
     void keep(EntriesOfBlock&& block);
     void take_up();
     void save_checkpoint();
+    bool something_is_left();
     void work(std::size_t blocks_per_step);
 
     const Receivers& receivers_;
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
+    NoReduction alone_;
+    Reduction& reduction_;
     /// Finished blocks, from the first on.
     std::vector<EntriesOfBlock> blocks_;
     /// Entries of the finished blocks.
@@ -223,7 +228,8 @@ void GlossyPrecompute::keep(EntriesOfBlock&& block) {
 /// Takes up the blocks of an earlier run. A record has the number of its blocks' rays, then the
 /// blocks.
 void GlossyPrecompute::take_up() {
-    for (const std::vector<std::byte>& record : options_.checkpoint->load(Part, false).records)
+    for (const std::vector<std::byte>& record :
+         options_.checkpoint->load(GlossyPart, false).records)
         files::unpack(record, [this](std::span<const std::byte> part) {
             files::ByteReader reader(part);
             num_rays_ += reader.next<std::uint64_t>();
@@ -249,23 +255,39 @@ void GlossyPrecompute::save_checkpoint() {
                 add(writer, of_lobe);
         return writer.take();
     });
-    if (!options_.checkpoint->save(Part, record, {}))
+    if (!options_.checkpoint->save(GlossyPart, record, {}))
         return;
     num_saved_ = blocks_.size();
     rays_saved_ = num_rays_;
+}
+
+/// Whether a process has blocks left. Throws where a process must stop or has too many entries.
+bool GlossyPrecompute::something_is_left() {
+    const bool is_too_much = num_entries_ * BytesPerEntry > options_.max_bytes;
+    std::array<std::int64_t, 3> largest = {
+        static_cast<std::int64_t>(transfer_.counts.num_blocks() - blocks_.size()),
+        static_cast<std::int64_t>(is_too_much ? num_entries_ : 0),
+        options_.stop.stop_requested() ? 1 : 0};
+    reduction_.max(largest);
+    if (largest[1] != 0)
+        throw TooManyEntries(static_cast<std::uint64_t>(largest[1]));
+    if (largest[0] != 0 && largest[2] != 0)
+        throw Cancelled();
+    return largest[0] != 0;
 }
 
 void GlossyPrecompute::work(std::size_t blocks_per_step) {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
     std::mutex mutex;
     std::size_t num_done = blocks_.size();
-    while (blocks_.size() < num_blocks) {
+    while (something_is_left()) {
         const std::size_t begin = blocks_.size();
         std::vector<EntriesOfBlock> step(std::min(blocks_per_step, num_blocks - begin));
         const std::uint64_t rays_before = num_rays_;
         try {
             tbb::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
-                if (options_.stop.stop_requested())
+                // One process must not leave the others waiting.
+                if (!reduction_.has_others() && options_.stop.stop_requested())
                     throw Cancelled();
                 step[i] = refine(begin + i);
                 const std::scoped_lock lock(mutex);
@@ -280,8 +302,6 @@ void GlossyPrecompute::work(std::size_t blocks_per_step) {
         }
         for (EntriesOfBlock& block : step)
             keep(std::move(block));
-        if (num_entries_ * BytesPerEntry > options_.max_bytes)
-            throw TooManyEntries(num_entries_);
         if (options_.checkpoint != nullptr && options_.checkpoint->is_due())
             save_checkpoint();
     }
@@ -298,8 +318,8 @@ GlossyTransfer GlossyPrecompute::run(std::size_t blocks_per_step, GlossyStatisti
             save_checkpoint();
         throw;
     } catch (const Cancelled&) {
-        if (options_.checkpoint != nullptr && num_saved_ != blocks_.size() &&
-            options_.checkpoint->is_worthwhile())
+        if (options_.checkpoint != nullptr && options_.checkpoint->is_worthwhile() &&
+            (reduction_.has_others() || num_saved_ != blocks_.size()))
             save_checkpoint();
         throw;
     }
@@ -318,7 +338,11 @@ GlossyTransfer GlossyPrecompute::run(std::size_t blocks_per_step, GlossyStatisti
     }
     entries = {};
     return_free_memory();
-    statistics.num_rays = num_rays_;
+    std::array<std::int64_t, 2> sums = {static_cast<std::int64_t>(num_rays_.load()),
+                                        static_cast<std::int64_t>(statistics.num_entries)};
+    reduction_.sum(sums);
+    statistics.num_rays = static_cast<std::uint64_t>(sums[0]);
+    statistics.num_entries = static_cast<std::uint64_t>(sums[1]);
     return glossy;
 }
 

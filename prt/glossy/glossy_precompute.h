@@ -12,6 +12,7 @@
 #include "prt/checkpoint.h"
 #include "prt/glossy/glossy_transfer.h"
 #include "prt/receivers/receivers.h"
+#include "prt/reduction.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
 
@@ -32,6 +33,10 @@ struct GlossyOptions {
     float bias = 0.0f;
     /// The limit on all blocks' entries, BytesPerEntry each. Beyond it TooManyEntries is thrown.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+    /// Where processes share the work, each gives its own receivers and their transfer: blocks
+    /// depend on nothing else. What stops one stops all, and checkpoints are saved together. May be
+    /// null.
+    Reduction* reduction = nullptr;
     /// Stores finished blocks now and then, and gives back the blocks of an earlier run. May be
     /// null.
     Checkpoint* checkpoint = nullptr;
@@ -43,6 +48,7 @@ struct GlossyOptions {
 /// A cell's index, its scale and 16 values.
 inline constexpr std::uint64_t BytesPerEntry = 24;
 
+/// Of all processes that share the work.
 struct GlossyStatistics {
     /// (block, cell) pairs of all lobes.
     std::uint64_t num_entries = 0;

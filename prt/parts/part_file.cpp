@@ -10,6 +10,8 @@
 #include <fmt/format.h>
 
 #include "files/json.h"
+#include "prt/parts/part_list.h"
+#include "prt/scene/glossy_sections.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
@@ -27,7 +29,8 @@ std::vector<std::byte> text_section(const files::Json& json) {
 struct StoredPart {
     SectionReader reader;
     Part part = {};
-    std::string plan = {};
+    /// The hash of the plan
+    std::string whole = {};
     std::uint32_t num_receivers = 0;
 };
 
@@ -39,7 +42,7 @@ StoredPart read_part(const std::filesystem::path& path) {
     const files::Json json = stored.reader.json("part");
     try {
         stored.part = {.index = natural(json.at("index")), .count = natural(json.at("count"))};
-        stored.plan = json.at("plan").string();
+        stored.whole = json.at("plan").string();
         stored.num_receivers = natural(json.at("receivers"));
         if (stored.part.index >= stored.part.count || stored.part.count > MaxParts)
             throw std::out_of_range("expected an index below the count");
@@ -49,9 +52,12 @@ StoredPart read_part(const std::filesystem::path& path) {
     return stored;
 }
 
-VisibleCounts counts_of(const StoredPart& stored, std::size_t num_leaves) {
+PartLight light_of(const StoredPart& stored, std::size_t num_leaves) {
     const SectionReader& reader = stored.reader;
-    VisibleCounts counts{.num_receivers = stored.num_receivers, .num_leaves = num_leaves};
+    PartLight light;
+    VisibleCounts& counts = light.counts;
+    counts.num_receivers = stored.num_receivers;
+    counts.num_leaves = num_leaves;
     counts.visible = reader.elements<std::uint64_t>("visible");
     counts.mixed = reader.elements<std::uint64_t>("mixed");
     counts.counts = reader.elements<std::uint8_t>("counts");
@@ -60,7 +66,9 @@ VisibleCounts counts_of(const StoredPart& stored, std::size_t num_leaves) {
     } catch (const std::invalid_argument&) {
         reader.fail("counts", "counts that fit the receivers and the tree");
     }
-    return counts;
+    if (has_glossy(reader))
+        light.glossy = read_glossy(reader, counts.num_blocks());
+    return light;
 }
 
 } // namespace
@@ -68,7 +76,7 @@ VisibleCounts counts_of(const StoredPart& stored, std::size_t num_leaves) {
 std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene) {
     if (scene.transfer.glossy || scene.bounces)
         throw std::invalid_argument(
-            fmt::format("{}: expected a scene without highlights and bounces", path.string()));
+            fmt::format("{}: expected a scene without light", path.string()));
     Sections sections = sections_without_light(path, scene);
     sections["plan"] = text_section({{"clusters", scene.transfer.num_clusters()}});
     return write_sections(path, sections);
@@ -84,63 +92,33 @@ Plan load_plan(const std::filesystem::path& path) {
 }
 
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
-                        const VisibleCounts& counts) {
+                        const PartLight& light) {
     Sections sections;
     if (part.index == 0)
         sections = sections_without_light(path, plan.scene);
     sections["part"] = text_section({{"index", part.index},
                                      {"count", part.count},
                                      {"plan", fmt::format("{:016x}", plan.hash)},
-                                     {"receivers", counts.num_receivers}});
+                                     {"receivers", light.counts.num_receivers}});
     // A scene's reader says what it is.
     sections["plan"] = text_section(files::Json::object());
-    add_counts(sections, counts);
+    add_counts(sections, light.counts);
+    if (light.glossy)
+        add_glossy_sections(sections, *light.glossy);
     return write_sections(path, sections);
 }
 
 Scene join_parts(std::span<const std::filesystem::path> paths) {
-    std::vector<std::optional<StoredPart>> parts;
-    std::string plan;
-    const auto refuse = [](const std::filesystem::path& path, const std::string& expected,
-                           const std::string& got) {
-        throw std::runtime_error(
-            fmt::format("{}: expected {}, got {}", path.string(), expected, got));
-    };
-    for (const std::filesystem::path& path : paths) {
-        StoredPart stored = read_part(path);
-        const Part& part = stored.part;
-        if (parts.empty()) {
-            parts.resize(part.count);
-            plan = stored.plan;
-        }
-        if (stored.plan != plan)
-            refuse(path, fmt::format("a part of the same plan as {}", paths[0].string()),
-                   "another plan's");
-        if (part.count != parts.size())
-            refuse(path, fmt::format("one of {} parts as {}", parts.size(), paths[0].string()),
-                   fmt::format("one of {}", part.count));
-        if (const auto& other = parts[part.index])
-            refuse(path, "every part once",
-                   fmt::format("part {} of {} again, after {}", part.index + 1, part.count,
-                               other->reader.path().string()));
-        parts[part.index] = std::move(stored);
-    }
-    for (std::size_t i = 0; i < parts.size(); ++i)
-        if (!parts[i])
-            throw std::runtime_error(fmt::format("expected all {0} parts, got none that is part "
-                                                 "{1} of {0}",
-                                                 parts.size(), i + 1));
-    if (parts.empty())
-        throw std::runtime_error("expected parts, got none");
+    auto parts = all_parts_of("plan", paths, read_part);
     const std::filesystem::path first = parts.front()->reader.path();
     Scene scene = plan_of(first, read_sections(first));
-    std::vector<VisibleCounts> counts;
+    std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
-        counts.push_back(counts_of(*part, scene.transfer.num_clusters()));
+        light.push_back(light_of(*part, scene.transfer.num_clusters()));
         part.reset();
     }
     try {
-        scene.transfer.counts = joined_counts(scene.transfer, counts);
+        join_light(scene.transfer, light);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", first.string(), error.what()));
     }

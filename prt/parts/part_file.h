@@ -20,8 +20,7 @@ struct Plan {
 
 /// Writes a plan, whole or not at all. Returns the file's size in bytes.
 ///
-/// Throws:  as save_scene() does; std::invalid_argument for a scene with highlights or bounces,
-///          which have no parts.
+/// Throws:  as save_scene() does; std::invalid_argument for a scene that has light already.
 std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a plan and checks it as load_scene() checks a scene.
@@ -29,16 +28,16 @@ std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene);
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Plan load_plan(const std::filesystem::path& path);
 
-/// Writes the counts of a part, whole or not at all. The first part carries the plan as well, so
+/// Writes the light of a part, whole or not at all. The first part carries the plan as well, so
 /// that the parts are all that join_parts() needs. Returns the file's size in bytes.
 ///
 /// Throws:  std::runtime_error that names the path.
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
-                        const VisibleCounts& counts);
+                        const PartLight& light);
 
 /// Reads all parts of a plan, in any order, and returns the scene.
 ///
-/// Memory:  twice the counts of the scene.
+/// Memory:  twice the light of the scene.
 /// Throws:  std::runtime_error that names the file that is damaged, no part, of another plan or of
 ///          another number of parts, given twice or missing.
 [[nodiscard]] Scene join_parts(std::span<const std::filesystem::path> paths);

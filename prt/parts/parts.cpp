@@ -1,23 +1,15 @@
 #include "prt/parts/parts.h"
 
 #include <algorithm>
-#include <chrono>
-#include <numeric>
 #include <stdexcept>
-#include <unordered_set>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
-#include "prt/clusters/cluster_kernels.h"
-#include "prt/clusters/lattice.h"
-#include "prt/clusters/visibility_planes.h"
-#include "prt/progress.h"
+#include "prt/clusters/dealt_tiles.h"
+#include "prt/precompute_context.h"
 #include "prt/receivers/receiver_order.h"
 #include "prt/tolerance.h"
-#include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
 
@@ -25,6 +17,10 @@ namespace {
 
 constexpr std::size_t MostBlocksForOne = 16;
 constexpr std::size_t LeastSampledBlocks = 1024;
+
+/// Room for planes in all parts together: with less, many directions on borders between batches are
+/// traced again. The limit must not depend on the number of parts.
+constexpr std::uint64_t LeastPlanes = 2048;
 
 /// Takes every n-th block of neighbours.
 Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> order) {
@@ -42,171 +38,14 @@ Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> o
     return sample;
 }
 
-/// Returns the tiles of a part, ascending.
-std::vector<std::size_t> tiles_of(const Part& part, std::size_t num_tiles) {
-    std::vector<std::size_t> tiles;
-    for (std::size_t tile = part.index; tile < num_tiles; tile += part.count)
-        tiles.push_back(tile);
-    return tiles;
-}
-
-/// Counts for given clusters, batch by batch as Clustering does. A batch holds clusters of one
-/// level. Its size follows from the number of all receivers: which directions are traced together
-/// must not depend on the part.
-class PartCounts {
-public:
-    PartCounts(const Receivers& receivers, const Transfer& plan, const Blockers& blockers,
-               const PrecomputeOptions& options, std::span<const std::size_t> tiles)
-        : options_(options), leaves_(plan.quadtree.leaves()),
-          texel_level_(texel_level(options.face_resolution)),
-          progress_(options.stop, options.on_progress) {
-        const VisibleCounts whole{.num_receivers = plan.num_receivers()};
-        for (const std::size_t tile : tiles) {
-            const std::size_t end =
-                std::min(whole.tile_begin(tile + 1) * BlockSize, plan.num_receivers());
-            for (std::size_t p = whole.tile_begin(tile) * BlockSize; p < end; ++p) {
-                normals_of_places_.push_back(plan.normals[p]);
-                origins_.push_back(
-                    ray_origin(receivers.positions[plan.order[p]], plan.normals[p], options.bias));
-            }
-        }
-        normals_ = NormalArrays(normals_of_places_);
-        const std::size_t words_of_all = (plan.num_receivers() + WordSize - 1) / WordSize;
-        max_planes_ = std::max<std::size_t>(256, options.plane_bytes /
-                                                     (words_of_all * sizeof(std::uint64_t)));
-        planes_.emplace(origins_, normals_, blockers);
-    }
-
-    VisibleCounts run(PrecomputeStatistics& statistics) {
-        std::vector<std::uint32_t> by_level(leaves_.size());
-        std::iota(by_level.begin(), by_level.end(), 0u);
-        std::stable_sort(by_level.begin(), by_level.end(), [&](std::uint32_t a, std::uint32_t b) {
-            return leaves_[a].level < leaves_[b].level;
-        });
-        columns_.resize(leaves_.size());
-        for (std::size_t begin = 0; begin < by_level.size();) {
-            const std::size_t end = end_of_batch(by_level, begin);
-            work_on(std::span(by_level).subspan(begin, end - begin),
-                    static_cast<double>(begin) / static_cast<double>(by_level.size()),
-                    static_cast<double>(end) / static_cast<double>(by_level.size()));
-            begin = end;
-        }
-        statistics.num_directions = planes_->num_directions();
-        statistics.num_rays = planes_->num_rays();
-        statistics.column_bytes = column_bytes_;
-        planes_.reset();
-        return counts_from_columns(std::move(columns_), origins_.size());
-    }
-
-private:
-    [[nodiscard]] bool is_texel(const Cell& cell) const { return cell.level == texel_level_; }
-
-    [[nodiscard]] std::size_t end_of_batch(std::span<const std::uint32_t> leaves,
-                                           std::size_t begin) const {
-        std::unordered_set<LatticePoint> points;
-        std::size_t end = begin;
-        for (; end < leaves.size(); ++end) {
-            const Cell& cell = leaves_[leaves[end]];
-            if (cell.level != leaves_[leaves[begin]].level)
-                break;
-            for (const LatticePoint point : needed_points(cell, is_texel(cell)))
-                points.insert(point);
-            if (points.size() > max_planes_ && end > begin)
-                break;
-        }
-        return end;
-    }
-
-    void work_on(std::span<const std::uint32_t> leaves, double part_before, double part_after) {
-        std::vector<LatticePoint> points;
-        for (const std::uint32_t leaf : leaves) {
-            const std::vector<LatticePoint> of_cell =
-                needed_points(leaves_[leaf], is_texel(leaves_[leaf]));
-            points.insert(points.end(), of_cell.begin(), of_cell.end());
-        }
-        planes_->keep_only(points);
-        progress_.start_stage(part_before, part_after);
-        const double patch_width = 4 * 2.0 * leaves_[leaves.front()].size();
-        planes_->trace(points, patch_width, [this](double part) { progress_.report(part); });
-        tbb::parallel_for(std::size_t{0}, leaves.size(), [&](std::size_t i) {
-            progress_.poll();
-            columns_[leaves[i]] = column(leaves_[leaves[i]]);
-        });
-        for (const std::uint32_t leaf : leaves)
-            column_bytes_ += bytes_of(columns_[leaf]);
-        if (column_bytes_ > options_.max_column_bytes)
-            throw TooManyClusters(leaves_.size(), column_bytes_);
-    }
-
-    [[nodiscard]] LeafColumn column(const Cell& cell) const {
-        return leaf_column(normals_, planes_->samples_of(cell, is_texel(cell)),
-                           is_texel(cell) ? CentreWeights : SampleWeights, origins_.size());
-    }
-
-    static std::uint64_t bytes_of(const LeafColumn& column) {
-        return column.counts.size() +
-               sizeof(std::uint64_t) * (column.visible.size() + column.mixed.size());
-    }
-
-    const PrecomputeOptions& options_;
-    std::span<const Cell> leaves_;
-    std::uint32_t texel_level_;
-    Progress progress_;
-    std::vector<glm::vec3> normals_of_places_;
-    std::vector<glm::vec3> origins_;
-    NormalArrays normals_;
-    std::size_t max_planes_ = 0;
-    std::optional<VisibilityPlanes> planes_;
-    std::vector<LeafColumn> columns_;
-    std::uint64_t column_bytes_ = 0;
-};
-
-} // namespace
-
-Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
-                       const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
-    Transfer plan;
-    plan.order = spatial_order(receivers);
-    PrecomputeOptions of_sample = options;
-    // The same RMS for fewer receivers.
-    of_sample.epsilon = {};
-    of_sample.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
-    plan.quadtree =
-        precompute(sample_of(receivers, plan.order), blockers, of_sample, statistics).quadtree;
-    for (const std::uint32_t receiver : plan.order)
-        plan.normals.push_back(receivers.normals[receiver]);
-    return plan;
-}
-
-VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
-                          const Blockers& blockers, const PrecomputeOptions& options,
-                          const Part& part, PrecomputeStatistics* statistics) {
-    if (part.index >= part.count || part.count > MaxParts)
-        throw std::invalid_argument(fmt::format("expected a part among {} at most, got {} of {}",
-                                                MaxParts, std::uint64_t{part.index} + 1,
-                                                part.count));
-    const auto start = std::chrono::steady_clock::now();
-    const VisibleCounts whole{.num_receivers = plan.num_receivers()};
-    const std::vector<std::size_t> tiles = tiles_of(part, whole.num_tiles());
-    PrecomputeStatistics local;
-    VisibleCounts counts{.num_leaves = plan.num_clusters()};
-    if (!tiles.empty())
-        counts = PartCounts(receivers, plan, blockers, options, tiles).run(local);
-    local.num_clusters = plan.num_clusters();
-    local.num_samples = local.num_directions * counts.num_receivers;
-    local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (statistics != nullptr)
-        *statistics = local;
-    return counts;
-}
-
-VisibleCounts joined_counts(const Transfer& plan, std::span<const VisibleCounts> parts) {
+/// Puts the counts of all parts together, tile by tile.
+VisibleCounts joined_counts(const Transfer& plan, std::span<const PartLight> parts) {
     VisibleCounts whole{.num_receivers = plan.num_receivers(), .num_leaves = plan.num_clusters()};
     const std::size_t num_words = whole.num_blocks() * whole.words_per_block();
     whole.visible.reserve(num_words);
     whole.mixed.reserve(num_words);
     for (std::size_t tile = 0; tile < whole.num_tiles(); ++tile) {
-        const VisibleCounts& part = parts[tile % parts.size()];
+        const VisibleCounts& part = parts[tile % parts.size()].counts;
         const std::size_t own_tile = tile / parts.size();
         const std::size_t num_blocks = whole.tile_begin(tile + 1) - whole.tile_begin(tile);
         if (part.num_leaves != whole.num_leaves || own_tile >= part.num_tiles() ||
@@ -232,6 +71,97 @@ VisibleCounts joined_counts(const Transfer& plan, std::span<const VisibleCounts>
     }
     whole.index();
     return whole;
+}
+
+/// Puts the blocks of a lobe together, likewise.
+LobeCuts joined_cuts(const VisibleCounts& whole, std::span<const PartLight> parts,
+                     std::size_t lobe) {
+    LobeCuts cuts;
+    cuts.begin.push_back(0);
+    for (std::size_t tile = 0; tile < whole.num_tiles(); ++tile) {
+        const LobeCuts& part = parts[tile % parts.size()].glossy->lobes[lobe];
+        const std::size_t first = tile / parts.size() * VisibleCounts::TileBlocks;
+        const std::size_t num_blocks = whole.tile_begin(tile + 1) - whole.tile_begin(tile);
+        if (first + num_blocks >= part.begin.size())
+            throw std::invalid_argument("expected the highlights of all tiles");
+        const std::uint64_t begin = part.begin[first];
+        const std::uint64_t end = part.begin[first + num_blocks];
+        for (std::size_t block = first; block < first + num_blocks; ++block)
+            cuts.begin.push_back(cuts.begin.back() + part.begin[block + 1] - part.begin[block]);
+        const auto append = [&](auto& to, const auto& from, std::size_t width) {
+            to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin * width),
+                      from.begin() + static_cast<std::ptrdiff_t>(end * width));
+        };
+        append(cuts.cells, part.cells, 1);
+        append(cuts.scales, part.scales, 1);
+        append(cuts.values, part.values, BlockSize);
+    }
+    return cuts;
+}
+
+} // namespace
+
+Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
+                       const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
+    Transfer plan;
+    plan.order = spatial_order(receivers);
+    PrecomputeOptions of_sample = options;
+    // The same RMS for fewer receivers.
+    of_sample.epsilon = {};
+    of_sample.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
+    plan.quadtree =
+        precompute(sample_of(receivers, plan.order), blockers, of_sample, statistics).quadtree;
+    for (const std::uint32_t receiver : plan.order)
+        plan.normals.push_back(receivers.normals[receiver]);
+    return plan;
+}
+
+VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
+                          const Blockers& blockers, const PrecomputeOptions& options,
+                          const Part& part, PrecomputeStatistics* statistics) {
+    if (part.index >= part.count || part.count > MaxParts)
+        throw std::invalid_argument(fmt::format("expected a part among {} at most, got {} of {}",
+                                                MaxParts, std::uint64_t{part.index} + 1,
+                                                part.count));
+    NoReduction alone(part);
+    PrecomputeOptions of_part = options;
+    of_part.reduction = &alone;
+    const std::size_t plane_bytes = (receivers.size() + 63) / 64 * 8;
+    of_part.plane_bytes = std::max(of_part.plane_bytes, LeastPlanes * plane_bytes);
+    return precompute(receivers, blockers, of_part, {.plan = &plan}, statistics).counts;
+}
+
+GlossyTransfer part_highlights(const Receivers& receivers, const Transfer& shared,
+                               const Blockers& blockers, const GlossyOptions& options,
+                               const Part& part, GlossyStatistics* statistics) {
+    // The part's receivers by themselves, already in spatial order.
+    Receivers own;
+    Transfer transfer{
+        .quadtree = shared.quadtree, .order = {}, .normals = {}, .counts = shared.counts};
+    for (const std::uint32_t place : places_of(part, shared.num_receivers())) {
+        const std::uint32_t receiver = shared.order[place];
+        transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));
+        own.positions.push_back(receivers.positions[receiver]);
+        own.normals.push_back(receivers.normals[receiver]);
+        own.to_eye.push_back(receivers.to_eye[receiver]);
+        own.surfaces.push_back(receivers.surfaces[receiver]);
+    }
+    transfer.normals = own.normals;
+    return precompute_glossy(own, blockers, transfer, options, statistics);
+}
+
+void join_light(Transfer& plan, std::span<const PartLight> parts) {
+    if (parts.empty())
+        throw std::invalid_argument("expected parts, got none");
+    for (const PartLight& part : parts)
+        if (part.glossy.has_value() != parts.front().glossy.has_value())
+            throw std::invalid_argument("expected highlights in all parts or in none");
+    plan.counts = joined_counts(plan, parts);
+    if (!parts.front().glossy)
+        return;
+    plan.glossy.emplace();
+    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
+        plan.glossy->lobes[lobe] = joined_cuts(plan.counts, parts, lobe);
 }
 
 } // namespace relumine::prt

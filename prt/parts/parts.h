@@ -3,30 +3,20 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
+#include <optional>
 #include <span>
-#include <stop_token>
+#include <vector>
 
 #include "prt/clusters/visible_counts.h"
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/glossy/glossy_transfer.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
+#include "prt/reduction.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
-
-/// The most parts of a precompute.
-inline constexpr std::uint32_t MaxParts = 1 << 16;
-
-/// One of several parts. Parts take the tiles of VisibleCounts in turn: neighbouring tiles cost
-/// about the same, so the parts do, too.
-struct Part {
-    /// 0 .. count - 1
-    std::uint32_t index = 0;
-    std::uint32_t count = 1;
-
-    bool operator==(const Part&) const = default;
-};
 
 /// Chooses the clusters as precompute() does, from every n-th block of 16 neighbours: n is 16 for
 /// many receivers, less where fewer than 1,024 blocks would remain. Returns a transfer with
@@ -43,23 +33,37 @@ struct Part {
 /// Counts a part's receivers for the clusters of a plan. The receivers of the result are those of
 /// the part's tiles, in their order; it is empty for a part without tiles.
 ///
-/// Options: bias, plane_bytes, max_column_bytes, stop and on_progress. Joined counts are the same
-///          bit by bit for any number of parts if bias and plane_bytes are.
-/// Memory:  twice the part's result, and its share of plane_bytes.
-/// Threads: parallel over receivers (TBB), the same result for any number of threads.
+/// Options: those that the plan was made with. Joined counts are the same bit by bit for any number
+///          of parts.
+/// Memory:  twice the part's result, and its share of plane_bytes or of 2,048 planes of visibility,
+///          whichever is more.
 /// Throws:  std::invalid_argument for an index that is not below the count, or more than
-///          MaxParts; Cancelled;
-///          TooManyClusters.
+///          MaxParts; as precompute() does.
 [[nodiscard]] VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
                                         const Blockers& blockers, const PrecomputeOptions& options,
                                         const Part& part,
                                         PrecomputeStatistics* statistics = nullptr);
 
-/// Puts the counts of all parts together.
+/// Computes the highlights of a part's receivers, as precompute_glossy() does for all. `shared` has
+/// the counts of the part; its order and normals are those of all receivers.
+///
+/// Throws:  as precompute_glossy() does.
+[[nodiscard]] GlossyTransfer part_highlights(const Receivers& receivers, const Transfer& shared,
+                                             const Blockers& blockers, const GlossyOptions& options,
+                                             const Part& part,
+                                             GlossyStatistics* statistics = nullptr);
+
+/// What a part computes.
+struct PartLight {
+    VisibleCounts counts;
+    /// Only where there are highlights
+    std::optional<GlossyTransfer> glossy = {};
+};
+
+/// Gives a plan the light of all parts; set_surfaces() then completes it.
 ///
 /// parts:   in the order of their indices.
-/// Throws:  std::invalid_argument for counts that do not fit the plan.
-[[nodiscard]] VisibleCounts joined_counts(const Transfer& plan,
-                                          std::span<const VisibleCounts> parts);
+/// Throws:  std::invalid_argument for parts that do not fit the plan.
+void join_light(Transfer& plan, std::span<const PartLight> parts);
 
 } // namespace relumine::prt

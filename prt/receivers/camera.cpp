@@ -50,17 +50,16 @@ PictureRays::PictureRays(const Camera& camera, std::uint32_t width, std::uint32_
             fmt::format("expected 1 to {} samples a side of a pixel, got {}", MaxSamplesPerAxis,
                         samples_per_axis));
     axes_ = axes_of(camera, static_cast<float>(width) / static_cast<float>(height));
+    for (std::uint32_t row = 0; row < samples_per_axis; ++row)
+        for (std::uint32_t column = 0; column < samples_per_axis; ++column)
+            places_.push_back((glm::vec2(column, row) + 0.5f) /
+                              static_cast<float>(samples_per_axis));
 }
 
 glm::vec3 PictureRays::direction(std::uint32_t x, std::uint32_t y, std::uint32_t i) const {
-    const std::uint32_t n = samples_per_axis_;
-    const std::uint32_t column = i % n;
-    const std::uint32_t row = i / n;
     // Picture coordinates in pixels from the top left corner.
-    const float px =
-        static_cast<float>(x) + (static_cast<float>(column) + 0.5f) / static_cast<float>(n);
-    const float py =
-        static_cast<float>(y) + (static_cast<float>(row) + 0.5f) / static_cast<float>(n);
+    const float px = static_cast<float>(x) + places_[i].x;
+    const float py = static_cast<float>(y) + places_[i].y;
     const float across = 2.0f * px / static_cast<float>(width_) - 1.0f;
     const float upwards = 1.0f - 2.0f * py / static_cast<float>(height_);
     return glm::normalize(axes_.forward + across * axes_.right + upwards * axes_.up);

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
+#include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace relumine::prt {
@@ -51,6 +53,8 @@ public:
 private:
     CameraAxes axes_;
     std::uint32_t width_, height_, samples_per_axis_;
+    /// [samples per pixel] places in the pixel, from its top left corner.
+    std::vector<glm::vec2> places_;
 };
 
 } // namespace relumine::prt

@@ -117,10 +117,14 @@ std::vector<std::uint32_t> spatial_order(const Receivers& receivers) {
     const auto receives = [&](const Place& place) {
         return receivers.normals[place.receiver] != glm::vec3(0.0f);
     };
-    const auto num_receiving = static_cast<std::size_t>(
-        std::stable_partition(places.begin(), places.end(), receives) - places.begin());
-    sort_into_groups(std::span(places).first(num_receiving));
-    sort_into_groups(std::span(places).subspan(num_receiving));
+    const auto end_of_receiving = std::stable_partition(places.begin(), places.end(), receives);
+    const auto end_of_own =
+        std::partition_point(places.begin(), end_of_receiving, [&](const Place& place) {
+            return place.receiver < receivers.num_own();
+        });
+    sort_into_groups({places.begin(), end_of_own});
+    sort_into_groups({end_of_own, end_of_receiving});
+    sort_into_groups({end_of_receiving, places.end()});
 
     std::vector<std::uint32_t> order(places.size());
     std::transform(places.begin(), places.end(), order.begin(),

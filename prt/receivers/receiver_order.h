@@ -12,8 +12,8 @@ namespace relumine::prt {
 ///
 /// Shape:   [num_receivers] receiver index by place.
 /// Order:   blocks are the runs of 16 from place 0 on, whose counts are kept together; groups are
-///          the runs of 128, which are traced together. Within a block, by index. Receivers with a
-///          zero normal come last.
+///          the runs of 128, which are traced together. Within a block, by index. Added vertices
+///          come after the others, and receivers with a zero normal last.
 /// Cost:    O(n log n): 0.1 s for 100,000 receivers. Parallel (TBB), deterministic.
 ///
 /// The receivers are halved again and again. There are six axes: position, and normal times 1/32 of

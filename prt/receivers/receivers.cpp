@@ -63,6 +63,42 @@ Receivers vertex_receivers(const mesh::TriangleMesh& mesh) {
     return receivers;
 }
 
+void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh) {
+    const Receivers vertices = vertex_receivers(mesh);
+    std::vector<bool> is_added(mesh.num_vertices());
+    for (std::uint32_t triangle = 0; triangle < mesh.num_triangles(); ++triangle)
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const std::uint32_t vertex = mesh.triangles[triangle][corner];
+            if (is_added[vertex])
+                continue;
+            is_added[vertex] = true;
+            receivers.positions.push_back(vertices.positions[vertex]);
+            receivers.normals.push_back(vertices.normals[vertex]);
+            receivers.points.push_back(
+                {.triangle = triangle,
+                 .barycentric = {corner == 1 ? 1.0f : 0.0f, corner == 2 ? 1.0f : 0.0f}});
+            // Nobody looks at them, but a direction has a length.
+            if (!receivers.to_eye.empty())
+                receivers.to_eye.emplace_back(0.0f, 1.0f, 0.0f);
+            ++receivers.num_added;
+        }
+}
+
+std::uint32_t vertex_at(const mesh::TriangleMesh& mesh, const MeshPoint& point) {
+    const mesh::Triangle& corners = mesh.triangles[point.triangle];
+    return corners[point.barycentric.x > 0.5f ? 1 : point.barycentric.y > 0.5f ? 2 : 0];
+}
+
+std::vector<glm::vec3> vertex_values(const mesh::TriangleMesh& mesh, const Receivers& receivers,
+                                     std::span<const glm::vec3> values) {
+    if (receivers.points.empty())
+        return {values.begin(), values.end()};
+    std::vector<glm::vec3> result(mesh.num_vertices(), glm::vec3(0.0f));
+    for (std::size_t i = receivers.num_own(); i < receivers.size(); ++i)
+        result[vertex_at(mesh, receivers.points[i])] = values[i];
+    return result;
+}
+
 std::vector<glm::vec3> colors_at(const mesh::TriangleMesh& mesh, const Receivers& receivers) {
     if (mesh.colors.empty())
         throw std::invalid_argument("expected a mesh with vertex colours, got one without");

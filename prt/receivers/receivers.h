@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -25,14 +26,32 @@ struct Receivers {
     std::vector<Surface> surfaces = {};
     /// [num_receivers] points on the mesh; empty: receivers are its vertices.
     std::vector<MeshPoint> points = {};
+    /// So many at the end are vertices of the mesh, which pixels or texels get bounced light from.
+    std::size_t num_added = 0;
 
     [[nodiscard]] std::size_t size() const { return positions.size(); }
+    /// Those that were asked for come first: all but the added vertices.
+    [[nodiscard]] std::size_t num_own() const { return size() - num_added; }
 };
 
 /// Returns one receiver per vertex, in the mesh's order: geometry relighting, any view [JN, Section
 /// 3.1]. Vertices on the rim of a surface look from a little inside of it, by automatic_bias(): a
 /// wall that meets the floor at a hard edge must not look out under it.
 [[nodiscard]] Receivers vertex_receivers(const mesh::TriangleMesh& mesh);
+
+/// Adds the mesh's vertices that belong to triangles to receivers that are pixels or texels, so
+/// that these have something to get bounced light from. The vertices are Lambert, whatever the
+/// surface. Surfaces must be empty.
+void add_vertices(Receivers& receivers, const mesh::TriangleMesh& mesh);
+
+/// Returns the vertex that an added receiver is.
+[[nodiscard]] std::uint32_t vertex_at(const mesh::TriangleMesh& mesh, const MeshPoint& point);
+
+/// Returns values of vertices from values of receivers, [num_vertices]: of the vertices themselves
+/// or of the added ones. Vertices without a receiver get 0.
+[[nodiscard]] std::vector<glm::vec3> vertex_values(const mesh::TriangleMesh& mesh,
+                                                   const Receivers& receivers,
+                                                   std::span<const glm::vec3> values);
 
 /// Gives every receiver its direction to an eye. A receiver at the eye itself gets +Y.
 void look_from(Receivers& receivers, const glm::vec3& eye);

@@ -9,6 +9,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "cubemap/cube_map.h"
 #include "prt/progress.h"
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/blockers.h"
@@ -16,15 +17,17 @@
 namespace relumine::prt {
 
 /// The texels of a cube map of 6 x 16 x 16, each with its solid angle. A patch of 8 x 8 texels is
-/// traced as a beam.
+/// traced as a beam. Where an environment is given, its brightest texels become patches of their
+/// own: 64 directions each, where their light is.
 class CoarseDirections {
 public:
     static constexpr std::uint32_t Resolution = 16;
-    static constexpr std::size_t NumPatches = 24;
+    static constexpr std::size_t NumEvenPatches = 24, MostBrightPatches = 8;
     /// Bits of one point: a word for each patch, a bit for each direction whose light reaches it.
-    using Bits = std::array<std::uint64_t, NumPatches>;
+    using Bits = std::array<std::uint64_t, NumEvenPatches + MostBrightPatches>;
 
-    CoarseDirections();
+    /// `light` is the environment that matters most, or null.
+    explicit CoarseDirections(const cubemap::CubeMap* light = nullptr);
 
     /// Finds the directions whose light reaches each receiver: those above its horizon that are not
     /// blocked. Rays start as in precompute().
@@ -40,17 +43,28 @@ public:
         const Bits* lit = nullptr;
     };
 
-    /// Returns the RMS over all directions of the sphere of T - sum of weight_i T_i, where T is
-    /// V max(n.w, 0) / pi, in 1/sr.
-    [[nodiscard]] float difference(const Point& point, std::span<const Point> others,
-                                   float weight) const;
+    /// Whether what some directions lose may make up for what others gain.
+    enum class Signs { Kept, Dropped };
+
+    /// Returns how much D = T - weight (T_1 + T_2 + ...) matters, where T is V max(n.w, 0) / pi, in
+    /// 1/sr: the root of
+    ///
+    ///     mean of D^2                       the error under a small light, wherever it is,
+    ///     + 20 (mean of D)^2                under even light from all sides,
+    ///     + 4 (mean of D, by light)^2       under the environment, if there is one,
+    ///
+    /// over all directions of the sphere. Without signs the means are those of |D|.
+    [[nodiscard]] float difference(const Point& point, std::span<const Point> others, float weight,
+                                   Signs signs = Signs::Kept) const;
 
     [[nodiscard]] std::span<const DirectionPatch> patches() const { return patches_; }
 
 private:
+    void add_light(const cubemap::CubeMap& light, std::span<const std::size_t> texels);
+
     std::vector<DirectionPatch> patches_;
-    /// By patch, then direction: the share of the sphere.
-    std::vector<float> shares_;
+    /// By patch, then direction: the share of the sphere, and of the environment's light.
+    std::vector<float> shares_, lights_;
 };
 
 } // namespace relumine::prt

@@ -47,6 +47,7 @@ public:
         : base_(mesh), blockers_(blockers), options_(options), report_(report), split_(mesh),
           progress_(options.stop, options.on_progress), step_(automatic_bias(mesh)),
           bias_(options.bias.value_or(step_)),
+          directions_(options.light ? &*options.light : nullptr),
           large_(LargeTriangle * mesh::bounds(mesh).diagonal()),
           min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(mesh).diagonal())) {}
 
@@ -58,7 +59,7 @@ public:
         if (options_.error) {
             trace_vertices();
             for (;;) {
-                ask_edges();
+                bound_new_edges();
                 ask_large_triangles();
                 if (!split_by_error())
                     break;
@@ -150,40 +151,78 @@ private:
                split_.length(edge) > 0.0f;
     }
 
-    /// Finds the errors of the edges that are new.
-    void ask_edges() {
-        std::uint32_t next = static_cast<std::uint32_t>(errors_.size());
+    /// The pairs of vertices of some edges.
+    struct Pair {
+        std::uint32_t edge;
+        SplitMesh::Ends ends;
+    };
+
+    /// Bounds the errors of the edges that are new: where light changes once along an edge, its
+    /// middle is half of the change away from the mean. Long edges are asked at once, since light
+    /// may change there and back.
+    void bound_new_edges() {
+        const auto first = static_cast<std::uint32_t>(errors_.size());
         errors_.resize(split_.num_edges(), 0.0f);
-        struct Middle {
-            std::uint32_t edge;
-            SplitMesh::Ends ends;
-        };
-        while (next < split_.num_edges()) {
-            std::vector<Middle> middles;
-            std::vector<SplitMesh::Ends> ends;
+        is_asked_.resize(split_.num_edges(), true);
+        std::vector<Pair> pairs;
+        std::vector<std::uint32_t> long_edges;
+        for (std::uint32_t edge = first; edge < split_.num_edges(); ++edge) {
+            if (!may_split(edge))
+                continue;
+            if (split_.length(edge) > large_) {
+                long_edges.push_back(edge);
+                continue;
+            }
+            is_asked_[edge] = false;
+            append_pairs(edge, pairs);
+        }
+        std::vector<float> bounds(pairs.size());
+        tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+            const CoarseDirections::Point high = vertex(pairs[i].ends.high);
+            bounds[i] = directions_.difference(vertex(pairs[i].ends.low), {&high, 1}, 1.0f,
+                                               CoarseDirections::Signs::Dropped) /
+                        2.0f;
+        });
+        set_errors(pairs, bounds);
+        ask(long_edges);
+    }
+
+    void append_pairs(std::uint32_t edge, std::vector<Pair>& pairs) {
+        ends_.clear();
+        split_.append_ends(edge, ends_);
+        for (const SplitMesh::Ends& ends : ends_)
+            pairs.push_back({edge, ends});
+    }
+
+    void set_errors(std::span<const Pair> pairs, std::span<const float> errors) {
+        for (std::size_t i = 0; i < pairs.size(); ++i)
+            errors_[pairs[i].edge] = std::max(errors_[pairs[i].edge], errors[i]);
+    }
+
+    /// Finds the errors of edges at their middles.
+    void ask(std::span<const std::uint32_t> edges) {
+        for (std::size_t next = 0; next < edges.size();) {
+            std::vector<Pair> pairs;
             Receivers receivers;
-            for (; next < split_.num_edges() && middles.size() < PointsPerStep; ++next) {
-                if (!may_split(next))
-                    continue;
-                ends.clear();
-                split_.append_ends(next, ends);
-                for (const SplitMesh::Ends& pair : ends) {
-                    middles.push_back({next, pair});
-                    add_mean({pair.low, pair.high}, receivers);
-                    if (pair.is_rim)
-                        move_inside(pair.triangle, receivers.positions.back());
-                }
+            for (; next < edges.size() && pairs.size() < PointsPerStep; ++next) {
+                append_pairs(edges[next], pairs);
+                errors_[edges[next]] = 0.0f;
+                is_asked_[edges[next]] = true;
+            }
+            for (const Pair& pair : pairs) {
+                add_mean({pair.ends.low, pair.ends.high}, receivers);
+                if (pair.ends.is_rim)
+                    move_inside(pair.ends.triangle, receivers.positions.back());
             }
             const std::vector<Bits> bits = trace(receivers);
-            std::vector<float> errors(middles.size());
-            tbb::parallel_for(std::size_t{0}, middles.size(), [&](std::size_t i) {
-                const std::array<CoarseDirections::Point, 2> both = {vertex(middles[i].ends.low),
-                                                                     vertex(middles[i].ends.high)};
+            std::vector<float> errors(pairs.size());
+            tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+                const std::array<CoarseDirections::Point, 2> both = {vertex(pairs[i].ends.low),
+                                                                     vertex(pairs[i].ends.high)};
                 errors[i] =
                     directions_.difference({receivers.normals[i], &bits[i]}, both, 1.0f / 2.0f);
             });
-            for (std::size_t i = 0; i < middles.size(); ++i)
-                errors_[middles[i].edge] = std::max(errors_[middles[i].edge], errors[i]);
+            set_errors(pairs, errors);
         }
     }
 
@@ -220,40 +259,68 @@ private:
         }
     }
 
+    struct Candidate {
+        double weight;
+        std::uint32_t edge;
+        bool operator<(const Candidate& other) const {
+            return weight != other.weight ? weight > other.weight : edge < other.edge;
+        }
+    };
+
+    /// Returns the edges beyond the error, those that matter most first: at least the first `most`
+    /// are sorted, and not only bounds of them are known.
+    std::vector<Candidate> candidates(std::size_t most) {
+        for (;;) {
+            std::vector<Candidate> result;
+            for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+                if (errors_[edge] > *options_.error && may_split(edge))
+                    result.push_back(
+                        {double{errors_[edge]} * double{errors_[edge]} * split_.area_beside(edge),
+                         edge});
+            if (result.size() > most) {
+                std::nth_element(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(most),
+                                 result.end());
+                result.resize(most);
+            }
+            std::sort(result.begin(), result.end());
+            std::vector<std::uint32_t> unknown;
+            for (const Candidate& candidate : result)
+                if (!is_asked_[candidate.edge])
+                    unknown.push_back(candidate.edge);
+            if (unknown.empty())
+                return result;
+            ask(unknown);
+        }
+    }
+
     /// Splits the edges beyond the error, or those of them that matter most.
     bool split_by_error() {
-        struct Candidate {
-            double weight;
-            std::uint32_t edge;
-        };
-        std::vector<Candidate> candidates;
-        report_.largest_error = 0.0f;
-        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-            if (errors_[edge] > *options_.error && may_split(edge)) {
-                candidates.push_back(
-                    {double{errors_[edge]} * double{errors_[edge]} * split_.area_beside(edge),
-                     edge});
-                report_.largest_error = std::max(report_.largest_error, errors_[edge]);
-            }
-        std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-            return a.weight != b.weight ? a.weight > b.weight : a.edge < b.edge;
-        });
         // Without a limit that is near, all of them.
         const std::size_t most = room();
-        const std::size_t wanted = 2 * candidates.size() < most / RoundsToLimit
-                                       ? most
-                                       : std::max(most / RoundsToLimit, FewestOfRound);
+        const std::size_t of_round = std::max(most / RoundsToLimit, FewestOfRound);
+        const std::vector<Candidate> found = candidates(2 * of_round);
+        const std::size_t wanted = found.size() < of_round ? most : of_round;
         report_.is_at_limit = false;
-        for (const Candidate& candidate : candidates) {
+        for (const Candidate& candidate : found) {
             if (split_.num_marked() >= wanted)
                 break;
             if (!split_.mark(candidate.edge, most))
                 report_.is_at_limit = true;
         }
-        if (split_.num_marked() == 0)
+        if (split_.num_marked() == 0) {
+            report_.largest_error = largest_error();
             return false;
+        }
         split_.split();
         return true;
+    }
+
+    [[nodiscard]] float largest_error() const {
+        float result = 0.0f;
+        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+            if (is_asked_[edge] && errors_[edge] > *options_.error && may_split(edge))
+                result = std::max(result, errors_[edge]);
+        return result;
     }
 
     /// The mesh with the new vertices on the smooth surface.
@@ -282,13 +349,16 @@ private:
     Progress progress_;
     float step_;
     float bias_;
+    CoarseDirections directions_;
     float large_;
     float min_edge_;
-    CoarseDirections directions_;
     /// [num_vertices].
     std::vector<Bits> vertex_bits_;
-    /// [num_edges].
+    /// [num_edges]. Of edges that were not asked, a bound.
     std::vector<float> errors_;
+    std::vector<bool> is_asked_;
+    /// Scratch of append_pairs().
+    std::vector<SplitMesh::Ends> ends_;
 };
 
 void check(const mesh::TriangleMesh& mesh, const RefineOptions& options) {
@@ -308,6 +378,8 @@ void check(const mesh::TriangleMesh& mesh, const RefineOptions& options) {
     require(options.max_vertices >= mesh.num_vertices(),
             fmt::format("expected a limit of at least the mesh's {} vertices, got {}",
                         mesh.num_vertices(), options.max_vertices));
+    require(!options.light || options.light->resolution != 0,
+            "expected a light with texels, got none");
     require(std::any_of(mesh.triangles.begin(), mesh.triangles.end(),
                         [&](const mesh::Triangle& triangle) {
                             const glm::dvec3 origin(mesh.positions[triangle[0]]);

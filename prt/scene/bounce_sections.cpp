@@ -1,6 +1,5 @@
 #include "prt/scene/bounce_sections.h"
 
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -102,19 +101,18 @@ void add_bounce_sections(Sections& sections, const BounceMatrix& matrix) {
     add_lists(sections, AveragedSizes, Averaged, matrix.averaged);
 }
 
+bool has_bounces(const SectionReader& reader) {
+    return reader.has(Weights);
+}
+
 std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_t num_receivers) {
-    if (!reader.has(Weights))
+    if (!has_bounces(reader))
         return std::nullopt;
     BounceMatrix matrix;
     matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
     matrix.weights = reader.elements<float>(Weights, num_receivers);
     matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers);
     matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers);
-    try {
-        require_bounces(matrix, num_receivers);
-    } catch (const std::invalid_argument&) {
-        reader.fail(Weights, "weights of bounces that keep at most all of the light");
-    }
     return matrix;
 }
 

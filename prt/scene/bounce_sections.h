@@ -12,7 +12,9 @@ namespace relumine::prt {
 
 void add_bounce_sections(Sections& sections, const BounceMatrix& matrix);
 
-/// Reads the bounces and checks all of them: rows, columns, weights. Empty where the file has none.
+[[nodiscard]] bool has_bounces(const SectionReader& reader);
+
+/// Reads the bounces; check_scene() looks at what they say. Empty where the file has none.
 ///
 /// Throws:  as SectionReader.
 [[nodiscard]] std::optional<BounceMatrix> read_bounces(const SectionReader& reader,

@@ -92,7 +92,8 @@ void CheckpointFile::check_fingerprint() {
     }
     if (json.size() != fingerprint_.size())
         throw std::runtime_error(
-            fmt::format("{}: expected a checkpoint of this run, got one with highlights; "
+            fmt::format("{}: expected a checkpoint of this run, got one with highlights or "
+                        "bounces; "
                         "without --resume the work begins anew",
                         folder_.string()));
 }

@@ -42,7 +42,7 @@ std::vector<float> numbers_of(const std::vector<Surface>& surfaces) {
 } // namespace
 
 Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& receivers,
-                        const PrecomputeOptions& options, std::optional<float> glossy_tolerance) {
+                        const PrecomputeOptions& options, const LaterWork& later) {
     Fingerprint result = {
         {"version", fmt::format("{}", FingerprintVersion)},
         {"mesh", Hash().add(blockers.positions).add(blockers.triangles).text()},
@@ -55,8 +55,12 @@ Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& rec
         {"min depth", fmt::format("{}", options.min_level)},
         {"face resolution", fmt::format("{}", options.face_resolution)},
         {"bias", fmt::format("{}", options.bias)}};
-    if (glossy_tolerance) {
-        result.emplace_back("glossy tolerance", fmt::format("{}", *glossy_tolerance));
+    if (later.bounce_tolerance) {
+        result.emplace_back("bounces", fmt::format("{}", *later.bounce_tolerance));
+        result.emplace_back("two-sided", later.two_sided_bounces ? "yes" : "no");
+    }
+    if (later.glossy_tolerance) {
+        result.emplace_back("glossy tolerance", fmt::format("{}", *later.glossy_tolerance));
         result.emplace_back(
             "surfaces or eye",
             Hash().add(numbers_of(receivers.surfaces)).add(receivers.to_eye).text());

@@ -16,9 +16,18 @@ namespace relumine::prt {
 /// memory limits are left out.
 using Fingerprint = std::vector<std::pair<std::string, std::string>>;
 
-/// Returns the fingerprint of a run. Give `glossy_tolerance` only where highlights follow.
+/// What follows the clusters.
+struct LaterWork {
+    /// Given only where highlights follow.
+    std::optional<float> glossy_tolerance = {};
+    /// Given only where bounces follow.
+    std::optional<float> bounce_tolerance = {};
+    bool two_sided_bounces = false;
+};
+
+/// Returns the fingerprint of a run.
 [[nodiscard]] Fingerprint fingerprint(const mesh::TriangleMesh& blockers,
                                       const Receivers& receivers, const PrecomputeOptions& options,
-                                      std::optional<float> glossy_tolerance);
+                                      const LaterWork& later = {});
 
 } // namespace relumine::prt

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "prt/scene/bounce_sections.h"
+
 namespace relumine::prt {
 
 namespace {
@@ -56,10 +58,10 @@ void check(const Layout& layout, const Receivers& receivers) {
     const bool ascending =
         std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end() &&
         (own.empty() || own.back() < num_places(layout));
-    if (num_places(layout) > MaxLayoutPlaces || own.size() != receivers.size() || !ascending)
+    if (num_places(layout) > MaxLayoutPlaces || own.size() != receivers.num_own() || !ascending)
         throw std::invalid_argument(
             fmt::format("expected one place in the layout for each of {} receivers, got {} in {}",
-                        receivers.size(), own.size(), num_places(layout)));
+                        receivers.num_own(), own.size(), num_places(layout)));
 }
 
 template<typename Layout>
@@ -226,9 +228,15 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
         receivers = vertex_receivers(mesh);
     } else {
         const auto* pixels = std::get_if<PixelLayout>(&layout);
-        const std::size_t count = pixels != nullptr ? pixels->samples.size()
-                                                    : std::get<TexelLayout>(layout).texels.size();
-        receivers.positions = reader.elements<glm::vec3>("r_positions", count);
+        const std::size_t num_own = pixels != nullptr ? pixels->samples.size()
+                                                      : std::get<TexelLayout>(layout).texels.size();
+        receivers.positions = reader.elements<glm::vec3>("r_positions");
+        const std::size_t count = receivers.size();
+        const std::size_t most_added = has_bounces(reader) ? mesh.num_vertices() : 0;
+        if (count < num_own || count - num_own > most_added)
+            reader.fail("r_positions",
+                        "the layout's receivers, and no more vertices than there are");
+        receivers.num_added = count - num_own;
         receivers.normals = reader.elements<glm::vec3>("r_normals", count);
         receivers.points = read_points(reader, count, mesh);
     }

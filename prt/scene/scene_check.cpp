@@ -185,6 +185,25 @@ void check_glossy(const Check& check, const GlossyTransfer& glossy) {
             [](float scale) { return scale >= 0.0f && scale * 255.0f * 255.0f <= MaxTransfer; });
 }
 
+void check_bounces(const Scene& scene, const std::filesystem::path& path) {
+    const Check check(path);
+    check.that(scene.bounces || scene.receivers.num_added == 0,
+               "bounces that come from the added vertices", "none");
+    if (!scene.bounces)
+        return;
+    try {
+        require_bounces(*scene.bounces, scene.transfer.num_receivers());
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path.string(), error.what()));
+    }
+    if (!std::holds_alternative<VertexLayout>(scene.layout))
+        for (const std::uint32_t place : scene.bounces->emitters.places)
+            if (scene.transfer.order[place] < scene.receivers.num_own())
+                check.fail("light that comes from vertices",
+                           fmt::format("some from {} {}", receiver_name(scene.layout),
+                                       scene.transfer.order[place]));
+}
+
 } // namespace
 
 void check_scene(const Scene& scene, const std::filesystem::path& path) {
@@ -202,10 +221,13 @@ void check_scene(const Scene& scene, const std::filesystem::path& path) {
     check_surfaces(check, scene.receivers.surfaces);
     check_tree(check, scene);
     const bool is_glossy = scene.transfer.glossy.has_value();
-    check.that(is_glossy == scene.settings.glossy_tolerance.has_value(),
+    // A plan knows how its highlights will be.
+    const bool is_plan = scene.transfer.counts.num_receivers == 0;
+    check.that(is_glossy == scene.settings.glossy_tolerance.has_value() || (is_plan && !is_glossy),
                is_glossy ? "a tolerance of the highlights" : "highlights", "none");
     if (is_glossy)
         check_glossy(check, *scene.transfer.glossy);
+    check_bounces(scene, path);
 }
 
 } // namespace relumine::prt

@@ -44,6 +44,8 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
         json.set("epsilon", *settings.epsilon);
     if (settings.glossy_tolerance)
         json.set("glossy_tolerance", *settings.glossy_tolerance);
+    if (settings.two_sided_bounces)
+        json.set("two_sided_bounces", true);
     if (settings.view) {
         const Camera& view = *settings.view;
         json.set("view", {view.eye.x, view.eye.y, view.eye.z, view.target.x, view.target.y,
@@ -73,8 +75,7 @@ public:
         scene.transfer = clusters(scene.receivers);
         if (!is_plan)
             read_light(scene.transfer, scene.receivers, scene.settings);
-        if (std::holds_alternative<VertexLayout>(scene.layout))
-            scene.bounces = read_bounces(reader_, scene.receivers.size());
+        scene.bounces = read_bounces(reader_, scene.receivers.size());
         check_scene(scene, reader_.path());
         return scene;
     }
@@ -126,6 +127,8 @@ private:
                 settings.epsilon = real(json.at("epsilon"));
             if (json.contains("glossy_tolerance"))
                 settings.glossy_tolerance = real(json.at("glossy_tolerance"));
+            if (json.contains("two_sided_bounces"))
+                settings.two_sided_bounces = json.at("two_sided_bounces").boolean();
             if (json.contains("view")) {
                 const files::Json& view = json.at("view");
                 const auto at = [&](std::size_t i) {
@@ -260,13 +263,8 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
     add_counts(sections, scene.transfer.counts);
     if (scene.transfer.glossy)
         add_glossy_sections(sections, *scene.transfer.glossy);
-    if (scene.bounces) {
-        if (!std::holds_alternative<VertexLayout>(scene.layout))
-            throw std::invalid_argument(
-                fmt::format("{}: expected bounces of vertices only", path.string()));
-        require_bounces(*scene.bounces, scene.transfer.num_receivers());
+    if (scene.bounces)
         add_bounce_sections(sections, *scene.bounces);
-    }
     return write_sections(path, sections);
 }
 

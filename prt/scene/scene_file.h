@@ -35,6 +35,8 @@ struct SceneSettings {
     std::uint64_t source_hash = 0;
     /// GlossyOptions::tolerance; set where there is a glossy part.
     std::optional<float> glossy_tolerance = {};
+    /// BounceOptions::two_sided.
+    bool two_sided_bounces = false;
     /// The eye that the highlights of vertices are for.
     std::optional<Camera> view = {};
 };
@@ -52,7 +54,8 @@ struct Scene {
     /// The triangles that block light, where they are not the mesh's own: the mesh before it was
     /// refined or simplified. Positions and triangles, nothing else.
     std::optional<mesh::TriangleMesh> blockers = {};
-    /// Light from surface to surface; only of vertices.
+    /// Light from surface to surface. It comes from vertices, so pixels and texels have the mesh's
+    /// vertices behind them: Receivers::num_added.
     std::optional<BounceMatrix> bounces = {};
 };
 

@@ -70,11 +70,14 @@ class Reader {
 public:
     explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(files::read(path)) {}
 
-    Sections sections(std::uint32_t* version) {
+    Sections sections(std::uint32_t* version, std::span<const std::string> left_out) {
         const Header header = checked_header();
         if (version != nullptr)
             *version = header.version;
-        const std::vector<SectionEntry> table = checked_table(header);
+        std::vector<SectionEntry> table = checked_table(header);
+        std::erase_if(table, [&](const SectionEntry& entry) {
+            return std::find(left_out.begin(), left_out.end(), name(entry)) != left_out.end();
+        });
         std::vector<std::vector<std::byte>> contents(table.size());
         tbb::parallel_for(std::size_t{0}, table.size(),
                           [&](std::size_t i) { contents[i] = content(table[i]); });
@@ -82,6 +85,37 @@ public:
         for (std::size_t i = 0; i < table.size(); ++i)
             result.emplace(name(table[i]), std::move(contents[i]));
         return result;
+    }
+
+    void stream(const std::string& wanted, std::uint64_t size,
+                const std::function<void(std::span<const std::byte>)>& on_piece) {
+        const std::vector<SectionEntry> table = checked_table(checked_header());
+        const auto entry = std::find_if(table.begin(), table.end(), [&](const SectionEntry& other) {
+            return name(other) == wanted;
+        });
+        if (entry == table.end() || entry->size != size)
+            fail(fmt::format("a section '{}' of {} bytes", wanted, size), "another");
+        const std::byte* stored = bytes_.data() + entry->offset;
+        if (XXH64(stored, entry->stored_size, 0) != entry->checksum)
+            fail("a matching checksum", fmt::format("a damaged section '{}'", wanted));
+        const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
+                                                                              ZSTD_freeDCtx);
+        if (!context)
+            throw std::bad_alloc();
+        ZSTD_inBuffer in{.src = stored, .size = entry->stored_size, .pos = 0};
+        std::vector<std::byte> piece(SectionPiece);
+        for (std::uint64_t done = 0; done < size;) {
+            const std::size_t piece_size = std::min<std::uint64_t>(SectionPiece, size - done);
+            ZSTD_outBuffer out{.dst = piece.data(), .size = piece_size, .pos = 0};
+            while (out.pos < piece_size) {
+                const std::size_t before = out.pos + in.pos;
+                const std::size_t state = ZSTD_decompressStream(context.get(), &out, &in);
+                if (ZSTD_isError(state) != 0 || out.pos + in.pos == before)
+                    fail("zstd data", fmt::format("a damaged section '{}'", wanted));
+            }
+            on_piece(std::span(piece).first(piece_size));
+            done += piece_size;
+        }
     }
 
 private:
@@ -249,8 +283,14 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
     return header.file_size;
 }
 
-Sections read_sections(const std::filesystem::path& path, std::uint32_t* version) {
-    return Reader(path).sections(version);
+Sections read_sections(const std::filesystem::path& path, std::uint32_t* version,
+                       std::span<const std::string> left_out) {
+    return Reader(path).sections(version, left_out);
+}
+
+void stream_section(const std::filesystem::path& path, const std::string& name, std::uint64_t size,
+                    const std::function<void(std::span<const std::byte>)>& on_piece) {
+    Reader(path).stream(name, size, on_piece);
 }
 
 } // namespace relumine::prt

@@ -70,6 +70,10 @@ Shaft shaft_of_rays(const ReceiverGroup& group, const PatchPlane& plane, const T
 /// Measured.
 constexpr std::size_t LeavesPerRay = 4;
 
+/// Wider patches are left to the exact tracer where they are crowded: their directions meet too
+/// many leaves. Measured.
+constexpr float WidestCrowdedPatch = 0.75f;
+
 /// Traces one direction after the other, all receivers at once. Where this does not pay, the exact
 /// tracer gets the remaining directions.
 void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const ReceiverGroup& group,
@@ -145,7 +149,10 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
     thread_local ShaftLeaves leaves;
     const Shaft shaft = shaft_of_rays(group, plane, tree, origins.reach, rays);
     if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
-        clear_by_direction(tree, exact, group, origins, patch, plane, rays);
+        if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
+            exact.clear_blocked(group, patch, rays);
+        else
+            clear_by_direction(tree, exact, group, origins, patch, plane, rays);
         return;
     }
     if (leaves.size == 0)

@@ -50,11 +50,16 @@ bool edge_passes_by(glm::dvec3 a, glm::dvec3 b, const glm::dvec3& w, double dist
 
 } // namespace
 
+bool meets(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w) {
+    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    return go_round(corners, w) && glm::dot(normal, corners[0]) * glm::dot(normal, w) >= 0.0;
+}
+
 bool passes_by(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w, double distance) {
+    if (meets(corners, w))
+        return false;
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     const double height = glm::dot(normal, corners[0]);
-    if (go_round(corners, w) && height * glm::dot(normal, w) >= 0.0)
-        return false; // the half-line hits the triangle
     // The start may be close to the middle of the triangle, far from its edges.
     if (height * height <= distance * distance * glm::dot(normal, normal) &&
         go_round(corners, normal))

@@ -83,11 +83,13 @@ void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
                                    RTCRayN_dir_z(hits->ray, hits->N, i));
         const mesh::Triangle& triangle = buffers.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
         std::array<glm::dvec3, 3> corners;
-        double squared_distance = 0.0;
-        for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t k = 0; k < 3; ++k)
             corners[k] = glm::dvec3(buffers.positions[triangle[k]]) - origin;
-            squared_distance = std::max(squared_distance, glm::dot(corners[k], corners[k]));
-        }
+        if (meets(corners, direction)) // as nearly all do
+            continue;
+        double squared_distance = 0.0;
+        for (const glm::dvec3& corner : corners)
+            squared_distance = std::max(squared_distance, glm::dot(corner, corner));
         if (passes_by(corners, glm::normalize(direction), Roundings * std::sqrt(squared_distance)))
             hits->valid[i] = 0;
     }
@@ -100,9 +102,13 @@ struct RayScene::Impl {
     Buffers buffers;
     DeviceHandle device;
     SceneHandle scene;
+    RTCIntersectContextFlags packets = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
 };
 
-RayScene::RayScene(const mesh::TriangleMesh& mesh) : impl_(std::make_unique<Impl>()) {
+RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
+    : impl_(std::make_unique<Impl>()) {
+    if (packets == Packets::Wide)
+        impl_->packets = RTC_INTERSECT_CONTEXT_FLAG_INCOHERENT;
     for (const mesh::Triangle& triangle : mesh.triangles)
         for (const std::uint32_t vertex : triangle)
             for (int axis = 0; axis < 3; ++axis)
@@ -176,7 +182,7 @@ std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket&
     fill_rays(origin, directions, active, valid, rays);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    context.flags = impl_->packets;
     rtcOccluded16(valid.data(), impl_->scene.get(), &context, &rays);
 
     // Embree marks a blocked ray by tfar = -infinity.

@@ -33,12 +33,16 @@ struct Hit {
 /// Threads: all queries may run from any number of threads at once.
 class RayScene final : public Blockers {
 public:
+    /// Whether the directions of most packets lie close together. Answers may depend on it for
+    /// rays right through an edge.
+    enum class Packets { Narrow, Wide };
+
     /// Builds the accelerator. The mesh need not outlive this object.
     ///
     /// Cost:    O(n log n), about 100 bytes per triangle.
     /// Throws:  std::runtime_error when Embree fails (out of memory, for example), or a triangle
     ///          lies beyond LargestCoordinate.
-    explicit RayScene(const mesh::TriangleMesh& mesh);
+    explicit RayScene(const mesh::TriangleMesh& mesh, Packets packets = Packets::Narrow);
     ~RayScene() override;
     RayScene(RayScene&&) noexcept;
     RayScene& operator=(RayScene&&) noexcept;

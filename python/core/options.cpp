@@ -210,8 +210,20 @@ MeshOptions mesh_options(const Options& given) {
         result.up = static_cast<mesh::UpAxis>(one_of(given, "up", {"x", "y", "z"}));
     if (one_of(given, "normals", {"file", "smooth"}) == 1)
         result.normals = mesh::NormalSource::Smooth;
+    given.take("crease", result.crease);
     given.take("floor", result.floor_vertices);
     given.take("floor_scale", result.floor_scale);
+    return result;
+}
+
+RefineOptions refine_options(const Options& given) {
+    RefineOptions result;
+    given.take("error", result.error);
+    given.take("max_edge", result.max_edge);
+    given.take("min_edge", result.min_edge);
+    given.take("max_vertices", result.max_vertices);
+    given.take("curved", result.curved);
+    given.take("bias", result.bias);
     return result;
 }
 

@@ -86,6 +86,7 @@ struct TurnedOptions {
 [[nodiscard]] cubemap::Layout layout_named(const char* option, const std::string& name);
 [[nodiscard]] std::string layout_name(cubemap::Layout layout);
 [[nodiscard]] MeshOptions mesh_options(const Options& given);
+[[nodiscard]] RefineOptions refine_options(const Options& given);
 [[nodiscard]] PrecomputeOptions precompute_options(const Options& given);
 /// `material`: what Python made of it.
 [[nodiscard]] std::vector<SurfaceMaterial> materials_of(const Options& given);

@@ -351,7 +351,7 @@ void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
 py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py::dict& given) {
     const OutputOptions options = output_options(Options(given), own.scene());
     const BounceReport report = change(own, [&](LitScene& lit) {
-        return lit.bounce(picture_albedo(lit.scene(), options), {.num_bounces = bounces});
+        return lit.bounce(bounce_albedo(lit.scene(), options), {.num_bounces = bounces});
     });
     return py::make_tuple(report.num_bounces, report.error, report.seconds);
 }

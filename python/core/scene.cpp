@@ -52,6 +52,32 @@ MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
     });
 }
 
+/// Returns the mesh and figures.
+py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
+    using Result = std::pair<MeshPointer, RefineReport>;
+    const Result result = in_background(
+        progress, [mesh, options = refine_options(Options(given))](const Reins& reins) mutable {
+            options.stop = reins.stop;
+            options.on_progress = reins.on_progress;
+            Result found;
+            found.first = std::make_shared<Mesh>(refined(*mesh, options, &found.second));
+            return found;
+        });
+    py::dict report;
+    report["rounds"] = result.second.num_rounds;
+    report["points"] = result.second.num_points;
+    report["largest_error"] = result.second.largest_error;
+    report["is_at_limit"] = result.second.is_at_limit;
+    report["seconds"] = result.second.seconds;
+    return py::make_tuple(result.first, std::move(report));
+}
+
+MeshPointer simplified_mesh(const MeshPointer& mesh, std::size_t num_vertices) {
+    return in_background(py::none(), [mesh, num_vertices](const Reins&) {
+        return MeshPointer(std::make_shared<Mesh>(simplified(*mesh, num_vertices)));
+    });
+}
+
 py::dict report_of(const PrecomputeReport& report) {
     py::dict result;
     result["clusters"] = report.clusters.num_clusters;
@@ -89,43 +115,82 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
     };
 }
 
-/// Returns the scene, figures and warnings.
-py::tuple precomputed(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
+/// The options of a precompute with the surfaces of a mesh.
+PrecomputeOptions work_options(const Mesh& mesh, const py::dict& given) {
     const Options options_given(given);
     PrecomputeOptions options = precompute_options(options_given);
-    const std::vector<SurfaceMaterial> materials = materials_of(options_given);
     std::vector<SurfaceMaterial> of_mesh;
-    for (const SurfaceMaterial& material : materials) {
+    for (const SurfaceMaterial& material : materials_of(options_given)) {
         if (material.group == "floor")
             options.floor_surface = material.applied_to({});
         else
             of_mesh.push_back(material);
     }
     if (!of_mesh.empty())
-        options.surface = surface_override(of_mesh, mesh->geometry);
+        options.surface = surface_override(of_mesh, mesh.geometry);
+    return options;
+}
 
-    struct Result {
-        std::shared_ptr<Scene> scene;
-        PrecomputeReport report;
-        std::vector<std::string> warnings;
-    };
-    const Result result = in_background(progress, [mesh, options](const Reins& reins) mutable {
-        Result found;
-        options.stop = reins.stop;
-        options.on_progress = joined(reins.on_progress, options);
-        options.on_warning = [&](Warning, const std::string& text) {
-            found.warnings.push_back(text);
-        };
-        try {
-            found.scene = std::make_shared<Scene>(precompute(*mesh, options, &found.report));
-        } catch (const TooMuchWork& error) {
-            throw std::invalid_argument(
-                (error.cause == TooMuchWork::Cause::MinLevel ? "min_depth: " : "tolerance: ") +
-                std::string(error.what()));
-        }
-        return found;
-    });
+struct Precomputed {
+    /// Null: only planned
+    std::shared_ptr<Scene> scene;
+    PrecomputeReport report;
+    std::vector<std::string> warnings;
+};
+
+/// Calls `work(options, found)` in the background. Names the option that asks for too much.
+template<typename Work>
+Precomputed worked(const py::object& progress, PrecomputeOptions options, Work work) {
+    return in_background(
+        progress, [options = std::move(options), work](const Reins& reins) mutable {
+            Precomputed found;
+            options.stop = reins.stop;
+            options.on_progress = joined(reins.on_progress, options);
+            options.on_warning = [&](Warning, const std::string& text) {
+                found.warnings.push_back(text);
+            };
+            try {
+                work(options, found);
+            } catch (const TooMuchWork& error) {
+                throw std::invalid_argument(
+                    (error.cause == TooMuchWork::Cause::MinLevel ? "min_depth: " : "tolerance: ") +
+                    std::string(error.what()));
+            }
+            return found;
+        });
+}
+
+/// Returns the scene, figures and warnings.
+py::tuple precomputed(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
+    const Precomputed result =
+        worked(progress, work_options(*mesh, given),
+               [mesh](const PrecomputeOptions& options, Precomputed& found) {
+                   found.scene = std::make_shared<Scene>(precompute(*mesh, options, &found.report));
+               });
     return py::make_tuple(result.scene, report_of(result.report), result.warnings);
+}
+
+/// Returns figures and warnings.
+py::tuple planned(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
+    const Precomputed result = worked(progress, work_options(*mesh, given),
+                                      [mesh](const PrecomputeOptions& options, Precomputed& found) {
+                                          plan(*mesh, options, &found.report);
+                                      });
+    return py::make_tuple(report_of(result.report), result.warnings);
+}
+
+void do_part(const Path& plan_path, std::uint32_t index, std::uint32_t count, const Path& output,
+             const py::dict& given, const py::object& progress) {
+    PartOptions options{.plan = plan_path,
+                        .part = {.index = index, .count = count},
+                        .output = output,
+                        .engine = precompute_options(Options(given)).engine};
+    in_background(progress, [options](const Reins& reins) mutable {
+        options.stop = reins.stop;
+        options.on_progress = reins.on_progress;
+        precompute_part(options);
+        return true;
+    });
 }
 
 std::shared_ptr<Scene> load_prt(const Path& path) {
@@ -209,7 +274,15 @@ void bind_scenes(py::module_& module) {
 
     module.def("make_mesh", &make_mesh);
     module.def("load_mesh", &loaded_mesh);
+    module.def("refined", &refined_mesh);
+    module.def("simplified", &simplified_mesh);
     module.def("precompute", &precomputed);
+    module.def("plan", &planned);
+    module.def("precompute_part", &do_part);
+    module.def("join", [](const std::vector<Path>& parts, const Path& output) {
+        return in_background(py::none(),
+                             [parts, output](const Reins&) { return join(parts, output); });
+    });
     module.def("load_scene", &load_prt);
     module.def("save_scene", [](const Path& path, const std::shared_ptr<Scene>& scene) {
         return in_background(py::none(),

@@ -45,14 +45,15 @@ from ._relighter import (
     Update,
     Verification,
 )
-from ._scene import Blinn, Ggx, Lambert, Scene, precompute
+from ._scene import Blinn, Ggx, Lambert, Scene, join, plan, precompute, precompute_part
 
 __version__: str = _core.__version__
 __all__ = [
     "FACES", "Blinn", "Bounces", "Disc", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
     "Image", "Lambert", "Lasso", "Layer", "LightList", "Mesh", "Picture", "Rectangle",
     "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Stroke", "Update",
-    "Verification", "load_layers", "precompute", "save_layers", "set_threads",
+    "Verification", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
+    "set_threads",
 ]  # fmt: skip
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import List, Optional
+from typing import Any, Callable, Dict, List, Optional
 
 from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Floats, Indices, floats, indices, view
+from ._core import Mesh as CoreMesh
 from ._files import Path, errors, in_python
 
 
@@ -32,7 +33,7 @@ class Mesh:
     uvs        (N, 2), for lightmaps
     up         "x", "y" or "z": the axis of the arrays that points up
     floor      n: adds a floor of n x n vertices under the mesh, after its own vertices
-    floor_scale  side of the floor over the mesh's width
+    floor_scale  side of the floor over the mesh's width, or half its height if that is more
 
     Arrays may have any numeric type, order and byte order; they are converted once. Raises
     ValueError for other shapes, numbers that are not finite, and indices out of range.
@@ -41,6 +42,10 @@ class Mesh:
     >>> mesh
     <relumine.Mesh: 3 vertices, 1 triangles>
     """
+
+    _core: CoreMesh
+    #: Figures of refined(); empty for any other mesh.
+    report: Dict[str, Any]
 
     def __init__(
         self,
@@ -54,6 +59,7 @@ class Mesh:
         floor: Optional[int] = None,
         floor_scale: float = 4.0,
     ) -> None:
+        self.report = {}
         points = floats("vertices", vertices, None, 3)
         count = len(points)
         corners = indices("triangles", triangles, count, None, 3)
@@ -73,6 +79,7 @@ class Mesh:
         *,
         up: Optional[str] = None,
         normals: str = "file",
+        crease: Optional[float] = None,
         floor: Optional[int] = None,
         floor_scale: float = 4.0,
     ) -> "Mesh":
@@ -80,22 +87,31 @@ class Mesh:
 
         up       the file's axis that points up; by default "z" for .stl, "y" for all others
         normals  "file": the file's where it has them; "smooth": always from the faces
+        crease   degrees: normals from the faces, smooth over edges up to this angle; vertices are
+                 doubled at sharper ones
 
         Raises OSError with the file's name.
 
         >>> relumine.Mesh.load("boulder.ply", floor=20)
         <relumine.Mesh: 7312 vertices, 14070 triangles, floor of 20 x 20>
         """
-        options = {"up": up, "normals": normals, "floor": floor, "floor_scale": floor_scale}
+        options = {
+            "up": up,
+            "normals": normals,
+            "crease": crease,
+            "floor": floor,
+            "floor_scale": floor_scale,
+        }
         with errors(path):
             core = _core.load_mesh(os.fspath(path), options)
         warn(core.warnings)
         return cls._of(core)
 
     @classmethod
-    def _of(cls, core: _core.Mesh) -> "Mesh":
+    def _of(cls, core: CoreMesh) -> "Mesh":
         mesh = cls.__new__(cls)
         mesh._core = core
+        mesh.report = {}
         return mesh
 
     @property
@@ -137,6 +153,65 @@ class Mesh:
     def floor(self) -> int:
         """n of a floor of n x n vertices, 0 without one."""
         return self._core.floor
+
+    def refined(
+        self,
+        *,
+        error: float = 0.01,
+        max_edge: Optional[float] = None,
+        min_edge: Optional[float] = None,
+        max_vertices: Optional[int] = None,
+        curved: bool = False,
+        bias: Optional[float] = None,
+        progress: Optional[Callable[[float], object]] = None,
+    ) -> "Mesh":
+        """The mesh with more vertices where its light changes between two of them.
+
+        error         RMS of the transfer, in 1/sr, by which the middle of an edge may differ from
+                      the mean of its ends
+        max_edge      longer edges are split in any case
+        min_edge      edges shorter than twice this are not; by default 1/1000 of the diagonal
+        max_vertices  then the edges that matter most are split first
+        curved        new vertices lie on a smooth surface, not in the middle of the old edge
+
+        Vertices keep index and position, but for those of a floor, which follow the new ones. The
+        original triangles go on blocking the light. `report` of the result has figures.
+
+        >>> box = relumine.Mesh.load("boulder.ply", floor=2)
+        >>> fine = box.refined(error=0.03, max_vertices=7000)
+        >>> len(box.vertices), len(fine.vertices), fine.report["is_at_limit"]
+        (6916, 7000, True)
+        """
+        options: Dict[str, Any] = {
+            "error": error,
+            "max_edge": max_edge,
+            "min_edge": min_edge,
+            "max_vertices": max_vertices,
+            "curved": curved,
+            "bias": bias,
+        }
+        for name in ("error", "max_edge", "min_edge", "max_vertices"):
+            value = options[name]
+            if value is not None and not value > 0:
+                raise ValueError(f"{name}: expected more than 0, got {value}")
+        with errors():
+            core, report = _core.refined(self._core, options, progress)
+        mesh = Mesh._of(core)
+        mesh.report = report
+        return mesh
+
+    def simplified(self, num_vertices: int) -> "Mesh":
+        """The mesh with fewer vertices, its floor not counted, lit under the full one's shadows.
+
+        >>> relumine.Mesh.load("boulder.ply").simplified(1000)
+        <relumine.Mesh: 1000 vertices, 1524 triangles>
+        """
+        if not 3 <= num_vertices <= len(self.vertices):
+            raise ValueError(
+                f"num_vertices: expected 3 to {len(self.vertices)}, got {num_vertices}"
+            )
+        with errors():
+            return Mesh._of(_core.simplified(self._core, num_vertices))
 
     def __repr__(self) -> str:
         floor = f", floor of {self.floor} x {self.floor}" if self.floor else ""

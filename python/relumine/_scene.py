@@ -160,6 +160,75 @@ def precompute(
     return scene
 
 
+def plan(
+    mesh: Mesh,
+    output: Path,
+    *,
+    tolerance: Optional[float] = None,
+    epsilon: Optional[float] = None,
+    min_depth: Optional[int] = None,
+    face_resolution: Optional[int] = None,
+    bias: Optional[float] = None,
+    receivers: str = "vertices",
+    view: Any = None,
+    progress: Optional[Progress] = None,
+) -> Dict[str, Any]:
+    """Plans a precompute in parts, for any number of processes and machines. Returns figures.
+
+    Writes a .plan file for precompute_part(). Options are those of precompute().
+
+    >>> mesh = relumine.Mesh.load("boulder.ply")
+    >>> figures = relumine.plan(mesh, "boulder.plan", tolerance=0.05)
+    >>> for part in range(2):
+    ...     relumine.precompute_part("boulder.plan", part, 2, f"boulder.{part}")
+    >>> bytes = relumine.join(["boulder.0", "boulder.1"], "planned.prt")
+    >>> relumine.Scene.load("planned.prt").num_receivers
+    6912
+    """
+    options: Dict[str, Any] = {
+        "tolerance": tolerance,
+        "epsilon": epsilon,
+        "min_depth": min_depth,
+        "face_resolution": face_resolution,
+        "bias": bias,
+        "receivers": _receivers(receivers),
+        "view": view,
+        "output": os.fspath(output),
+    }
+    with errors(output, only=True):
+        report, warnings = _core.plan(mesh._core, options, progress)
+    warn(warnings)
+    return report
+
+
+def precompute_part(
+    plan: Path,
+    part: int,
+    count: int,
+    output: Path,
+    *,
+    engine: str = "beam",
+    progress: Optional[Progress] = None,
+) -> None:
+    """Does part 0 .. count - 1 of a plan and writes its file.
+
+    Parts know nothing of each other: they run in any order, anywhere, and again if one is lost.
+    """
+    with errors(plan, only=True):
+        _core.precompute_part(
+            os.fspath(plan), part, count, os.fspath(output), {"engine": engine}, progress
+        )
+
+
+def join(parts: Sequence[Path], output: Path) -> int:
+    """Puts all parts of a plan together, in any order, as a .prt file. Returns its size in bytes.
+
+    The file is the same byte by byte for any number of parts.
+    """
+    with errors():
+        return _core.join([os.fspath(part) for part in parts], os.fspath(output))
+
+
 class Scene:
     """A mesh with its precomputed light transfer: the `.prt` file. It never changes.
 

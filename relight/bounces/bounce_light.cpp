@@ -80,22 +80,25 @@ class BounceLight::Impl {
 public:
     Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
         : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()),
-          coarse_(checked(matrix, size_)), coarse_sent_(coarse_.num_groups()), albedo_(size_),
-          direct_(size_), sent_(size_), gathered_(size_), indirect_(size_), next_(size_),
-          published_(size_, glm::vec3(0.0f)) {}
+          first_(checked(matrix, size_)), coarse_(matrix, first_),
+          coarse_sent_(coarse_.num_groups()), albedo_(size_), direct_(size_), sent_(size_),
+          gathered_(size_), indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
 
     void set_albedo(std::span<const glm::vec3> albedo) {
         if (albedo.size() != size_)
             throw std::invalid_argument(
                 fmt::format("expected the albedo of {} receivers, got {}", size_, albedo.size()));
         float largest = 0.0f;
-        for (const glm::vec3& value : albedo)
+        for (std::size_t place = 0; place < size_; ++place) {
+            const glm::vec3& value = albedo[transfer_.order[place]];
             for (int channel = 0; channel < 3; ++channel) {
                 if (!(value[channel] >= 0.0f && std::isfinite(value[channel])))
                     throw std::invalid_argument(
                         fmt::format("expected an albedo >= 0, got {}", value[channel]));
-                largest = std::max(largest, value[channel]);
+                if (place >= first_)
+                    largest = std::max(largest, value[channel]);
             }
+        }
         const float safe = largest_safe_albedo();
         if (largest > safe)
             throw std::invalid_argument(
@@ -103,9 +106,10 @@ public:
                             "got {}",
                             safe, largest));
         contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
+        sends_ = largest > 0.0f && !matrix_.emitters.places.empty();
         for (std::size_t place = 0; place < size_; ++place)
             albedo_[place] = padded(albedo[transfer_.order[place]]);
-        coarse_.set_albedo(albedo_);
+        coarse_.set_albedo(std::span(albedo_).subspan(first_));
     }
 
     BounceReport solve(std::span<const glm::vec3> direct, const BounceLimits& limits) {
@@ -113,22 +117,26 @@ public:
         set_direct(direct);
         std::fill(indirect_.begin(), indirect_.end(), PaddedRgb{});
         BounceReport report;
-        forget_steps();
-        const std::uint32_t last = limits.num_bounces.value_or(MaxBounces);
-        while (report.num_bounces < last && contraction_ > 0.0) {
-            bounce();
-            ++report.num_bounces;
-            if (limits.num_bounces) {
+        if (sends_ && limits.num_bounces) {
+            for (; report.num_bounces < *limits.num_bounces; ++report.num_bounces) {
+                send();
+                bounce(first_, size_);
                 indirect_.swap(next_);
-                continue;
             }
-            add_coarse_bounces();
-            report.error = error_after(step_size());
-            if (report.error <= limits.tolerance) {
-                indirect_.swap(next_);
-                break;
+            if (report.num_bounces > 0)
+                light_the_rest();
+        } else if (sends_) {
+            forget_steps();
+            start_from_groups();
+            for (;;) {
+                bounce(first_, size_);
+                ++report.num_bounces;
+                report.error = error_after(correct());
+                if (report.error <= limits.tolerance || report.num_bounces == MaxBounces)
+                    break;
+                accelerate();
             }
-            accelerate();
+            take_result();
         }
         publish();
         report.seconds = seconds_since(start);
@@ -139,12 +147,13 @@ public:
         const auto start = std::chrono::steady_clock::now();
         set_direct(direct);
         BounceReport report;
-        if (contraction_ > 0.0) {
-            bounce();
-            add_coarse_bounces();
-            report.error = step_size();
+        if (sends_) {
+            forget_steps();
+            send();
+            bounce(first_, size_);
+            report.error = correct();
             report.num_bounces = 1;
-            indirect_.swap(next_);
+            take_result();
         } else {
             std::fill(indirect_.begin(), indirect_.end(), PaddedRgb{});
         }
@@ -156,17 +165,28 @@ public:
     [[nodiscard]] std::span<const glm::vec3> indirect() const { return published_; }
 
 private:
-    static const prt::BounceMatrix& checked(const prt::BounceMatrix& matrix, std::size_t size) {
+    struct Step {
+        std::vector<PaddedRgb> change;
+        std::vector<PaddedRgb> result;
+    };
+    /// Sums for each colour.
+    using ColorSums = std::array<double, 3>;
+
+    static std::size_t checked(const prt::BounceMatrix& matrix, std::size_t size) {
         if (matrix.num_rows() != size)
             throw std::invalid_argument(
                 fmt::format("expected bounces of {} receivers, got {}", size, matrix.num_rows()));
-        return matrix;
+        return prt::first_emitter(matrix);
     }
 
     void forget_steps() {
-        history_size_ = 0;
+        num_before_ = 0;
         last_step_ = 0.0;
         largest_ratio_ = 0.0;
+        for (Step& step : history_) {
+            step.change.resize(size_);
+            step.result.resize(size_);
+        }
     }
 
     static double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -183,45 +203,48 @@ private:
         if (direct.size() != size_)
             throw std::invalid_argument(fmt::format(
                 "expected the direct light of {} receivers, got {}", size_, direct.size()));
-        for_rows([&](std::size_t begin, std::size_t end) {
+        for_rows(0, size_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place)
                 direct_[place] = padded(direct[transfer_.order[place]]);
         });
     }
 
+    /// Tasks begin at whole groups.
     template<typename Function>
-    void for_rows(const Function& function) const {
-        tbb::parallel_for(
-            std::size_t{0}, (size_ + RowsPerTask - 1) / RowsPerTask, [&](std::size_t task) {
-                function(task * RowsPerTask, std::min(size_, (task + 1) * RowsPerTask));
-            });
+    static void for_rows(std::size_t first, std::size_t last, const Function& function) {
+        tbb::parallel_for(std::size_t{0}, (last - first + RowsPerTask - 1) / RowsPerTask,
+                          [&](std::size_t task) {
+                              const std::size_t begin = first + task * RowsPerTask;
+                              function(begin, std::min(last, begin + RowsPerTask));
+                          });
     }
 
-    /// Sums arrays of doubles over all rows in a fixed order.
-    template<std::size_t N, typename Function>
-    [[nodiscard]] std::array<double, N> sum_over_rows(const Function& function) const {
-        std::vector<std::array<double, N>> parts((size_ + RowsPerTask - 1) / RowsPerTask);
-        for_rows([&](std::size_t begin, std::size_t end) {
-            parts[begin / RowsPerTask] = function(begin, end);
-        });
-        std::array<double, N> sum{};
-        for (const std::array<double, N>& part : parts)
-            for (std::size_t k = 0; k < N; ++k)
-                sum[k] += part[k];
-        return sum;
+    /// Calls function(row, group) for the rows begin .. end - 1.
+    template<typename Function>
+    void for_rows_in_groups(std::size_t begin, std::size_t end, const Function& function) const {
+        const std::size_t group_size = coarse_.group_size();
+        for (std::size_t group = (begin - first_) / group_size; begin < end; ++group) {
+            const std::size_t end_of_group = std::min(end, first_ + (group + 1) * group_size);
+            for (; begin < end_of_group; ++begin)
+                function(begin, group);
+        }
     }
 
-    /// next_ = A rho (B + indirect_).
-    void bounce() {
-        for_rows([&](std::size_t begin, std::size_t end) {
+    /// sent_ = rho (B + indirect_).
+    void send() {
+        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
                 for (std::size_t c = 0; c < 4; ++c)
                     sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
         });
-        for_rows([&](std::size_t begin, std::size_t end) {
+    }
+
+    /// next_ = A sent_ for some rows.
+    void bounce(std::size_t first, std::size_t last) {
+        for_rows(first, last, [&](std::size_t begin, std::size_t end) {
             sum_lists(matrix_.emitters, sent_, begin, end, gathered_);
         });
-        for_rows([&](std::size_t begin, std::size_t end) {
+        for_rows(first, last, [&](std::size_t begin, std::size_t end) {
             sum_lists(matrix_.averaged, gathered_, begin, end, next_);
             for (std::size_t i = begin; i < end; ++i)
                 for (std::size_t c = 0; c < 4; ++c)
@@ -229,49 +252,101 @@ private:
         });
     }
 
-    /// Adds what the change next_ - indirect_ becomes in all further bounces, as the groups of
-    /// receivers tell. Places without any light stay black, whatever group they are in.
-    void add_coarse_bounces() {
-        for_rows([&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
+    /// Returns all bounces of what sent_by(row) gives for each row, as groups of receivers tell.
+    template<typename SentBy>
+    std::span<const PaddedRgb> bounces_of_groups(const SentBy& sent_by) {
+        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
+            const std::size_t group_size = coarse_.group_size();
+            for (std::size_t i = begin; i < end;) {
+                const std::size_t group = (i - first_) / group_size;
+                const std::size_t end_of_group = std::min(end, i + group_size);
+                const auto size = static_cast<float>(end_of_group - i);
+                PaddedRgb sum;
+                for (; i < end_of_group; ++i) {
+                    const PaddedRgb sent = sent_by(i);
+                    for (std::size_t c = 0; c < 4; ++c)
+                        sum.rgb[c] += sent.rgb[c];
+                }
                 for (std::size_t c = 0; c < 4; ++c)
-                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (next_[i].rgb[c] - indirect_[i].rgb[c]);
+                    coarse_sent_[group].rgb[c] = sum.rgb[c] / size;
+            }
         });
-        means_of_groups(sent_, coarse_.group_size(), coarse_sent_);
-        const std::span<const PaddedRgb> more = coarse_.sum_of_bounces(coarse_sent_);
-        for_rows([&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 4; ++c)
-                    next_[i].rgb[c] +=
-                        next_[i].rgb[c] > 0.0f ? more[i / coarse_.group_size()].rgb[c] : 0.0f;
+        return coarse_.sum_of_bounces(coarse_sent_);
+    }
+
+    /// The first guess: the bounces between the groups of receivers.
+    void start_from_groups() {
+        send();
+        const std::span<const PaddedRgb> all =
+            bounces_of_groups([this](std::size_t i) { return sent_[i]; });
+        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
+            for_rows_in_groups(begin, end, [&](std::size_t i, std::size_t group) {
+                for (std::size_t c = 0; c < 4; ++c) {
+                    indirect_[i].rgb[c] = matrix_.weights[i] > 0.0f ? all[group].rgb[c] : 0.0f;
+                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + indirect_[i].rgb[c]);
+                }
+            });
         });
     }
 
-    /// Returns |next_ - indirect_| over |B + next_|.
-    [[nodiscard]] double step_size() const {
-        const auto [steps, all] = sum_over_rows<2>([&](std::size_t begin, std::size_t end) {
-            // The fourth channel is 0 everywhere.
-            std::array<double, 4> step_sums{}, light_sums{};
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 4; ++c) {
-                    const auto step = static_cast<double>(next_[i].rgb[c] - indirect_[i].rgb[c]);
-                    const auto light = static_cast<double>(next_[i].rgb[c] + direct_[i].rgb[c]);
-                    step_sums[c] += step * step;
-                    light_sums[c] += light * light;
-                }
-            const auto sum_of = [](const std::array<double, 4>& sums) {
-                return sums[0] + sums[1] + sums[2];
-            };
-            const std::array<double, 2> part = {sum_of(step_sums), sum_of(light_sums)};
-            return part;
+    /// Makes a step of next_: adds what the change next_ - indirect_ becomes in all further
+    /// bounces, as the groups of receivers tell. Places without any light stay black, whatever
+    /// group they are in. Returns the size of the step, relative to all light.
+    double correct() {
+        newest_ = (newest_ + 1) % history_.size();
+        const std::span<const PaddedRgb> more = bounces_of_groups([this](std::size_t i) {
+            PaddedRgb sent;
+            for (std::size_t c = 0; c < 4; ++c)
+                sent.rgb[c] = albedo_[i].rgb[c] * (next_[i].rgb[c] - indirect_[i].rgb[c]);
+            return sent;
         });
-        return all > 0.0 ? std::sqrt(steps / all) : 0.0;
+        Step& now = newest();
+        // Of each colour: products of the change with itself and with those before; all light.
+        constexpr std::size_t NumSums = AndersonDepth + 2;
+        std::vector<std::array<ColorSums, NumSums>> parts((size_ - first_ + RowsPerTask - 1) /
+                                                          RowsPerTask);
+        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
+            std::array<PaddedRgb, NumSums> sums{};
+            for_rows_in_groups(begin, end, [&](std::size_t i, std::size_t group) {
+                for (std::size_t c = 0; c < 4; ++c) {
+                    const float plain = next_[i].rgb[c];
+                    const float result = plain + (plain > 0.0f ? more[group].rgb[c] : 0.0f);
+                    const float change = result - indirect_[i].rgb[c];
+                    const float light = result + direct_[i].rgb[c];
+                    now.result[i].rgb[c] = result;
+                    now.change[i].rgb[c] = change;
+                    sums[AndersonDepth + 1].rgb[c] += light * light;
+                    sums[0].rgb[c] += change * change;
+                }
+                for (std::size_t age = 1; age <= num_before_; ++age)
+                    for (std::size_t c = 0; c < 4; ++c)
+                        sums[age].rgb[c] += now.change[i].rgb[c] * before(age).change[i].rgb[c];
+            });
+            for (std::size_t k = 0; k < NumSums; ++k)
+                for (std::size_t c = 0; c < 3; ++c)
+                    parts[(begin - first_) / RowsPerTask][k][c] =
+                        static_cast<double>(sums[k].rgb[c]);
+        });
+        std::array<ColorSums, NumSums> all{};
+        for (const std::array<ColorSums, NumSums>& part : parts)
+            for (std::size_t k = 0; k < NumSums; ++k)
+                for (std::size_t c = 0; c < 3; ++c)
+                    all[k][c] += part[k][c];
+        for (std::size_t age = 0; age <= num_before_; ++age)
+            products_[newest_][index_before(age)] = products_[index_before(age)][newest_] =
+                all[age];
+        const auto sum_of = [](const ColorSums& sums) {
+            return sums[0] + sums[1] + sums[2];
+        };
+        const double light = sum_of(all[AndersonDepth + 1]);
+        return light > 0.0 ? std::sqrt(sum_of(all[0]) / light) : 0.0;
     }
 
     /// Estimates the error after a step: steps become smaller by the largest ratio that was seen.
-    /// After the first one the factor of the matrix itself is all that is known.
+    /// After the first one the factor of the matrix itself is all that is known; light that never
+    /// comes back has none.
     double error_after(double step) {
-        double ratio = contraction_;
+        double ratio = std::max(contraction_, LeastRatio);
         if (last_step_ > 0.0) {
             largest_ratio_ = std::max({largest_ratio_, step / last_step_, LeastRatio});
             ratio = largest_ratio_;
@@ -281,93 +356,73 @@ private:
         return step * ratio / (1.0 - ratio);
     }
 
-    /// Takes the next iterate: next_, corrected by the least squares of the last steps [Anderson
-    /// 1965], for each channel by itself.
+    /// Takes the next iterate: the newest result, corrected by the least squares of the last steps
+    /// [Anderson 1965], for each channel by itself. Makes sent_ of it.
     void accelerate() {
-        Step& now = history_[newest_];
-        const std::size_t depth = history_size_;
-        now.change.resize(size_);
-        next_.swap(now.result);
-        next_.resize(size_);
-        for_rows([&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
+        const Step& now = newest();
+        std::array<PaddedRgb, AndersonDepth> factors = least_squares_of_changes();
+        for_rows(first_, size_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t i = begin; i < end; ++i) {
+                PaddedRgb value = now.result[i];
+                for (std::size_t a = 0; a < num_before_; ++a)
+                    for (std::size_t c = 0; c < 4; ++c)
+                        value.rgb[c] -= factors[a].rgb[c] *
+                                        (now.result[i].rgb[c] - before(a + 1).result[i].rgb[c]);
+                indirect_[i] = value;
                 for (std::size_t c = 0; c < 4; ++c)
-                    now.change[i].rgb[c] = now.result[i].rgb[c] - indirect_[i].rgb[c];
+                    sent_[i].rgb[c] = albedo_[i].rgb[c] * (direct_[i].rgb[c] + value.rgb[c]);
+            }
         });
-        std::array<std::array<float, 4>, AndersonDepth> factors{};
-        if (depth > 0)
-            factors = least_squares_of_changes(now, depth);
-        for_rows([&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i)
-                for (std::size_t c = 0; c < 4; ++c) {
-                    float value = now.result[i].rgb[c];
-                    for (std::size_t a = 0; a < depth; ++a)
-                        value -= factors[a][c] *
-                                 (now.result[i].rgb[c] - step_before(a).result[i].rgb[c]);
-                    indirect_[i].rgb[c] = value;
-                }
-        });
-        newest_ = (newest_ + 1) % history_.size();
-        history_size_ = std::min(history_size_ + 1, AndersonDepth);
+        num_before_ = std::min(num_before_ + 1, AndersonDepth);
     }
 
-    struct Step {
-        std::vector<PaddedRgb> change;
-        std::vector<PaddedRgb> result;
-    };
-
-    /// Returns the factors of the differences to the `depth` steps before that make the change
-    /// smallest.
-    [[nodiscard]] std::array<std::array<float, 4>, AndersonDepth>
-    least_squares_of_changes(const Step& now, std::size_t depth) const {
-        // Of each channel: products of each difference with the change, then with each other.
-        constexpr std::size_t NumSums = AndersonDepth * (1 + AndersonDepth);
-        const auto sums = sum_over_rows<3 * NumSums>([&](std::size_t begin, std::size_t end) {
-            std::array<std::array<double, 4>, NumSums> sums_of_task{};
-            for (std::size_t i = begin; i < end; ++i) {
-                const std::array<float, 4>& change = now.change[i].rgb;
-                std::array<std::array<double, 4>, AndersonDepth> differences{};
-                for (std::size_t a = 0; a < depth; ++a)
-                    for (std::size_t c = 0; c < 4; ++c)
-                        differences[a][c] =
-                            static_cast<double>(change[c] - step_before(a).change[i].rgb[c]);
-                for (std::size_t a = 0; a < depth; ++a)
-                    for (std::size_t c = 0; c < 4; ++c) {
-                        sums_of_task[a][c] += static_cast<double>(change[c]) * differences[a][c];
-                        for (std::size_t b = 0; b <= a; ++b)
-                            sums_of_task[AndersonDepth * (1 + a) + b][c] +=
-                                differences[a][c] * differences[b][c];
-                    }
-            }
-            std::array<double, 3 * NumSums> part{};
-            for (std::size_t c = 0; c < 3; ++c)
-                for (std::size_t k = 0; k < NumSums; ++k)
-                    part[c * NumSums + k] = sums_of_task[k][c];
-            return part;
-        });
-        std::array<std::array<float, 4>, AndersonDepth> factors{};
+    /// Returns the factors of the differences to the steps before that make the change smallest.
+    [[nodiscard]] std::array<PaddedRgb, AndersonDepth> least_squares_of_changes() const {
+        std::array<PaddedRgb, AndersonDepth> factors{};
         for (std::size_t c = 0; c < 3; ++c) {
+            // Products of changes, the newest first.
+            const auto product = [&](std::size_t a, std::size_t b) {
+                return products_[index_before(a)][index_before(b)][c];
+            };
             std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix{};
             std::array<double, AndersonDepth> vector{};
-            for (std::size_t a = 0; a < depth; ++a) {
-                vector[a] = sums[c * NumSums + a];
-                for (std::size_t b = 0; b <= a; ++b)
-                    matrix[a][b] = matrix[b][a] = sums[c * NumSums + AndersonDepth * (1 + a) + b];
+            for (std::size_t a = 0; a < num_before_; ++a) {
+                vector[a] = product(0, 0) - product(0, a + 1);
+                for (std::size_t b = 0; b < num_before_; ++b)
+                    matrix[a][b] = product(0, 0) - product(0, a + 1) - product(0, b + 1) +
+                                   product(a + 1, b + 1);
             }
-            const auto solution = least_squares(matrix, vector, depth);
-            for (std::size_t a = 0; a < depth; ++a)
-                factors[a][c] = static_cast<float>(solution[a]);
+            const auto solution = least_squares(matrix, vector, num_before_);
+            for (std::size_t a = 0; a < num_before_; ++a)
+                factors[a].rgb[c] = static_cast<float>(solution[a]);
         }
         return factors;
     }
 
-    /// The step `age` + 1 before history_[newest_], which is being made.
-    [[nodiscard]] const Step& step_before(std::size_t age) const {
-        return history_[(newest_ + history_.size() - 1 - age) % history_.size()];
+    [[nodiscard]] Step& newest() { return history_[newest_]; }
+    /// The index of the step `age` before the newest.
+    [[nodiscard]] std::size_t index_before(std::size_t age) const {
+        return (newest_ + history_.size() - age) % history_.size();
+    }
+    [[nodiscard]] const Step& before(std::size_t age) const { return history_[index_before(age)]; }
+
+    /// Ends the iteration with the newest step.
+    void take_result() {
+        indirect_.swap(newest().result);
+        if (first_ > 0) {
+            send();
+            light_the_rest();
+        }
+    }
+
+    /// Receivers that send nothing on get their light once: of the light that was sent last.
+    void light_the_rest() {
+        bounce(0, first_);
+        std::copy_n(next_.begin(), first_, indirect_.begin());
     }
 
     void publish() {
-        for_rows([&](std::size_t begin, std::size_t end) {
+        for_rows(0, size_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t place = begin; place < end; ++place) {
                 const PaddedRgb& value = indirect_[place];
                 // Corrections may go too far by the tolerance.
@@ -384,7 +439,11 @@ private:
     const prt::BounceMatrix& matrix_;
     const prt::Transfer& transfer_;
     std::size_t size_;
-    /// Upper bound of the factor from one bounce to the next.
+    /// Receivers before this place send nothing to others.
+    std::size_t first_;
+    /// Whether any receiver sends light to another.
+    bool sends_ = false;
+    /// Upper bound of the factor from one bounce to the next, after many.
     double contraction_ = 0.0;
     CoarseBounces coarse_;
     /// [num_groups]
@@ -397,8 +456,11 @@ private:
     std::vector<PaddedRgb> indirect_;
     std::vector<PaddedRgb> next_;
     std::array<Step, AndersonDepth + 1> history_;
+    /// Of the changes of two steps in history_.
+    std::array<std::array<ColorSums, AndersonDepth + 1>, AndersonDepth + 1> products_{};
     std::size_t newest_ = 0;
-    std::size_t history_size_ = 0;
+    /// Steps before the newest that count.
+    std::size_t num_before_ = 0;
     /// Relative to all light; of this iteration.
     double last_step_ = 0.0;
     double largest_ratio_ = 0.0;

@@ -88,8 +88,8 @@ CoarseBounces::Level CoarseBounces::make_level(std::size_t num_rows, std::size_t
     return level;
 }
 
-CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix) {
-    const std::size_t num_receivers = matrix.num_rows();
+CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first) {
+    const std::size_t num_rows = matrix.num_rows() - first;
     // Each receiver's own emitters stand for those of all that it is averaged with.
     const auto own_weight = [&](std::size_t place) {
         double num_emitters = 0.0;
@@ -103,15 +103,15 @@ CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix) {
     // The smallest groups that leave a matrix small enough.
     std::size_t group_size = SmallestGroup;
     for (; group_size < LargestGroup; group_size *= GroupsPerGroup) {
-        const std::size_t num_groups = (num_receivers + group_size - 1) / group_size;
+        const std::size_t num_groups = (num_rows + group_size - 1) / group_size;
         const std::size_t step = std::max<std::size_t>(num_groups / NumTriedGroups, 1);
         RowSums sums(num_groups);
         std::size_t num_entries = 0, num_emitters = 0;
         for (std::size_t group = 0; group < num_groups; group += step) {
-            const std::size_t end = std::min((group + 1) * group_size, num_receivers);
-            for (std::size_t place = group * group_size; place < end; ++place)
-                for (const std::uint32_t emitter : matrix.emitters[place]) {
-                    sums.add(emitter / group_size, 1.0f);
+            const std::size_t end = std::min((group + 1) * group_size, num_rows);
+            for (std::size_t row = group * group_size; row < end; ++row)
+                for (const std::uint32_t emitter : matrix.emitters[first + row]) {
+                    sums.add((emitter - first) / group_size, 1.0f);
                     ++num_emitters;
                 }
             num_entries += sums.groups().size();
@@ -120,11 +120,11 @@ CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix) {
         if (LeastSaving * num_entries <= num_emitters)
             break;
     }
-    levels_.push_back(make_level(num_receivers, group_size, [&](std::size_t place, RowSums& sums) {
-        const float weight = own_weight(place);
+    levels_.push_back(make_level(num_rows, group_size, [&](std::size_t row, RowSums& sums) {
+        const float weight = own_weight(first + row);
         if (weight > 0.0f)
-            for (const std::uint32_t emitter : matrix.emitters[place])
-                sums.add(emitter / group_size, weight);
+            for (const std::uint32_t emitter : matrix.emitters[first + row])
+                sums.add((emitter - first) / group_size, weight);
     }));
     while (levels_.back().num_groups() > FewGroups) {
         const Level& fine = levels_.back();
@@ -153,12 +153,22 @@ void CoarseBounces::Level::multiply() {
         std::size_t{0}, (num_groups() + GroupsPerTask - 1) / GroupsPerTask, [&](std::size_t task) {
             const std::size_t end = std::min(num_groups(), (task + 1) * GroupsPerTask);
             for (std::size_t group = task * GroupsPerTask; group < end; ++group) {
-                std::array<PaddedRgb, 2> sums{};
-                for (std::uint64_t i = row_begin[group]; i < row_begin[group + 1]; ++i)
+                // Several sums at a time, as in sum_lists().
+                constexpr std::size_t NumSums = 4;
+                std::array<PaddedRgb, NumSums> sums{};
+                std::uint64_t i = row_begin[group];
+                const std::uint64_t end_of_row = row_begin[group + 1];
+                for (; i + NumSums <= end_of_row; i += NumSums)
+                    for (std::size_t k = 0; k < NumSums; ++k)
+                        for (std::size_t c = 0; c < 4; ++c)
+                            sums[k].rgb[c] +=
+                                entries[i + k].weight * sent[entries[i + k].group].rgb[c];
+                for (; i < end_of_row; ++i)
                     for (std::size_t c = 0; c < 4; ++c)
-                        sums[i % 2].rgb[c] += entries[i].weight * sent[entries[i].group].rgb[c];
+                        sums[0].rgb[c] += entries[i].weight * sent[entries[i].group].rgb[c];
                 for (std::size_t c = 0; c < 4; ++c)
-                    next[group].rgb[c] = sums[0].rgb[c] + sums[1].rgb[c];
+                    next[group].rgb[c] =
+                        (sums[0].rgb[c] + sums[1].rgb[c]) + (sums[2].rgb[c] + sums[3].rgb[c]);
             }
         });
 }

@@ -17,10 +17,12 @@ namespace relumine::relight {
 /// Hackbusch 1985, "Multi-Grid Methods and Applications", chapter 16].
 class CoarseBounces {
 public:
+    /// Leaves the rows before `first` out, from which no other row gets light.
+    ///
     /// Cost:    a pass over the emitters.
-    explicit CoarseBounces(const prt::BounceMatrix& matrix);
+    CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first);
 
-    /// `albedo` is [num_receivers] by place.
+    /// `albedo` is [num_rows - first] by place.
     void set_albedo(std::span<const PaddedRgb> albedo);
 
     [[nodiscard]] std::size_t group_size() const { return levels_.front().group_size; }

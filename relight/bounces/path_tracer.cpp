@@ -135,12 +135,10 @@ public:
             if (options_.num_bounces && bounce == *options_.num_bounces)
                 return sum;
             const prt::MeshPoint at{.triangle = hit->triangle, .barycentric = hit->barycentric};
-            glm::dvec3 normal(prt::shading_normal(mesh_, at));
-            if (!prt::meets_front(mesh_, at, glm::vec3(direction))) {
-                if (!options_.two_sided)
-                    return sum;
-                normal = -normal;
-            }
+            // A back sends what its front does, or nothing: the path goes on from the front.
+            if (!options_.two_sided && !prt::meets_front(mesh_, at, glm::vec3(direction)))
+                return sum;
+            const glm::dvec3 normal(prt::shading_normal(mesh_, at));
             throughput *= glm::dvec3(prt::value_at(mesh_, albedo_, at));
             if (bounce >= BouncesBeforeRoulette) {
                 const double survival =

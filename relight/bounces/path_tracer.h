@@ -25,7 +25,7 @@ struct PathTracerOptions {
     /// Bounces of a path; empty: until Russian roulette ends it.
     std::optional<std::uint32_t> num_bounces = {};
     std::uint64_t seed = 1;
-    /// Surfaces radiate from both sides; otherwise their backs are black.
+    /// Backs send the light that their fronts do; otherwise they are black.
     bool two_sided = false;
     /// Lift of the rays' origins, as in prt::PrecomputeOptions.
     float bias = 0.0f;

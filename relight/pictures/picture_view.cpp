@@ -127,14 +127,17 @@ public:
           packets_(packets), rays_{.blockers = &view.rays_, .bias = light.bias},
           lanes_(packets.num_packets()) {}
 
-    void draw(std::uint32_t x_begin, std::uint32_t y_begin, Picture& picture) {
+    /// Draws the mesh alone, with its alpha, where there is no backdrop.
+    void draw(std::uint32_t x_begin, std::uint32_t y_begin, const Backdrop* backdrop,
+              Picture& picture) {
         const std::uint32_t x_end = std::min(x_begin + TileSize, picture.width);
         const std::uint32_t y_end = std::min(y_begin + TileSize, picture.height);
-        // The tile and a ring of pixels around it.
-        left_ = x_begin - std::min(x_begin, 1u);
-        top_ = y_begin - std::min(y_begin, 1u);
-        const std::uint32_t right = std::min(x_end + 1, picture.width);
-        const std::uint32_t bottom = std::min(y_end + 1, picture.height);
+        // The tile and, for the lights, a ring of pixels around it.
+        const std::uint32_t ring = packets_.num_packets() != 0 ? 1 : 0;
+        left_ = x_begin - std::min(x_begin, ring);
+        top_ = y_begin - std::min(y_begin, ring);
+        const std::uint32_t right = std::min(x_end + ring, picture.width);
+        const std::uint32_t bottom = std::min(y_end + ring, picture.height);
         width_ = right - left_;
         rows_.clear();
         for (std::uint32_t y = top_; y < bottom; ++y)
@@ -147,7 +150,10 @@ public:
                 const std::size_t pixel = std::size_t{y} * picture.width + x;
                 const auto [color, alpha] = drawn(x, y, right, bottom);
                 picture.pixels[pixel] = color;
-                picture.alpha[pixel] = alpha;
+                if (backdrop == nullptr)
+                    picture.alpha[pixel] = alpha;
+                else if (alpha < 1.0f)
+                    picture.pixels[pixel] += behind(x, y, *backdrop);
             }
     }
 
@@ -234,6 +240,17 @@ private:
         return {.color = sum / count, .alpha = alpha / count};
     }
 
+    /// Returns what a pixel shows of a backdrop.
+    [[nodiscard]] glm::vec3 behind(std::uint32_t x, std::uint32_t y,
+                                   const Backdrop& backdrop) const {
+        const std::span<const Sample> samples = rows_[y - top_].pixel(x);
+        glm::vec3 sum(0.0f);
+        for (std::uint32_t i = 0; i < samples.size(); ++i)
+            if (const float opacity = view_.opacity(samples[i]); opacity < 1.0f)
+                sum += (1.0f - opacity) * backdrop(view_.grid_.direction(x, y, i));
+        return sum / static_cast<float>(samples.size());
+    }
+
     /// Returns what a sample sends on of the lights in lanes_.
     [[nodiscard]] glm::vec3 traced(const Sample& sample) const {
         if (std::all_of(lanes_.begin(), lanes_.end(),
@@ -300,7 +317,7 @@ private:
     Lanes lanes_;
 };
 
-Picture PictureView::cut_out(const MeshLight& light) const {
+Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) const {
     const auto fits = [&](std::size_t size) {
         return size == 0 || size == mesh_.num_vertices();
     };
@@ -310,41 +327,25 @@ Picture PictureView::cut_out(const MeshLight& light) const {
     const LightPackets packets(light.lights);
     Picture picture{.width = options_.width, .height = options_.height};
     picture.pixels.resize(std::size_t{options_.width} * options_.height);
-    picture.alpha.resize(picture.pixels.size());
+    if (backdrop == nullptr)
+        picture.alpha.resize(picture.pixels.size());
     const std::uint32_t num_columns = (options_.width + TileSize - 1) / TileSize;
     const std::uint32_t num_rows = (options_.height + TileSize - 1) / TileSize;
     tbb::parallel_for(std::uint32_t{0}, num_columns * num_rows, [&](std::uint32_t tile) {
         if (!options_.stop.stop_requested())
             Tile(*this, light, packets)
-                .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, picture);
+                .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, backdrop,
+                      picture);
     });
     return picture;
 }
 
-void PictureView::put_behind(Picture& cut_out, const Backdrop& backdrop) const {
-    tbb::parallel_for(std::uint32_t{0}, options_.height, [&](std::uint32_t y) {
-        if (options_.stop.stop_requested())
-            return;
-        const Row row(*this, y, 0, options_.width);
-        for (std::uint32_t x = 0; x < options_.width; ++x) {
-            const std::size_t pixel = std::size_t{y} * options_.width + x;
-            if (cut_out.alpha[pixel] >= 1.0f)
-                continue;
-            const std::span<const Sample> samples = row.pixel(x);
-            glm::vec3 sum(0.0f);
-            for (std::uint32_t i = 0; i < samples.size(); ++i)
-                if (const float opacity = this->opacity(samples[i]); opacity < 1.0f)
-                    sum += (1.0f - opacity) * backdrop(grid_.direction(x, y, i));
-            cut_out.pixels[pixel] += sum / static_cast<float>(samples.size());
-        }
-    });
-    cut_out.alpha.clear();
+Picture PictureView::cut_out(const MeshLight& light) const {
+    return drawn(light, nullptr);
 }
 
 Picture PictureView::draw(const MeshLight& light, const Backdrop& backdrop) const {
-    Picture picture = cut_out(light);
-    put_behind(picture, backdrop);
-    return picture;
+    return drawn(light, &backdrop);
 }
 
 } // namespace relumine::relight

@@ -96,10 +96,9 @@ public:
     /// vertex.
     [[nodiscard]] Picture cut_out(const MeshLight& light) const;
 
-    /// Fills what a cut-out leaves free. The picture is then opaque and has no alpha.
-    void put_behind(Picture& cut_out, const Backdrop& backdrop) const;
-
-    /// Draws the mesh before the backdrop.
+    /// Draws the mesh before the backdrop. The picture is opaque and has no alpha.
+    ///
+    /// Throws:  as cut_out().
     [[nodiscard]] Picture draw(const MeshLight& light, const Backdrop& backdrop) const;
 
 private:
@@ -115,6 +114,7 @@ private:
     void trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_end,
                std::span<Sample> samples) const;
     [[nodiscard]] float opacity(const Sample& sample) const;
+    [[nodiscard]] Picture drawn(const MeshLight& light, const Backdrop* backdrop) const;
 
     const mesh::TriangleMesh& mesh_;
     const prt::RayScene& rays_;

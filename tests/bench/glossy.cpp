@@ -113,9 +113,11 @@ void print_row(float roughness, const Settings& settings, const Mesh& mesh,
                 seconds_frame.push_back(times.seconds_bin + times.seconds_trace +
                                         times.seconds_relight);
         }
+        const Verification check = lit.verify(
+            {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
         errors += fmt::format(
-            " {:.4f} |", lit.verify({.num_samples = settings.num_samples, .num_surface_points = 0})
-                             .error.relative_l2);
+            " {:.4f}{} |", check.error.relative_l2,
+            check.surface ? fmt::format(", {:.4f}", check.surface->error.relative_l2) : "");
     }
     const auto [lobe_seconds, lobe_bytes] = lobes_alone(transfer, maps.front().map);
     const auto per_block = [&](std::size_t lobe) {
@@ -139,7 +141,8 @@ void print_row(float roughness, const Settings& settings, const Mesh& mesh,
 void run(const Settings& settings, const bench::Inputs& inputs) {
     const Mesh mesh = inputs.mesh(settings.mesh, settings.floor);
     const double bandwidth = bench::memory_bandwidth(inputs.is_tiny());
-    fmt::print("{}. Memory is read at {:.1f} GB/s.\n\n", settings.mesh, 1e-9 * bandwidth);
+    fmt::print("{}. Memory is read at {:.1f} GB/s.{}\n\n", settings.mesh, 1e-9 * bandwidth,
+               settings.pixels ? "" : " Errors: at vertices, of diffuse light between them.");
     const std::vector<Environment> maps = environments(settings, inputs);
     fmt::print("| roughness | receivers | clusters | diffuse part | cells per block | MB | "
                "highlights | rays | relight | frame under grace | lobes alone |");

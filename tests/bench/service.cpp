@@ -23,8 +23,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "app/line_server.h"
-#include "app/service.h"
+#include "app/service/line_server.h"
+#include "app/service/service.h"
 #include "app/session.h"
 #include "cubemap/image/environment.h"
 #include "data_gen/environments.h"

@@ -8,8 +8,8 @@
 cmake_minimum_required(VERSION 3.24)
 
 if(NOT DEFINED FOLDERS)
-    set(FOLDERS app cmake cubemap data_gen docs examples files lights mesh prt relight relumine tests
-                viewer)
+    set(FOLDERS app cmake cubemap data_gen docs examples files integrations lights mesh prt python
+                relight relumine tests viewer)
 endif()
 string(REPLACE ";" "|" folders "${FOLDERS}")
 file(GLOB documents "${ROOT}/*.md" "${ROOT}/docs/*.md")

@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-#include "app/command_line.h"
+#include "app/command_line/command_line.h"
 #include "app/command_table.h"
 #include "app/program.h"
 #include "relight/pictures/array_file.h"
@@ -89,7 +89,7 @@ const std::vector<Words>& working_lines() {
         {"edit", "scene.prt", "env.0.hdr", "-o", "new.exr", "--disc", "0,1,0", "--who", "0,1,0"},
         {"animate", "scene.prt", "env.%d.hdr", "-o", "new.%d.exr", "--size", "8x8"},
         {"animate", "scene.prt", "env.%d.hdr", "--vertices", "new.npy", "--method", "clusters"},
-        {"verify", "scene.prt", "env.0.hdr"},
+        {"verify", "scene.prt", "env.0.hdr", "--samples", "2", "--surface", "2"},
         {"lights", "env.0.hdr", "-o", "new.json"},
         {"lights", "env.0.hdr", "--compare", "scene.prt", "-n", "4"},
         {"info", "scene.prt"},

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/service.h"
+#include "app/service/service.h"
 #include "app/session.h"
 #include "relumine/relumine.h"
 #include "tests/app/small_files.h"

@@ -84,6 +84,18 @@ TEST(Floor, UnderAnUprightMeshTakesTheDiagonal) {
     EXPECT_TRUE(mesh.colors.empty());
 }
 
+TEST(Floor, UnderATallMeshTakesHalfTheHeight) {
+    TriangleMesh mesh = box();
+    const float width =
+        std::max(bounds(mesh).max.x - bounds(mesh).min.x, bounds(mesh).max.z - bounds(mesh).min.z);
+    for (glm::vec3& position : mesh.positions)
+        position.y *= 10.0f;
+    const float height = bounds(mesh).max.y - bounds(mesh).min.y;
+    ASSERT_GT(height, 2.0f * width);
+    append_floor(mesh, 2, 3.0f);
+    EXPECT_NEAR(mesh.positions.back().x - mesh.positions[8].x, 1.5f * height, 1e-4f * height);
+}
+
 TEST(Floor, RefusesWhatIsNoFloor) {
     TriangleMesh mesh = box();
     for (const std::uint32_t n : {0u, 1u, 65536u, 4294967295u})

@@ -143,5 +143,47 @@ TEST_F(SaveTest, FailingLeavesNothingBehind) {
     EXPECT_EQ(num_files(), 2u);
 }
 
+TEST_F(SaveTest, AMeshAsItIsLoadsAgainFromGlb) {
+    TriangleMesh mesh = box_;
+    mesh.colors = {{0, 0, 0},    {1, 0, 0}, {0, 0.5f, 0}, {0, 0, 0.25f},
+                   {1, 0.5f, 1}, {1, 1, 1}, {1, 1, 0},    {0.25f, 0.5f, 0.75f}};
+    EXPECT_TRUE(save(folder_ / "box.glb", mesh).empty());
+    const TriangleMesh loaded = load(folder_ / "box.glb");
+    EXPECT_EQ(loaded.positions, mesh.positions);
+    EXPECT_EQ(loaded.triangles, mesh.triangles);
+    EXPECT_EQ(loaded.normals, mesh.normals);
+    EXPECT_EQ(loaded.colors, mesh.colors);
+
+    // With materials, a primitive each.
+    mesh.materials = {{.name = "unused"},
+                      {.name = "red", .base_color = {0.5f, 0.25f, 0.125f}},
+                      {.name = "metal",
+                       .model = MaterialModel::MetallicRoughness,
+                       .metallic = 1.0f,
+                       .roughness = 0.5f}};
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        mesh.triangle_materials.push_back(i % 3 == 0 ? 2 : 1);
+    mesh.triangle_groups.assign(mesh.num_triangles(), 0);
+    mesh.groups = {"box"};
+    mesh.uvs.assign(mesh.num_vertices(), glm::vec2(0.5f));
+    EXPECT_EQ(save(folder_ / "box.glb", mesh).size(), 2u) << "uvs, groups";
+    const TriangleMesh parts = load(folder_ / "box.glb");
+    ASSERT_EQ(parts.num_triangles(), mesh.num_triangles());
+    std::size_t num_metal = 0;
+    for (std::size_t i = 0; i < parts.num_triangles(); ++i) {
+        const Material& material = parts.materials[parts.triangle_materials[i]];
+        num_metal += material.name == "metal" ? 1 : 0;
+        if (material.name == "metal") {
+            EXPECT_EQ(material.roughness, 0.5f);
+            EXPECT_EQ(material.metallic, 1.0f);
+        } else {
+            EXPECT_EQ(material.base_color, glm::vec3(0.5f, 0.25f, 0.125f));
+        }
+    }
+    EXPECT_EQ(num_metal, (mesh.num_triangles() + 2) / 3);
+    EXPECT_THROW(save(folder_ / "none.glb", TriangleMesh()), std::runtime_error);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "none.glb"));
+}
+
 } // namespace
 } // namespace relumine::mesh

@@ -13,7 +13,7 @@ namespace relumine::prt {
 
 struct Killed : std::exception {};
 
-class MemoryCheckpoint final : public Checkpoint {
+class MemoryCheckpoint : public Checkpoint {
 public:
     /// The save after so many throws Killed, before it saves anything.
     std::size_t saves_to_live = static_cast<std::size_t>(-1);

@@ -1,5 +1,6 @@
 """The programs in examples/python, on a small scene."""
 
+import json
 import os
 import struct
 import subprocess
@@ -45,6 +46,18 @@ def test_runs(files, arguments, size):
     )
     assert done.returncode == 0, done.stdout + done.stderr
     assert struct.unpack(">II", (files / "out.png").read_bytes()[16:24]) == size
+
+
+def test_the_notebook_runs():
+    with open(os.path.join(EXAMPLES, "first_steps.ipynb")) as file:
+        notebook = json.load(file)
+    names = {}
+    for cell in notebook["cells"]:
+        if cell["cell_type"] == "code":
+            assert not cell["outputs"], "outputs are not kept"
+            exec("".join(cell["source"]), names)
+    bright = names["relighter"].picture(size=(32, 24), background="none")
+    assert bright._repr_png_() is not None
 
 
 def test_each_example_is_a_test():

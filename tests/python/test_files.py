@@ -135,3 +135,35 @@ def test_key_frames(folder):
     )
     (layer,) = relumine.load_layers("layers.json", frame=5)
     assert layer.gain_ev == 2.0
+
+
+def test_parts_of_a_plan_make_one_scene_whatever_their_number(folder, arrays):
+    relumine.plan(relumine.Mesh(*arrays), "a.plan", tolerance=0.05)
+    for count in (1, 3):
+        for part in reversed(range(count)):
+            relumine.precompute_part("a.plan", part, count, f"{count}.{part}")
+        names = [f"{count}.{part}" for part in range(count)]
+        assert relumine.join(names, f"{count}.prt") == os.path.getsize(f"{count}.prt")
+    assert open("1.prt", "rb").read() == open("3.prt", "rb").read()
+    with pytest.raises(RuntimeError, match="part"):
+        relumine.join(["3.0", "3.2"], "none.prt")
+    assert not os.path.exists("none.prt")
+    with pytest.raises(ValueError, match="part"):
+        relumine.precompute_part("a.plan", 3, 3, "none")
+    with pytest.raises(OSError):
+        relumine.precompute_part("missing.plan", 0, 1, "none")
+
+
+def test_meshes_are_refined_and_simplified(arrays):
+    mesh = relumine.Mesh(*arrays)
+    fine = mesh.refined(error=0.004, max_vertices=len(mesh.vertices) + 500)
+    assert len(fine.vertices) == len(mesh.vertices) + 500
+    assert (fine.vertices[: len(mesh.vertices)] == mesh.vertices).all()
+    assert fine.report["rounds"] > 0 and mesh.report == {}
+    assert len(mesh.simplified(1000).vertices) == 1000
+    # Both are lit under the shadows of the mesh they come from.
+    assert relumine.precompute(fine, tolerance=0.2).num_receivers == len(fine.vertices)
+    with pytest.raises(ValueError, match="max_edge"):
+        mesh.refined(max_edge=-1.0)
+    with pytest.raises(ValueError, match="num_vertices"):
+        mesh.simplified(0)

@@ -251,5 +251,20 @@ TEST(LitScene, KnowsWhatLightsIt) {
                  std::invalid_argument);
 }
 
+TEST(LitScene, ASunsPartIsDrawnAsSharpAsTheSun) {
+    cubemap::CubeMap sun(256);
+    sun.at(cubemap::Face::PositiveY, 100, 90) = glm::vec3(1e5f);
+    LitScene scene(boulder_scene());
+    scene.light(sun);
+    const Share above = scene.lit_by(cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 90.0});
+    ASSERT_FALSE(above.lights.empty());
+    Painter painter(scene, {.width = 40, .height = 30});
+    const Picture whole = painter.draw(scene.lighting());
+    EXPECT_EQ(painter.draw(above.lighting()).pixels, whole.pixels);
+    // The vertices alone give a softer shadow.
+    EXPECT_NE(painter.draw({.radiance = above.radiance, .environment = &above.environment}).pixels,
+              whole.pixels);
+}
+
 } // namespace
 } // namespace relumine

@@ -1,6 +1,7 @@
 #include "relumine/mesh.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mesh/floor.h"
 #include "mesh/save.h"
@@ -87,6 +88,37 @@ TEST_F(MeshFile, ThatIsAbsentIsNamed) {
     } catch (const std::runtime_error& error) {
         EXPECT_NE(std::string(error.what()).find("absent.ply"), std::string::npos);
     }
+}
+
+TEST(RefinedMesh, TheFloorSinksUnderACurvedMesh) {
+    // An octahedron of radius 1 whose normals are a ball's, lying on two of its lower triangles'
+    // common edge: the curved edge bulges below it.
+    mesh::TriangleMesh octahedron;
+    const float s = std::sqrt(0.5f);
+    octahedron.positions = {{s, s, 0}, {-s, s, 0}, {-s, -s, 0}, {s, -s, 0}, {0, 0, 1}, {0, 0, -1}};
+    octahedron.normals = octahedron.positions;
+    octahedron.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4},
+                            {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}};
+    mesh::append_floor(octahedron, 2);
+    Mesh mesh(octahedron);
+    mesh.floor_vertices = 2;
+    const float height = octahedron.positions.back().y;
+    const Mesh flat = refined(mesh, {.error = {}, .max_edge = 0.3f});
+    EXPECT_EQ(flat.geometry.positions.back().y, height);
+    const Mesh curved = refined(mesh, {.error = {}, .max_edge = 0.3f, .curved = true});
+    const std::size_t num_of_ball = curved.geometry.num_vertices() - 4 - curved.floor_added;
+    float lowest = 0.0f, highest_of_floor = -10.0f;
+    for (std::size_t i = 0; i < curved.geometry.num_vertices(); ++i) {
+        const float y = curved.geometry.positions[i].y;
+        if (i < num_of_ball)
+            lowest = std::min(lowest, y);
+        else
+            highest_of_floor = std::max(highest_of_floor, y);
+    }
+    EXPECT_LT(lowest, height) << "it bulges";
+    EXPECT_LT(highest_of_floor, lowest);
+    EXPECT_NEAR(lowest - highest_of_floor, -s - height, 1e-6f) << "as far below as before";
+    EXPECT_EQ(curved.geometry.positions[3], octahedron.positions[3]);
 }
 
 } // namespace

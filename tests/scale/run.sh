@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Runs planned precomputes with the engines that users have: GNU parallel, mpirun, and Slurm with the scripts of
 # examples/slurm on a cluster of this one host. All must give the bytes of a single part.
-#   run.sh RELUMINE SOURCE_DIR
+#   run.sh RELUMINE RELUMINE_MPI SOURCE_DIR
 set -euo pipefail
 relumine=$(realpath "$1")
-source=$(realpath "$2")
+relumine_mpi=$(realpath "$2")
+source=$(realpath "$3")
 folder=$(mktemp -d)
 slurm_pids=()
 finish() {
@@ -15,7 +16,7 @@ finish() {
 trap finish EXIT
 cd "$folder"
 mkdir bin
-ln -s "$relumine" bin/relumine
+ln -s "$relumine" "$relumine_mpi" bin/
 export PATH="$folder/bin:$PATH"
 
 failed=0
@@ -114,5 +115,9 @@ else
     job=$(sbatch --parsable "${options[@]}" --array=1-4 "$source/examples/slurm/array.sbatch" knot.plan)
     sbatch --wait --parsable --mem=0 --dependency="afterok:$job" "$source/examples/slurm/join.sbatch" knot >/dev/null
     compare "Slurm, an array of 4 and its join" knot.prt
+    relumine precompute knot.ply -o whole.prt --tolerance 0.04 --floor 40 -q
+    OMPI_MCA_btl=self,vader sbatch --wait --parsable --mem=0 --nodes=1 --ntasks-per-node=2 --cpus-per-task=1 \
+        "$source/examples/slurm/mpi.sbatch" knot.ply shared.prt --tolerance 0.04 --floor 40 >/dev/null
+    compare "Slurm, 2 ranks of one job" shared.prt
 fi
 exit "$failed"

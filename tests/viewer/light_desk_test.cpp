@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/relight/bounces/bouncing_scene.h"
 #include "tests/relight/relit_scene.h"
 
 namespace relumine::viewer {
@@ -184,6 +185,43 @@ TEST_F(LightDeskTest, ToldTexelsHoldEveryChange) {
     EXPECT_TRUE(update());
     desk_.remove(0);
     EXPECT_TRUE(update());
+}
+
+TEST(LightDeskBounces, GoOnFrameByFrameUntilTheLightStands) {
+    const relight::BouncingScene scene(scenes::sphere_and_box_on_floor(), 0.05f, 0.05f);
+    relight::LightEditor editor(scene.transfer);
+    editor.set_bounces(
+        {.matrix = &scene.matrix, .albedo = std::vector(scene.receivers.size(), glm::vec3(0.8f))});
+    LightDesk desk(editor);
+    desk.set_base(cubemap::CubeMap(16, glm::vec3(1.0f)));
+    desk.settle();
+    std::uint64_t version = desk.version();
+    desk.go_on();
+    EXPECT_EQ(desk.version(), version) << "nothing has changed";
+
+    cubemap::LightLayer disc{.name = "Disc"};
+    disc.gain_ev = 3.0;
+    disc.region = cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 40.0};
+    const std::size_t index = desk.add(disc);
+    EXPECT_TRUE(editor.is_settled()) << "a step of undo has all bounces";
+    disc.gain_ev = 5.0;
+    desk.change(index, disc);
+    int num_frames = 0;
+    for (; !editor.is_settled() && num_frames < 100; ++num_frames) {
+        version = desk.version();
+        desk.go_on();
+        EXPECT_GT(desk.version(), version);
+    }
+    EXPECT_GT(num_frames, 1);
+    EXPECT_LT(num_frames, 20);
+    const std::vector<glm::vec3> stepped(editor.radiance().begin(), editor.radiance().end());
+    version = desk.version();
+    desk.go_on();
+    desk.settle();
+    EXPECT_EQ(desk.version(), version);
+    editor.settle();
+    for (std::size_t i = 0; i < stepped.size(); ++i)
+        EXPECT_NEAR(stepped[i].g, editor.radiance()[i].g, 5e-3f * (1.0f + stepped[i].g));
 }
 
 } // namespace

@@ -85,11 +85,12 @@ TEST(ClusterKernels, SquaredDistancesEqualPlainSumsOnEveryTarget) {
             const auto sums = squared_distances(normals, cell.samples);
             const auto expected = plain_squared_distances(cell);
             for (std::size_t l = 0; l < SamplesPerCell; ++l)
-                // A float lane adds up at most 256 terms of one sign: 256 half-units of
-                // 2^-24, 1.5e-5. The second term is for cells that are all equal, where only the
-                // terms' own rounding is left.
-                EXPECT_NEAR(sums[l], expected[l],
-                            1.5e-5 * expected[l] + 1e-13 * static_cast<double>(num_receivers));
+                // Besides, half a unit a run. A float lane adds up at most 256 terms of one sign:
+                // 256 half-units of 2^-24, 1.5e-5. The second term is for cells that are all equal,
+                // where only the terms' own rounding is left.
+                EXPECT_NEAR(static_cast<double>(sums[l]) * SquaredDistanceUnit, expected[l],
+                            1.5e-5 * expected[l] + 1e-13 * static_cast<double>(num_receivers) +
+                                3.0 * SquaredDistanceUnit);
         }
     });
 }
@@ -100,8 +101,8 @@ TEST(ClusterKernels, EqualSamplesHaveNoDistance) {
         RandomCell cell(random, 300);
         cell.samples.directions.fill(cell.samples.directions[4]);
         cell.samples.lit.fill(cell.samples.lit[4]);
-        for (const double sum : squared_distances(NormalArrays(cell.normals), cell.samples))
-            EXPECT_LT(sum, 1e-13 * 300); // (half a unit in the last place)^2 per receiver, 2^-48
+        for (const std::int64_t sum : squared_distances(NormalArrays(cell.normals), cell.samples))
+            EXPECT_EQ(sum, 0); // (half a unit in the last place)^2 per receiver, 2^-48
     });
 }
 

@@ -2,9 +2,12 @@
 #include "prt/parts/parts.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -12,10 +15,13 @@
 
 #include "files/output_file.h"
 #include "prt/parts/part_file.h"
+#include "prt/parts/team_checkpoint.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/same_transfer.h"
 #include "tests/prt/scenes.h"
+#include "tests/prt/thread_team.h"
 
 namespace relumine::prt {
 namespace {
@@ -32,12 +38,12 @@ PrecomputeOptions options_for(const mesh::TriangleMesh& mesh) {
     return {.tolerance = 0.03f, .face_resolution = 64, .bias = automatic_bias(mesh)};
 }
 
-std::vector<VisibleCounts> all_parts(const Receivers& receivers, const Transfer& plan,
-                                     const Blockers& blockers, const PrecomputeOptions& options,
-                                     std::uint32_t count) {
-    std::vector<VisibleCounts> parts;
+std::vector<PartLight> all_parts(const Receivers& receivers, const Transfer& plan,
+                                 const Blockers& blockers, const PrecomputeOptions& options,
+                                 std::uint32_t count) {
+    std::vector<PartLight> parts;
     for (std::uint32_t i = 0; i < count; ++i)
-        parts.push_back(part_counts(receivers, plan, blockers, options, {i, count}));
+        parts.push_back({part_counts(receivers, plan, blockers, options, {i, count})});
     return parts;
 }
 
@@ -51,15 +57,185 @@ TEST(Parts, CountsAreThoseOfAPrecomputeWithTheSameClusters) {
     ASSERT_GT(whole.counts.num_tiles(), 3u);
     for (const std::uint32_t count : {1u, 2u, 3u, 7u}) {
         Transfer joined = whole;
-        joined.counts = joined_counts(whole, all_parts(receivers, whole, beams, options, count));
+        join_light(joined, all_parts(receivers, whole, beams, options, count));
         expect_same(whole, joined);
     }
     // The other engine, and room for few planes at a time.
     PrecomputeOptions tight = options;
     tight.plane_bytes = 1 << 16;
     Transfer joined = whole;
-    joined.counts = joined_counts(whole, all_parts(receivers, whole, rays, tight, 2));
+    join_light(joined, all_parts(receivers, whole, rays, tight, 2));
     expect_same(whole, joined);
+}
+
+/// Clusters that processes choose together, each with the figures of its receivers.
+TEST(Parts, ProcessesThatShareTheWorkFindTheSame) {
+    const mesh::TriangleMesh mesh = several_tiles();
+    const RayScene rays(mesh);
+    const BeamScene beams(mesh, rays);
+    const Receivers receivers = vertex_receivers(mesh);
+    PrecomputeOptions options = options_for(mesh);
+    PrecomputeStatistics of_whole;
+    const Transfer whole = precompute(receivers, beams, options, &of_whole);
+    for (const bool is_tight : {false, true}) {
+        options.plane_bytes = is_tight ? 1 << 16 : PrecomputeOptions{}.plane_bytes;
+        for (const std::uint32_t count : {1u, 2u, 3u, 5u, 8u}) {
+            std::vector<PartLight> parts(count);
+            Transfer joined;
+            ThreadTeam::run(count, [&](Team& reduction, std::uint32_t index) {
+                PrecomputeOptions of_part = options;
+                of_part.reduction = &reduction;
+                PrecomputeStatistics statistics;
+                Transfer transfer = precompute(receivers, beams, of_part, &statistics);
+                parts[index].counts = std::move(transfer.counts);
+                EXPECT_GE(statistics.num_rays, of_whole.num_rays);
+                if (!is_tight) {
+                    EXPECT_EQ(statistics.num_rays, of_whole.num_rays);
+                }
+                if (index == 0)
+                    joined = std::move(transfer);
+            });
+            join_light(joined, parts);
+            expect_same(whole, joined);
+        }
+    }
+}
+
+TEST(Parts, ProcessesThatShareTheWorkStopTogether) {
+    const mesh::TriangleMesh mesh = several_tiles();
+    const RayScene rays(mesh);
+    const Receivers receivers = vertex_receivers(mesh);
+    std::atomic<int> num_cancelled = 0, num_refused = 0;
+    ThreadTeam::run(3, [&](Team& reduction, std::uint32_t index) {
+        // One is told to stop, the others are not.
+        PrecomputeOptions options = options_for(mesh);
+        options.reduction = &reduction;
+        std::stop_source stop;
+        if (index == 1)
+            stop.request_stop();
+        options.stop = stop.get_token();
+        try {
+            (void)precompute(receivers, rays, options);
+        } catch (const Cancelled&) {
+            ++num_cancelled;
+        }
+        // One has too little room.
+        options.stop = {};
+        options.max_column_bytes = index == 2 ? 1000 : options.max_column_bytes;
+        if (index != 2)
+            options.max_column_bytes = 1u << 30;
+        try {
+            (void)precompute(receivers, rays, options);
+        } catch (const TooManyClusters&) {
+            ++num_refused;
+        }
+    });
+    EXPECT_EQ(num_cancelled, 3);
+    EXPECT_EQ(num_refused, 3);
+}
+
+/// Highlights of three widths, also receivers without.
+void give_highlights(Receivers& receivers) {
+    look_from(receivers, {1.5f, 2.5f, 3.0f});
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        receivers.surfaces.push_back({.specular = glm::vec3(0.04f, 0.3f, 0.9f),
+                                      .highlight = i % 3 == 2 ? Highlight::None : Highlight::Ggx,
+                                      .roughness_or_exponent = i % 3 == 0 ? 0.25f : 0.5f});
+}
+
+void expect_same_highlights(const Transfer& a, const Transfer& b) {
+    ASSERT_TRUE(a.glossy && b.glossy);
+    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
+        EXPECT_EQ(a.glossy->lobes[lobe].begin, b.glossy->lobes[lobe].begin);
+        EXPECT_EQ(a.glossy->lobes[lobe].cells, b.glossy->lobes[lobe].cells);
+        EXPECT_EQ(a.glossy->lobes[lobe].scales, b.glossy->lobes[lobe].scales);
+        EXPECT_EQ(a.glossy->lobes[lobe].values, b.glossy->lobes[lobe].values);
+    }
+}
+
+TEST(Parts, HighlightsAreThoseOfAllReceivers) {
+    const mesh::TriangleMesh mesh = several_tiles();
+    const RayScene rays(mesh);
+    Receivers receivers = vertex_receivers(mesh);
+    give_highlights(receivers);
+    const PrecomputeOptions options = options_for(mesh);
+    const GlossyOptions glossy{.tolerance = 0.2f, .face_resolution = 64, .bias = options.bias};
+    Transfer whole = precompute(receivers, rays, options);
+    whole.glossy = precompute_glossy(receivers, rays, whole, glossy);
+    ASSERT_GT(whole.glossy->lobes[0].num_entries(), 0u);
+    for (const std::uint32_t count : {1u, 3u, 8u}) {
+        Transfer joined = whole;
+        std::vector<PartLight> parts = all_parts(receivers, whole, rays, options, count);
+        for (std::uint32_t i = 0; i < count; ++i) {
+            joined.counts = parts[i].counts;
+            parts[i].glossy = part_highlights(receivers, joined, rays, glossy, {i, count});
+        }
+        join_light(joined, parts);
+        expect_same(whole, joined);
+        expect_same_highlights(whole, joined);
+        parts[0].glossy.reset();
+        if (count > 1) {
+            EXPECT_THROW(join_light(joined, parts), std::invalid_argument);
+        }
+    }
+}
+
+/// Gives each run what an earlier one had saved up to some save: a kill between any two saves.
+TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
+    const mesh::TriangleMesh mesh = several_tiles();
+    const RayScene rays(mesh);
+    Receivers receivers = vertex_receivers(mesh);
+    give_highlights(receivers);
+    PrecomputeOptions options = options_for(mesh);
+    options.plane_bytes = 1 << 18; // several batches
+    const GlossyOptions glossy{.tolerance = 0.2f, .face_resolution = 64, .bias = options.bias};
+    Transfer whole = precompute(receivers, rays, options);
+    whole.glossy = precompute_glossy(receivers, rays, whole, glossy);
+
+    constexpr std::uint32_t Count = 3;
+    const auto shared = [&](Checkpoint& store, std::uint64_t* num_rays) {
+        std::vector<PartLight> parts(Count);
+        ThreadTeam::run(Count, [&](Team& team, std::uint32_t index) {
+            TeamCheckpoint checkpoint(team, index == 0 ? &store : nullptr);
+            PrecomputeOptions of_part = options;
+            of_part.reduction = &team;
+            of_part.checkpoint = &checkpoint;
+            PrecomputeStatistics statistics;
+            Transfer transfer = precompute(receivers, rays, of_part, &statistics);
+            if (index == 0)
+                *num_rays = statistics.num_rays;
+            GlossyOptions of_glossy = glossy;
+            of_glossy.reduction = &team;
+            of_glossy.checkpoint = &checkpoint;
+            parts[index].glossy =
+                part_highlights(receivers, transfer, rays, of_glossy, team.part());
+            parts[index].counts = std::move(transfer.counts);
+        });
+        Transfer joined = whole;
+        join_light(joined, parts);
+        expect_same(whole, joined);
+        expect_same_highlights(whole, joined);
+    };
+    /// Keeps what the store held after each save.
+    class History final : public MemoryCheckpoint {
+    public:
+        std::vector<std::map<std::string, Saved>> after;
+        [[nodiscard]] bool save(const std::string& part, std::span<const std::byte> record,
+                                std::span<const std::byte> state) override {
+            const bool is_saved = MemoryCheckpoint::save(part, record, state);
+            after.push_back(parts);
+            return is_saved;
+        }
+    } history;
+    std::uint64_t num_rays = 0, num_rays_again = 0;
+    shared(history, &num_rays);
+    ASSERT_GT(history.after.size(), 3u);
+    for (std::size_t i = 0; i < history.after.size(); i += 1 + i / 4) {
+        MemoryCheckpoint store;
+        store.parts = history.after[i];
+        shared(store, &num_rays_again);
+        EXPECT_EQ(num_rays_again, num_rays);
+    }
 }
 
 TEST(Parts, SingleTexelsCountByTheirCentre) {
@@ -72,7 +248,7 @@ TEST(Parts, SingleTexelsCountByTheirCentre) {
     const Transfer whole = precompute(receivers, rays, options);
     ASSERT_EQ(whole.num_clusters(), 6u * 8 * 8);
     Transfer joined = whole;
-    joined.counts = joined_counts(whole, all_parts(receivers, whole, rays, options, 3));
+    join_light(joined, all_parts(receivers, whole, rays, options, 3));
     expect_same(whole, joined);
 }
 
@@ -84,7 +260,7 @@ TEST(Parts, AFewReceiversArePlannedByAllOfThem) {
     const Transfer whole = precompute(receivers, rays, options);
     Transfer plan = plan_clusters(receivers, rays, options);
     EXPECT_EQ(plan.counts.counts.size(), 0u);
-    plan.counts = joined_counts(plan, all_parts(receivers, plan, rays, options, 1));
+    join_light(plan, all_parts(receivers, plan, rays, options, 1));
     expect_same(whole, plan);
 }
 
@@ -146,10 +322,11 @@ protected:
         const Plan plan = load_plan(folder_ / of);
         const VisibleCounts counts =
             part_counts(plan.scene.receivers, plan.scene.transfer, *rays_,
-                        {.face_resolution = plan.scene.settings.face_resolution,
+                        {.min_level = plan.scene.settings.min_level,
+                         .face_resolution = plan.scene.settings.face_resolution,
                          .bias = plan.scene.settings.bias},
                         {index, count});
-        save_part(folder_ / name, plan, {index, count}, counts);
+        save_part(folder_ / name, plan, {index, count}, {counts});
         return folder_ / name;
     }
 

@@ -114,5 +114,18 @@ TEST(ReceiverOrder, IsTheSameOnOneThread) {
     EXPECT_EQ(spatial_order(receivers), parallel);
 }
 
+TEST(ReceiverOrder, AddedVerticesStandTogetherAfterTheOthers) {
+    Receivers receivers = random_receivers(1000, 3, 0.1f);
+    receivers.num_added = 300;
+    const std::vector<std::uint32_t> order = spatial_order(receivers);
+    expect_permutation(order);
+    const auto rank = [&](std::uint32_t receiver) {
+        return receivers.normals[receiver] == glm::vec3(0.0f) ? 2 : receiver < 700 ? 0 : 1;
+    };
+    EXPECT_TRUE(std::is_sorted(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return rank(a) < rank(b);
+    }));
+}
+
 } // namespace
 } // namespace relumine::prt

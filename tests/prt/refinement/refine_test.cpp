@@ -1,5 +1,6 @@
 #include "prt/refinement/refine.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -7,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "cubemap/cube_map.h"
 #include "mesh/half_edge/edge_uses.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
@@ -71,8 +73,8 @@ TEST(CoarseDirections, TheDifferenceAtAWallIsTheClosedForm) {
               0.0f);
     // Other normals, all of them slow: the same sum by the plain way.
     const glm::vec3 slanted = glm::normalize(glm::vec3(0.3f, 1.0f, 0.2f));
-    double sum = 0.0, all = 0.0;
-    for (std::size_t p = 0; p < CoarseDirections::NumPatches; ++p)
+    double sum = 0.0, mean = 0.0, sum_of_sizes = 0.0, all = 0.0;
+    for (std::size_t p = 0; p < CoarseDirections::NumEvenPatches; ++p)
         for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
             const glm::vec3 w = directions.patches()[p].direction(j);
             const double place = std::max({std::abs(w.x), std::abs(w.y), std::abs(w.z)});
@@ -81,10 +83,45 @@ TEST(CoarseDirections, TheDifferenceAtAWallIsTheClosedForm) {
             const double difference =
                 (m ? glm::dot(slanted, w) : 0.0f) - (a ? glm::dot(points.normals[0], w) : 0.0f);
             sum += share * difference * difference;
+            mean += share * difference;
+            sum_of_sizes += share * std::abs(difference);
             all += share;
         }
-    EXPECT_NEAR(directions.difference({slanted, &bits[2]}, std::span(ends).first(1), 1.0f),
-                std::sqrt(sum / all) / 3.14159265, 1e-4);
+    const auto expected = [&](double of_all) {
+        return std::sqrt(sum / all + 20.0 * of_all * of_all / (all * all)) / 3.14159265;
+    };
+    const CoarseDirections::Point there{slanted, &bits[2]};
+    const auto only = std::span(ends).first(1);
+    EXPECT_NEAR(directions.difference(there, only, 1.0f), expected(mean), 1e-4);
+    EXPECT_NEAR(directions.difference(there, only, 1.0f, CoarseDirections::Signs::Dropped),
+                expected(sum_of_sizes), 1e-4);
+    EXPECT_GT(expected(sum_of_sizes), 1.05 * expected(mean));
+}
+
+TEST(CoarseDirections, TheLightOfAnEnvironmentCounts) {
+    // All light comes from one small place on the right, at half of the height: there the middle
+    // has cos and the mean half of it. Under even light the gain on the right makes up for the loss
+    // on the left.
+    cubemap::CubeMap sun(128);
+    sun.at(cubemap::Face::PositiveX, 64, 32) = glm::vec3(1e5f);
+    const CoarseDirections directions(&sun);
+    EXPECT_EQ(directions.patches().size(), CoarseDirections::NumEvenPatches + 1);
+    const glm::vec3 w = glm::vec3(cubemap::texel_direction(cubemap::Face::PositiveX, 64, 32, 128));
+    for (std::size_t j = 0; j < DirectionPatch::Size; ++j)
+        EXPECT_LT(glm::distance(directions.patches().back().direction(j), w), 0.02f);
+    Receivers points;
+    points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
+    points.normals.assign(3, glm::vec3(0, 1, 0));
+    const auto bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
+    const std::array<CoarseDirections::Point, 2> ends = {
+        CoarseDirections::Point{points.normals[0], &bits[0]},
+        CoarseDirections::Point{points.normals[1], &bits[1]}};
+    EXPECT_NEAR(directions.difference({points.normals[2], &bits[2]}, ends, 0.5f),
+                std::sqrt(1.0 / 24.0 + 4.0 * double{w.y * w.y} / 4.0) / 3.14159265, 1e-3);
+    // Light without power and light from everywhere are no reason for patches.
+    const cubemap::CubeMap black(64), white(64, glm::vec3(1.0f));
+    for (const cubemap::CubeMap* map : {&black, &white})
+        EXPECT_EQ(CoarseDirections(map).patches().size(), CoarseDirections::NumEvenPatches);
 }
 
 TEST(Refine, ABoxOnTwoTrianglesGetsItsShadow) {
@@ -114,6 +151,48 @@ TEST(Refine, ABoxOnTwoTrianglesGetsItsShadow) {
             EXPECT_FLOAT_EQ(std::max(std::abs(middle.x), std::abs(middle.z)), 3.0f);
         }
     });
+}
+
+TEST(Refine, TheShadowOfANamedSunIsFound) {
+    const mesh::TriangleMesh mesh = box_on_floor();
+    const RayScene rays(mesh);
+    cubemap::CubeMap light(128, glm::vec3(0.1f));
+    light.at(cubemap::Face::PositiveX, 70, 30) = glm::vec3(1e6f);
+    const glm::vec3 sun =
+        glm::vec3(cubemap::texel_direction(cubemap::Face::PositiveX, 70, 30, 128));
+    const auto lit = [&](const glm::vec3& p) {
+        return rays.occluded(p + glm::vec3(0, 1e-3f, 0), sun) ? 0.0f : 1.0f;
+    };
+    // Mean error of the floor's sun, at the middles of triangles, by area.
+    const auto error = [&](const RefineOptions& options) {
+        const mesh::TriangleMesh fine = refined(mesh, options);
+        double sum = 0.0;
+        for (const auto& [a, b, c] : fine.triangles) {
+            const std::array<glm::vec3, 3> p = {fine.positions[a], fine.positions[b],
+                                                fine.positions[c]};
+            if (std::max({p[0].y, p[1].y, p[2].y}) > 0.0f)
+                continue;
+            const float area = 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
+            const float mean = (lit(p[0]) + lit(p[1]) + lit(p[2])) / 3.0f;
+            sum += double{area * std::abs(mean - lit((p[0] + p[1] + p[2]) / 3.0f))};
+        }
+        return sum;
+    };
+    const double any = error({.error = 0.0f, .max_vertices = 1500});
+    const double named = error({.error = 0.0f, .max_vertices = 1500, .light = light});
+    EXPECT_LT(named, 0.4 * any);
+    EXPECT_GT(named, 0.0);
+}
+
+TEST(Refine, OnlyEdgesWhoseEndsDifferAreAskedInTheMiddle) {
+    const mesh::TriangleMesh mesh = scenes::joined(
+        scenes::box({-0.2f, 0.001f, -0.2f}, {0.2f, 0.3f, 0.2f}), scenes::floor_grid(60, 6.0f));
+    RefineReport report;
+    const mesh::TriangleMesh fine = refined(mesh, {.error = 0.02f}, &report);
+    EXPECT_GT(fine.num_vertices(), mesh.num_vertices() + 100);
+    EXPECT_LT(report.num_points, 2 * fine.num_vertices()) << "there are three times as many edges";
+    refined(mesh, {.error = 0.0f, .max_vertices = mesh.num_vertices() + 500}, &report);
+    EXPECT_LT(report.num_points, 2 * fine.num_vertices());
 }
 
 TEST(Refine, TheErrorHoldsInTheEnd) {
@@ -216,6 +295,7 @@ TEST(Refine, OptionsOutOfRangeAreRefused) {
     refuse(mesh, {.max_edge = 1.0f, .min_edge = 2.0f});
     refuse(mesh, {.min_edge = -1.0f});
     refuse(mesh, {.max_vertices = 5});
+    refuse(mesh, {.light = cubemap::CubeMap()});
     mesh::TriangleMesh flat = mesh;
     flat.triangles = {{0, 0, 1}, {1, 1, 1}};
     refuse(flat, {});

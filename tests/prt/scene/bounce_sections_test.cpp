@@ -62,8 +62,6 @@ TEST(BounceSections, DamageIsRefused) {
         refuses([&](Sections& s) { s[size][15] = std::byte{0xff}; });
     }
     refuses([](Sections& s) { s["bounce_radius"].clear(); });
-    refuses([](Sections& s) { s["bounce_radius"] = bytes_of(std::vector{-1.0f}); });
-    refuses([](Sections& s) { s["bounce_weights"] = bytes_of(std::vector(NumReceivers, 2.0f)); });
 }
 
 } // namespace

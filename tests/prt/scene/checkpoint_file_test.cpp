@@ -195,7 +195,11 @@ TEST(Fingerprint, ChangesWithAllThatTheResultDependsOn) {
     const PrecomputeOptions options;
     const Fingerprint plain = fingerprint(mesh, receivers, options, {});
     EXPECT_EQ(fingerprint(mesh, receivers, {.plane_bytes = 1}, {}), plain);
-    EXPECT_NE(fingerprint(mesh, receivers, options, 0.1f), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, options, {.glossy_tolerance = 0.1f}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, options, {.bounce_tolerance = 0.1f}), plain);
+    EXPECT_NE(fingerprint(mesh, receivers, options,
+                          {.bounce_tolerance = 0.1f, .two_sided_bounces = true}),
+              fingerprint(mesh, receivers, options, {.bounce_tolerance = 0.1f}));
     EXPECT_NE(fingerprint(mesh, receivers, {.tolerance = 0.1f}, {}), plain);
     EXPECT_NE(fingerprint(mesh, receivers, {.epsilon = 0.1f}, {}), plain);
     EXPECT_NE(fingerprint(mesh, receivers, {.min_level = 1}, {}), plain);

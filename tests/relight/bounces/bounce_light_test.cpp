@@ -20,21 +20,23 @@ prt::Transfer transfer_of(std::size_t n) {
     return transfer;
 }
 
-/// Random emitters; each receiver keeps `closure` of the light, and some share their samples.
-prt::BounceMatrix random_matrix(std::size_t n, double closure) {
+/// Random emitters from place `first` on; each receiver keeps `closure` of the light, and some
+/// share their samples.
+prt::BounceMatrix random_matrix(std::size_t n, double closure, std::size_t first = 0) {
     std::mt19937 random(7);
     prt::BounceMatrix matrix;
-    const auto random_places = [&](std::size_t size) {
+    const auto random_places = [&](std::size_t size, std::size_t begin, std::size_t end) {
         std::vector<std::uint32_t> places(size);
         for (std::uint32_t& place : places)
-            place = static_cast<std::uint32_t>(random() % n);
+            place = static_cast<std::uint32_t>(begin + random() % (end - begin));
         return places;
     };
     for (std::size_t row = 0; row < n; ++row) {
-        std::vector<std::uint32_t> emitters = random_places(1 + random() % 40);
+        std::vector<std::uint32_t> emitters = random_places(1 + random() % 40, first, n);
         std::sort(emitters.begin(), emitters.end());
         matrix.emitters.append(emitters);
-        std::vector<std::uint32_t> averaged = random_places(random() % 5);
+        std::vector<std::uint32_t> averaged = row < first ? random_places(random() % 5, 0, first)
+                                                          : random_places(random() % 5, first, n);
         averaged.push_back(static_cast<std::uint32_t>(row));
         std::sort(averaged.begin(), averaged.end());
         matrix.averaged.append(averaged);
@@ -149,6 +151,36 @@ TEST(BounceLight, AClosedRoomGlowsTwiceAsBright) {
     light.solve(direct);
     for (std::size_t i = 0; i < Size; ++i)
         EXPECT_NEAR(0.5f * (direct[i].g + light.indirect()[i].g), 2.0f, 1e-3f);
+}
+
+// Pixels and texels stand before the vertices that light bounces between.
+TEST(BounceLight, ReceiversThatSendNothingGetTheSameLight) {
+    constexpr std::size_t First = 700;
+    const prt::Transfer transfer = transfer_of(Size);
+    const prt::BounceMatrix matrix = random_matrix(Size, 0.9, First);
+    EXPECT_EQ(prt::first_emitter(matrix), First);
+    EXPECT_EQ(prt::first_emitter(random_matrix(Size, 0.9)), 0u);
+    EXPECT_NEAR(matrix.spectral_radius, 0.9f, 1e-3f);
+    auto albedo = random_colors(Size, 1.0f);
+    // Nothing grows of what is not sent.
+    albedo[transfer.order[0]] = glm::vec3(5.0f);
+    const auto direct = random_colors(Size, 5.0f);
+    BounceLight light(matrix, transfer);
+    light.set_albedo(albedo);
+    for (const int num_bounces : {0, 1, 2, 5}) {
+        light.solve(direct, {.num_bounces = static_cast<std::uint32_t>(num_bounces)});
+        const auto plain = plain_bounces(matrix, transfer, albedo, direct, num_bounces);
+        for (std::size_t i = 0; i < Size; ++i)
+            ASSERT_NEAR(light.indirect()[i].g, plain[i].g, 1e-4 * plain[i].g) << num_bounces;
+    }
+    light.solve(direct, {.tolerance = 1e-5});
+    const auto plain = plain_bounces(matrix, transfer, albedo, direct, 400);
+    EXPECT_LT(relative_difference(light.indirect(), plain), 3e-5);
+    EXPECT_NEAR(light.indirect()[transfer.order[3]].g, plain[transfer.order[3]].g,
+                1e-4 * plain[transfer.order[3]].g);
+    for (int i = 0; i < 30; ++i)
+        light.step(direct);
+    EXPECT_LT(relative_difference(light.indirect(), plain), 1e-4);
 }
 
 TEST(BounceLight, BlackSurfacesBounceNothing) {

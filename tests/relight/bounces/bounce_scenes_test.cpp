@@ -15,6 +15,7 @@
 #include "relight/bounces/probe_lights.h"
 #include "relight/exact.h"
 #include "relight/relighter.h"
+#include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/bounces/bouncing_scene.h"
 
@@ -241,6 +242,95 @@ TEST(BounceScenes, BacksRadiateOnlyWhereAsked) {
         scene.mesh, scene.receivers, scene.transfer, probe_radiance(scene.transfer), scene.rays,
         {.two_sided = true, .bias = scene.bias});
     EXPECT_GT(two_sided.emitters.places.size(), 81u);
+
+    // The upper square sends down what the sky gives its front: the white light of the lower one's
+    // closed directions.
+    BounceLight light(two_sided, scene.transfer);
+    const std::size_t n = scene.receivers.size();
+    light.set_albedo(std::vector(n, glm::vec3(1.0f)));
+    Relighter relighter(scene.transfer);
+    const cubemap::CubeMap white(16, glm::vec3(1.0f));
+    relighter.set_environment(white);
+    light.solve(relighter.diffuse_radiance());
+    std::vector<std::uint32_t> all(n);
+    std::iota(all.begin(), all.end(), 0u);
+    for (const bool is_two_sided : {false, true}) {
+        const auto traced = trace_bounces(
+            scene.mesh, std::vector(n, glm::vec3(1.0f)), scene.receivers, all, scene.rays, white,
+            {.num_paths = 400, .two_sided = is_two_sided, .bias = scene.bias});
+        for (std::size_t i = 0; i < n; ++i)
+            ASSERT_NEAR(traced[i].radiance.g,
+                        is_two_sided ? static_cast<double>(light.indirect()[i].g) : 0.0,
+                        0.03 + 4.0 * traced[i].standard_error.g);
+    }
+    EXPECT_GT(light.indirect()[40].g, 0.1f);
+}
+
+TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
+    // More blocks than are done between two looks at the checkpoint.
+    const mesh::TriangleMesh mesh = scenes::joined(scenes::floor_grid(100, 4.0f),
+                                                   scenes::icosphere(3, 0.5f, {0.0f, 0.6f, 0.0f}));
+    const BouncingScene scene(mesh, 0.005f, 0.1f);
+    const auto probes = probe_radiance(scene.transfer);
+    prt::BounceStatistics found;
+    const auto rows = [&](prt::Checkpoint& checkpoint, const std::stop_token& stop = {}) {
+        return prt::precompute_bounces(
+            scene.mesh, scene.receivers, scene.transfer, probes, scene.rays,
+            {.tolerance = 0.005f, .bias = scene.bias, .checkpoint = &checkpoint, .stop = stop},
+            &found);
+    };
+    std::size_t num_saves = 0;
+    for (;; ++num_saves) {
+        prt::MemoryCheckpoint checkpoint;
+        checkpoint.saves_to_live = num_saves;
+        bool is_killed = false;
+        try {
+            static_cast<void>(rows(checkpoint));
+        } catch (const prt::Killed&) {
+            is_killed = true;
+        }
+        checkpoint.saves_to_live = static_cast<std::size_t>(-1);
+        EXPECT_EQ(rows(checkpoint), scene.matrix) << "killed at save " << num_saves;
+        EXPECT_EQ(found.num_rays, scene.statistics.num_rays);
+        EXPECT_EQ(found.rms_error, scene.statistics.rms_error);
+        if (!is_killed)
+            break;
+    }
+    EXPECT_EQ(num_saves, 6u);
+
+    // A run that is stopped leaves what it has, and one whose saves fail goes on.
+    prt::MemoryCheckpoint checkpoint;
+    checkpoint.every = 2;
+    std::stop_source stop;
+    EXPECT_THROW(static_cast<void>(prt::precompute_bounces(scene.mesh, scene.receivers,
+                                                           scene.transfer, probes, scene.rays,
+                                                           {.tolerance = 0.005f,
+                                                            .bias = scene.bias,
+                                                            .checkpoint = &checkpoint,
+                                                            .stop = stop.get_token(),
+                                                            .on_progress =
+                                                                [&](double done) {
+                                                                    if (done > 0.8)
+                                                                        stop.request_stop();
+                                                                }})),
+                 prt::Cancelled);
+    EXPECT_GT(checkpoint.parts.at("more_bounces").records.size(), 0u);
+    EXPECT_EQ(rows(checkpoint), scene.matrix);
+    prt::MemoryCheckpoint failing;
+    failing.is_failing = true;
+    EXPECT_EQ(rows(failing), scene.matrix);
+}
+
+TEST(BounceScenes, RowsThatTakeTooMuchMemoryAreRefused) {
+    const BouncingScene scene(scenes::sphere_and_box_on_floor());
+    const auto probes = probe_radiance(scene.transfer);
+    const auto within = [&](std::uint64_t max_bytes) {
+        return prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer, probes,
+                                       scene.rays, {.bias = scene.bias, .max_bytes = max_bytes});
+    };
+    EXPECT_EQ(within(2 * prt::BytesPerHit * scene.statistics.num_hits), scene.matrix);
+    EXPECT_THROW(static_cast<void>(within(prt::BytesPerHit * scene.statistics.num_hits / 2)),
+                 prt::TooManyHits);
 }
 
 TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {

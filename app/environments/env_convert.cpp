@@ -1,0 +1,236 @@
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/commands.h"
+#include "app/environments/split_sun.h"
+#include "app/options/environment_options.h"
+#include "app/options/output_options.h"
+#include "app/options/size_text.h"
+#include "cubemap/doctor/statistics.h"
+#include "cubemap/image/convention.h"
+#include "cubemap/image/image_layout.h"
+#include "cubemap/resample/convert.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct ConvertArguments {
+    EnvironmentOptions input;
+    std::string output;
+    /// Empty: what `to` usually reads
+    std::string to_layout;
+    std::string to = "openexr";
+    /// W or WxH
+    std::string size;
+    std::uint32_t face_resolution = 0;
+    std::string samples = "auto";
+    bool split_sun = false;
+};
+
+/// --size: W, or WxH.
+std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
+    if (text.empty())
+        return std::nullopt;
+    if (const auto size = parse_size_text(text))
+        return cubemap::ImageSize{size->width, size->height};
+    const auto width = parse_count(text);
+    if (!width)
+        throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
+    return cubemap::ImageSize{*width, 0};
+}
+
+/// Throws what a layout cannot be.
+cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layout) {
+    constexpr std::uint64_t MostPixels = std::uint64_t{1} << 28; // 3 GB
+    if (!cubemap::fits(layout, size.width, size.height))
+        throw UsageError("--size", fmt::format("expected the proportions of a {}, got {}x{}",
+                                               cubemap::name(layout), size.width, size.height));
+    if (std::uint64_t{size.width} * size.height > MostPixels)
+        throw UsageError("--size", fmt::format("expected at most {} pixels, got {}x{}", MostPixels,
+                                               size.width, size.height));
+    return size;
+}
+
+cubemap::ImageSize target_size(const ConvertArguments& options,
+                               const cubemap::EnvironmentImage& image, cubemap::Layout layout) {
+    const auto size = parse_size(options.size);
+    if (size && options.face_resolution != 0)
+        throw UsageError("--size", "expected either --size or --face-resolution");
+    if (size) {
+        if (size->height != 0)
+            return checked(*size, layout);
+        // The height that belongs to a width.
+        const cubemap::ImageSize unit =
+            layout == cubemap::Layout::LatLong ? cubemap::ImageSize{2, 1}
+            : cubemap::has_faces(layout)       ? cubemap::natural_size(layout, 1)
+                                               : cubemap::ImageSize{1, 1};
+        if (size->width % unit.width != 0)
+            throw UsageError("--size",
+                             fmt::format("expected a multiple of {} as the width of a {}, got {}",
+                                         unit.width, cubemap::name(layout), size->width));
+        const std::uint64_t height = std::uint64_t{size->width} / unit.width * unit.height;
+        return checked({size->width, static_cast<std::uint32_t>(std::min<std::uint64_t>(
+                                         height, std::numeric_limits<std::uint32_t>::max()))},
+                       layout);
+    }
+    if (options.face_resolution != 0) {
+        return checked(cubemap::natural_size(layout, options.face_resolution), layout);
+    }
+    return cubemap::conversion_size(image, layout);
+}
+
+cubemap::Layout target_layout(const ConvertArguments& options,
+                              const cubemap::EnvironmentImage& image,
+                              const cubemap::Convention& to) {
+    const bool six_files = cubemap::environment_files(options.output).size() > 1;
+    cubemap::Layout layout = to.has_attribute ? image.layout : to.usual_layout;
+    if (six_files)
+        layout = cubemap::Layout::Cube;
+    if (!options.to_layout.empty())
+        layout = parse_layout(options.to_layout);
+    if (!to.reads(layout))
+        throw UsageError("--to-layout", fmt::format("expected {} with --to {}, got {}",
+                                                    layouts_of(to), to.name, option_name(layout)));
+    if (six_files && layout != cubemap::Layout::Cube)
+        throw UsageError("--to-layout",
+                         fmt::format("expected cube for six files, got {}", option_name(layout)));
+    return layout;
+}
+
+Report described(const cubemap::Convention& convention, const cubemap::EnvironmentImage& image,
+                 const cubemap::EnvironmentStatistics& statistics) {
+    return {{"layout", cubemap::name(image.layout)},
+            {"convention", convention.name},
+            {"width", image.width},
+            {"height", image.height},
+            {"samples_on_borders", image.sampling == cubemap::Sampling::Borders},
+            {"mean_radiance", statistics.mean_radiance}};
+}
+
+void run(const ConvertArguments& options, Session& session) {
+    const cubemap::Convention& from = *cubemap::find_convention(options.input.from);
+    const cubemap::Convention& to = *cubemap::find_convention(options.to);
+    require_environment_name("--output", options.output);
+    static_cast<void>(parse_size(options.size));
+    std::vector<std::string> inputs;
+    for (const auto& path : cubemap::environment_files(options.input.path))
+        inputs.push_back(path.string());
+    for (const auto& path : cubemap::environment_files(options.output))
+        check_output(path.string(), inputs);
+    std::optional<SunFile> sun_file;
+    if (options.split_sun) {
+        check_output(SunFile::path_beside(options.output).string(), inputs);
+        sun_file.emplace(options.output);
+    }
+
+    Stopwatch watch;
+    cubemap::EnvironmentImage image = load_image(options.input, session);
+    const double seconds_load = watch.lap();
+    session.poll();
+
+    const cubemap::Layout layout = target_layout(options, image, to);
+    const cubemap::ImageSize size = target_size(options, image, layout);
+    cubemap::Sampling sampling = to.has_attribute
+                                     ? cubemap::default_sampling(options.output, layout)
+                                     : cubemap::Sampling::TexelCentres;
+    if (options.samples == "centres")
+        sampling = cubemap::Sampling::TexelCentres;
+    Report result = {{"input", described(from, image, cubemap::statistics(image))}};
+    watch.lap();
+    const glm::dmat3 world_from_image = options.input.world_from_image(image.layout);
+    SunFile::Split sun;
+    if (sun_file)
+        sun = sun_file->split(image, world_from_image, options.input.path);
+    cubemap::EnvironmentImage converted =
+        cubemap::convert(image, {layout, sampling, size.width, size.height},
+                         glm::transpose(to.world_from(layout)) * world_from_image);
+    const cubemap::EnvironmentStatistics statistics = cubemap::statistics(converted);
+    warn_about(options.input, image, statistics.light_from_below, session);
+    if (to.swaps_z_faces)
+        cubemap::swap_z_faces(converted);
+    const double seconds_convert = watch.lap();
+    session.poll();
+    cubemap::save_image(options.output, converted);
+    if (sun_file)
+        sun_file->commit();
+    const double seconds_save = watch.lap();
+
+    session.say(fmt::format("{}: {} {} x {}, as {} reads it", options.output, cubemap::name(layout),
+                            size.width, size.height, to.name));
+    if (sun_file)
+        session.say(fmt::format("{}: the sun, {:.2g} % of the light", sun_file->path(),
+                                100.0 * sun.share_of_power));
+    if (sun_file)
+        result.set("sun", sun.report);
+    result.set("output", described(to, converted, statistics));
+    result.set("assumptions", image.assumptions);
+    result.set("seconds_load", seconds_load);
+    result.set("seconds_convert", seconds_convert);
+    result.set("seconds_save", seconds_save);
+    session.report(result);
+}
+
+void add_convert(Command& group, Session& session) {
+    Command command = group.add_command("convert", "from one layout and program to another");
+    auto options = std::make_shared<ConvertArguments>();
+    std::vector<std::string> names;
+    std::string list =
+        "\n\nCONVENTIONS (u to the right, v down, both in [0, 1]; docs/environments.md)\n";
+    for (const cubemap::Convention& convention : cubemap::conventions()) {
+        names.emplace_back(convention.name);
+        list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
+    }
+    command.footer(list);
+    command
+        .add_option("IN", options->input.path,
+                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
+        .file()
+        .required();
+    command
+        .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
+        .file()
+        .required();
+    options->input.add_reading_to(command);
+    command
+        .add_option("--to-layout", options->to_layout,
+                    "layout of OUT (IN's; with --to, what that program reads)")
+        .one_of(layout_names());
+    command.add_option("--to", options->to, "whose convention OUT follows")
+        .one_of(names)
+        .show_default();
+    command.add_option(
+        "--size", options->size,
+        "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
+        "octahedral 640; cube to cube as it is)");
+    command
+        .add_option("--face-resolution", options->face_resolution,
+                    "the same as a cube face: a lat-long gets 4R x 2R pixels")
+        .between(0, 16384);
+    command
+        .add_option("--samples", options->samples,
+                    "centres: at texel centres and without the envmap attribute, even in OpenEXR's "
+                    "lat-long and cube")
+        .one_of({"auto", "centres"})
+        .show_default();
+    command.add_flag("--split-sun", options->split_sun,
+                     "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
+                     "light, in world axes");
+    session.add_common_options(command);
+    command.on_run([options, &session] { run(*options, session); });
+}
+
+} // namespace
+
+void add_env(Command& program, Session& session) {
+    Command group = program.add_command("env", "environments: `env convert`");
+    add_convert(group, session);
+}
+
+} // namespace relumine::app

@@ -1,0 +1,98 @@
+#include "app/environments/generate_sequence.h"
+
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/options/environment_options.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/image/frame_pattern.h"
+#include "data_gen/sequences.h"
+
+namespace relumine::app {
+
+namespace {
+
+const data_gen::Sequence& named(const std::string& kind) {
+    for (const data_gen::Sequence& sequence : data_gen::sequences())
+        if (sequence.name == kind)
+            return sequence;
+    throw UsageError("KIND", kind.empty() ? "expected what sequence to make, got none"
+                                          : fmt::format("expected a sequence, got '{}'", kind));
+}
+
+data_gen::SequenceOptions sequence_options(const GenerateSequenceOptions& options,
+                                           const data_gen::Sequence& sequence,
+                                           std::optional<std::uint32_t> face_resolution,
+                                           Session& session) {
+    data_gen::SequenceOptions result{.num_frames = options.num_frames};
+    if (face_resolution)
+        result.face_resolution = *face_resolution;
+    if (sequence.needs_probe != !options.environment.empty())
+        throw UsageError("--env", fmt::format("expected {} for `{}`",
+                                              sequence.needs_probe ? "an environment" : "none",
+                                              sequence.name));
+    if (sequence.needs_probe) {
+        EnvironmentOptions environment;
+        environment.path = options.environment;
+        environment.face_resolution = face_resolution.value_or(0);
+        result.probe = load_environment(environment, session).map;
+    }
+    return result;
+}
+
+} // namespace
+
+void GenerateSequenceOptions::add_to(Command& command) {
+    command.add_option("KIND", kind, "after `sequence`: which one, see below").type_name("KIND");
+    command.add_option("--num-frames", num_frames, "frames of a sequence")
+        .between(1, 1000000)
+        .show_default();
+    command.add_option("--env", environment, "the environment that `sequence turn` turns").file();
+    command
+        .add_option("--layout", layout,
+                    "of a sequence's frames: cross (texels as they are), cube or latlong")
+        .one_of({"cross", "cube", "latlong"})
+        .show_default();
+}
+
+void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
+                       std::optional<std::uint32_t> face_resolution, Session& session) {
+    const data_gen::Sequence& sequence = named(options.kind);
+    const data_gen::FrameMaker make =
+        sequence.make(sequence_options(options, sequence, face_resolution, session));
+    const std::string name =
+        (std::filesystem::path(folder) / fmt::format("{}.%04d.exr", sequence.name)).string();
+    const std::optional<cubemap::FramePattern> pattern = cubemap::FramePattern::parse(name);
+    const cubemap::Layout layout = parse_layout(options.layout);
+    make_folder(folder);
+    const auto progress = session.progress("frames");
+    std::uint32_t resolution = 0;
+    for (std::size_t frame = 0; frame < options.num_frames; ++frame) {
+        session.poll();
+        const cubemap::CubeMap map = make(frame);
+        resolution = map.resolution;
+        cubemap::save_environment(pattern->name(static_cast<std::int64_t>(frame)), map, layout);
+        if (progress)
+            progress(static_cast<double>(frame + 1) / static_cast<double>(options.num_frames));
+    }
+    session.end_progress();
+    session.say(fmt::format("{}: {} frames, {}, R = {}", name, options.num_frames,
+                            cubemap::name(layout), resolution));
+    session.report(
+        {{"frames", name}, {"num_frames", options.num_frames}, {"face_resolution", resolution}});
+}
+
+void make_folder(const std::string& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        throw std::runtime_error(
+            fmt::format("{}: cannot make the folder: {}", path, error.message()));
+}
+
+} // namespace relumine::app

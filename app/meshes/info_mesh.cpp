@@ -1,0 +1,190 @@
+#include "app/meshes/info_mesh.h"
+
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/options/output_options.h"
+#include "mesh/half_edge/diagnosis.h"
+#include "mesh/load.h"
+#include "relight/pictures/mesh_picture.h"
+
+namespace relumine::app {
+
+namespace {
+
+/// Model and numbers of a material, as the file has them.
+std::string description(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
+        if (!slot)
+            return std::string();
+        const mesh::Texture& image = mesh.textures[slot->texture];
+        return fmt::format(" x {} ({} x {})", image.name, image.width, image.height);
+    };
+    const glm::vec3& base = material.base_color;
+    if (material.model == mesh::MaterialModel::MetallicRoughness)
+        return fmt::format("metallic-roughness, base {} {} {}{}, metallic {}, roughness {}{}",
+                           base.r, base.g, base.b, texture(material.base_color_texture),
+                           material.metallic, material.roughness,
+                           texture(material.metallic_roughness_texture));
+    if (material.model == mesh::MaterialModel::SpecularGlossiness)
+        return fmt::format("specular-glossiness, diffuse {} {} {}{}, F0 {} {} {}{}, roughness {}{}",
+                           base.r, base.g, base.b, texture(material.base_color_texture),
+                           material.specular.r, material.specular.g, material.specular.b,
+                           texture(material.specular_texture), material.roughness,
+                           texture(material.metallic_roughness_texture));
+    const std::string diffuse =
+        fmt::format("Kd {} {} {}{}", base.r, base.g, base.b, texture(material.base_color_texture));
+    if (material.specular == glm::vec3(0.0f))
+        return fmt::format("Lambert, {}", diffuse);
+    return fmt::format("Blinn-Phong, {}, Ks {} {} {}, Ns {}", diffuse, material.specular.r,
+                       material.specular.g, material.specular.b, material.exponent);
+}
+
+Report json_of(const mesh::TriangleMesh& mesh, const mesh::Material& material) {
+    const auto texture = [&mesh](const std::optional<mesh::TextureSlot>& slot) {
+        return slot ? Report(mesh.textures[slot->texture].name) : Report(nullptr);
+    };
+    using Model = mesh::MaterialModel;
+    const Model model = material.model;
+    Report result = {{"name", material.name},
+                     {"model", model == Model::Phong               ? "phong"
+                               : model == Model::MetallicRoughness ? "metallic-roughness"
+                                                                   : "specular-glossiness"},
+                     {"base_color", material.base_color},
+                     {"base_color_texture", texture(material.base_color_texture)}};
+    if (model != Model::MetallicRoughness)
+        result.set("specular", material.specular);
+    if (model == Model::Phong) {
+        result.set("exponent", material.exponent);
+    } else {
+        result.set("roughness", material.roughness);
+        result.set("metallic_roughness_texture", texture(material.metallic_roughness_texture));
+    }
+    if (model == Model::MetallicRoughness)
+        result.set("metallic", material.metallic);
+    else if (model == Model::SpecularGlossiness)
+        result.set("specular_texture", texture(material.specular_texture));
+    return result;
+}
+
+/// "12, the first of vertices 3 and 17 at (0, 1, 2)"
+std::string text_of(const mesh::TriangleMesh& mesh, const std::vector<mesh::VertexPair>& edges) {
+    if (edges.empty())
+        return "0";
+    const auto& [a, b] = edges.front();
+    const glm::vec3 middle = 0.5f * (mesh.positions[a] + mesh.positions[b]);
+    return fmt::format("{}, the first between vertices {} and {} at ({:.6g}, {:.6g}, {:.6g})",
+                       edges.size(), a, b, middle.x, middle.y, middle.z);
+}
+
+std::string text_of(const char* what, const std::vector<std::uint32_t>& items) {
+    return items.empty() ? "0"
+                         : fmt::format("{}, the first is {} {}", items.size(), what, items.front());
+}
+
+/// What is odd about the mesh, for people and for --json.
+Report diagnosis_report(const mesh::TriangleMesh& mesh, const mesh::Diagnosis& found,
+                        const Session& session) {
+    const auto say = [&](const char* name, const std::string& text) {
+        session.say(fmt::format("{:20}{}", name, text));
+    };
+    say("surface",
+        fmt::format("{}, {} {}", found.is_closed() ? "closed" : "open", found.num_components,
+                    found.num_components == 1 ? "component" : "components"));
+    if (!found.boundary_edges.empty())
+        say("boundary edges",
+            text_of(mesh, found.boundary_edges) +
+                (found.num_seam_edges == 0
+                     ? ""
+                     : fmt::format("; {} of them lie on seams of vertices at one place",
+                                   found.num_seam_edges)));
+    if (!found.non_manifold_edges.empty())
+        say("edges of 3 or more", text_of(mesh, found.non_manifold_edges));
+    if (!found.repeated_sides.empty())
+        say("wound alike", text_of(mesh, found.repeated_sides) + ": sides of two triangles");
+    if (!found.wrongly_wound.empty())
+        say("to be turned", text_of("triangle", found.wrongly_wound));
+    if (found.num_one_sided > 0)
+        say("one-sided",
+            fmt::format("{} edges that no turning makes consistent", found.num_one_sided));
+    if (!found.non_manifold_vertices.empty())
+        say("vertices of fans", text_of("vertex", found.non_manifold_vertices));
+    if (!found.isolated_vertices.empty())
+        say("without a triangle", text_of("vertex", found.isolated_vertices));
+    if (!found.zero_area.empty())
+        say("without an area", text_of("triangle", found.zero_area));
+    if (!found.duplicates.empty())
+        say("twice", text_of("triangle", found.duplicates));
+    say("normals, winding",
+        found.against_normals.empty()
+            ? "agree"
+            : "against each other: " + text_of("triangle", found.against_normals));
+    Report result = {{"closed", found.is_closed()},
+                     {"components", found.num_components},
+                     {"boundary_edges", found.boundary_edges.size()},
+                     {"seam_edges", found.num_seam_edges},
+                     {"non_manifold_edges", found.non_manifold_edges.size()},
+                     {"repeated_sides", found.repeated_sides.size()},
+                     {"wrongly_wound", found.wrongly_wound.size()},
+                     {"one_sided_edges", found.num_one_sided},
+                     {"non_manifold_vertices", found.non_manifold_vertices.size()},
+                     {"isolated_vertices", found.isolated_vertices.size()},
+                     {"zero_area", found.zero_area.size()},
+                     {"duplicates", found.duplicates.size()},
+                     {"against_normals", found.against_normals.size()}};
+    if (!found.repeated_sides.empty())
+        result.set("first_repeated_side", std::vector<Report>{found.repeated_sides.front()[0],
+                                                              found.repeated_sides.front()[1]});
+    return result;
+}
+
+} // namespace
+
+void describe_mesh(const MeshInfoOptions& options, const Session& session) {
+    if (!options.picture.empty()) {
+        require_extension("--picture", options.picture, {".png"});
+        check_output(options.picture, {options.path});
+    }
+    const mesh::TriangleMesh mesh = mesh::load(options.path);
+    const mesh::Bounds box = mesh::bounds(mesh);
+    const mesh::Diagnosis diagnosis = mesh::diagnose(mesh);
+    session.say(fmt::format("mesh                {} vertices, {} triangles", mesh.num_vertices(),
+                            mesh.num_triangles()));
+    session.say(fmt::format("box                 ({}, {}, {}) to ({}, {}, {})", box.min.x,
+                            box.min.y, box.min.z, box.max.x, box.max.y, box.max.z));
+    session.say(fmt::format("colours, uvs        {}, {}", mesh.colors.empty() ? "no" : "yes",
+                            !mesh.uvs.empty()          ? "yes"
+                            : !mesh.corner_uvs.empty() ? "per corner"
+                                                       : "no"));
+    std::vector<Report> materials;
+    for (const mesh::Material& material : mesh.materials) {
+        session.say(
+            fmt::format("material            {}: {}", material.name, description(mesh, material)));
+        materials.push_back(json_of(mesh, material));
+    }
+    for (const std::string& group : mesh.groups)
+        session.say(fmt::format("group               {}", group));
+    for (const std::string& name : mesh.missing)
+        session.say(fmt::format("not found           {}", name));
+    for (const std::string& warning : mesh.warnings)
+        session.say(fmt::format("left out            {}", warning));
+    const Report faults = diagnosis_report(mesh, diagnosis, session);
+    if (!options.picture.empty())
+        relight::save_mesh_picture(options.picture, mesh, diagnosis);
+    session.report({{"kind", "mesh"},
+                    {"vertices", mesh.num_vertices()},
+                    {"triangles", mesh.num_triangles()},
+                    {"min", box.min},
+                    {"max", box.max},
+                    {"diagnosis", faults},
+                    {"colors", !mesh.colors.empty()},
+                    {"uvs", !mesh.uvs.empty() || !mesh.corner_uvs.empty()},
+                    {"materials", materials},
+                    {"groups", mesh.groups},
+                    {"missing", mesh.missing},
+                    {"left_out", mesh.warnings}});
+}
+
+} // namespace relumine::app

@@ -1,0 +1,421 @@
+// A scene under an environment that changes over time, frame by frame: the next frame is loaded and
+// binned while this one is relit and written.
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/movies/frame_record.h"
+#include "app/movies/movie.h"
+#include "app/options/animate_options.h"
+#include "cubemap/doctor/upside_down.h"
+#include "cubemap/image/frame_sequence.h"
+#include "cubemap/image/read_ahead.h"
+#include "files/output_file.h"
+#include "lights/frame_samples.h"
+#include "lights/light_clusters.h"
+#include "lights/place_lights.h"
+#include "prt/precompute.h"
+#include "relight/flicker.h"
+#include "relight/pictures/array_file.h"
+#include "relight/relighter.h"
+
+namespace relumine::app {
+
+namespace {
+
+/// A frame as it lights the scene.
+struct PreparedFrame {
+    /// --method prt
+    relight::BinnedEnvironment binned = {};
+    /// The others, where pictures are drawn
+    cubemap::CubeMap background = {};
+    relight::Backdrop sharp = {};
+    std::vector<lights::DistantLight> lights = {};
+    double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0;
+};
+
+/// Sums over the frames.
+struct Totals {
+    double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0, seconds_wait = 0.0,
+           seconds_relight = 0.0, seconds_trace = 0.0, seconds_write = 0.0;
+    std::size_t num_clusters = 0, num_resummed = 0, num_lit = 0;
+};
+
+class Animation {
+public:
+    Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence,
+              Session& session)
+        : options_(options), sequence_(sequence), session_(session),
+          pattern_(options.output_pattern()), lit_(lit_scene(options.scene)),
+          relighter_(lit_.scene().transfer, lit_.shadow_rays()),
+          binner_(lit_.scene().transfer, relighter_.shadow_rays().blockers != nullptr
+                                             ? relighter_.shadow_rays().tolerance
+                                             : 0.0f),
+          writer_(lit_, options.output.for_scene(lit_.scene())) {
+        set_bounces(relighter_);
+    }
+
+    void run() {
+        if (pattern_)
+            options_.output.check_fits(lit_.scene());
+        seconds_load_scene_ = watch_.lap();
+        session_.poll();
+        choose_frames();
+        if (options_.method == "clusters" && !todo_.empty())
+            cluster_frames();
+        meter_frames();
+        std::optional<relight::NpyFrames> vertices;
+        if (!options_.vertices.empty())
+            vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().receivers.num_own());
+        const auto progress = session_.progress("frames");
+        cubemap::ReadAhead<PreparedFrame> ahead(
+            todo_.size(), [this](std::size_t i) { return prepare(todo_[i]); });
+        for (std::size_t i = 0; i < todo_.size(); ++i) {
+            session_.poll();
+            Stopwatch watch;
+            PreparedFrame frame = ahead.get(i);
+            totals_.seconds_wait += watch.lap();
+            const relight::Backdrop sharp = std::move(frame.sharp);
+            const cubemap::CubeMap background = light(std::move(frame));
+            bounce(relighter_);
+            const double seconds_relight = watch.lap();
+            totals_.seconds_relight += seconds_relight;
+            seconds_relight_frames_.push_back(seconds_relight);
+            write(todo_[i], background, sharp);
+            if (vertices)
+                vertices->append(writer_.values(relighter_.radiance()));
+            totals_.seconds_write += watch.lap();
+            ++totals_.num_lit;
+            if (!options_.output.path.empty())
+                Session::set_cancelled_message(cancelled_message());
+            if (progress)
+                progress(static_cast<double>(i + 1) / static_cast<double>(todo_.size()));
+        }
+        session_.end_progress();
+        if (vertices)
+            vertices->commit();
+        if (!options_.reference.empty())
+            measure();
+        seconds_frames_ = watch_.lap();
+        const Patience for_ffmpeg;
+        if (!options_.movie.empty())
+            make_movie(find_ffmpeg(options_.movie), options_.movie, output_paths(),
+                       options_.frames_per_second, session_.stop());
+        report();
+    }
+
+    [[nodiscard]] std::string cancelled_message() const {
+        return fmt::format("cancelled; {} of {} frames are written, --resume goes on",
+                           num_kept_ + num_written_, sequence_.size());
+    }
+
+private:
+    [[nodiscard]] std::string output_path(std::size_t frame) const {
+        return pattern_->name(sequence_.number(frame));
+    }
+    [[nodiscard]] std::vector<std::string> output_paths() const {
+        std::vector<std::string> paths;
+        for (std::size_t frame = 0; frame < sequence_.size(); ++frame)
+            paths.push_back(output_path(frame));
+        return paths;
+    }
+
+    void set_bounces(relight::Relighter& relighter) const {
+        options_.bounces.set(relighter, lit_.scene(), options_.output.for_scene(lit_.scene()),
+                             options_.scene.path);
+    }
+    static void bounce(relight::Relighter& relighter) {
+        if (relighter.bounces().matrix != nullptr)
+            relighter.bounce();
+    }
+
+    /// Those that are not there yet; all of them where one file holds all.
+    void choose_frames() {
+        if (pattern_)
+            record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")),
+                            options_.settings(sequence_), options_.resume);
+        for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+            const bool is_there =
+                record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
+                                            output_path(frame));
+            is_there_.push_back(is_there);
+            num_kept_ += static_cast<std::size_t>(is_there);
+            if (!is_there || !options_.vertices.empty())
+                todo_.push_back(frame);
+        }
+        if (options_.resume)
+            session_.say(
+                fmt::format("{} of {} frames are there already", num_kept_, sequence_.size()));
+    }
+
+    /// Chooses one exposure for all frames from up to nine of them, or keeps to that of the frames
+    /// that are there.
+    void meter_frames() {
+        if (!pattern_ || todo_.empty() || !writer_.needs_light_for(options_.output.path))
+            return;
+        if (const std::optional<double> before = record_->exposure_ev()) {
+            writer_.set_exposure_ev(*before);
+            return;
+        }
+        constexpr std::size_t MostFrames = 9;
+        const std::size_t last = sequence_.size() - 1;
+        const std::size_t num_gaps = std::min(MostFrames - 1, last);
+        // A light of its own: the frames' differences must not depend on the exposure.
+        relight::Relighter relighter(lit_.scene().transfer, lit_.shadow_rays());
+        set_bounces(relighter);
+        for (std::size_t i = 0; i <= num_gaps; ++i) {
+            session_.poll();
+            PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
+            if (options_.method == "prt")
+                relighter.set_frame(std::move(frame.binned));
+            else
+                relighter.set_lights(frame.lights);
+            bounce(relighter);
+            writer_.meter(lighting_of(relighter));
+        }
+        record_->set_exposure_ev(writer_.choose_exposure_ev(lighting_of(relighter)));
+    }
+
+    /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
+    [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
+        cubemap::EnvironmentImage image = sequence_.read(frame);
+        if (options_.environment.world_from_image(image.layout) == glm::dmat3(1.0) &&
+            options_.environment.face_resolution == 0)
+            return image;
+        return lights::lat_long_of(cube_map_of(image, options_.environment));
+    }
+
+    void cluster_frames() {
+        Stopwatch watch;
+        const lights::FrameSamples samples = lights::sample_frames(
+            [this](std::size_t frame) { return image_of(frame); }, sequence_.size(),
+            {.samples_per_frame = options_.num_samples,
+             .seed = options_.seed,
+             .stop = session_.stop(),
+             .on_progress = session_.progress("samples")});
+        session_.end_progress();
+        session_.poll();
+        const lights::LightClusters clusters =
+            lights::cluster_lights(samples, {.num_clusters = options_.num_clusters,
+                                             .seed = options_.seed,
+                                             .stop = session_.stop()});
+        session_.poll();
+        frame_lights_ =
+            lights::frame_lights(clusters, {.strength = options_.even ? lights::Strength::Even
+                                                                      : lights::Strength::Followed,
+                                            .fade = options_.fade});
+        const lights::KMeans& means = clusters.k_means;
+        session_.say(fmt::format(
+            "{} samples in {} clusters, {} iterations{}, objective {:.4g} to {:.4g}, {} started "
+            "again, {:.1f} s; {:.1f} lights live in a frame",
+            samples.samples.size(), clusters.clusters.size(), means.objective.size(),
+            means.converged ? "" : " (not converged)",
+            means.objective.empty() ? 0.0 : means.objective.front(),
+            means.objective.empty() ? 0.0 : means.objective.back(), means.num_reseeded, watch.lap(),
+            clusters.mean_live()));
+        extra_report_ = {
+            {"samples", samples.samples.size()}, {"light_clusters", clusters.clusters.size()},
+            {"objective", means.objective},      {"reseeded", means.num_reseeded},
+            {"converged", means.converged},      {"mean_live_lights", clusters.mean_live()},
+            {"seconds_k_means", means.seconds}};
+    }
+
+    void measure() {
+        const std::filesystem::path own(options_.vertices);
+        const std::filesystem::path reference(options_.reference);
+        const relight::FlickerReport flicker = relight::measure_flicker({&own, 1}, {&reference, 1});
+        session_.say(fmt::format(
+            "{}: temporal inconsistency {:.5g} on average, {:.5g} at worst; relative L2 {:.5g}",
+            options_.vertices, flicker.mean_inconsistency, flicker.worst_inconsistency,
+            flicker.mean_relative_l2));
+        extra_report_.set("mean_inconsistency", flicker.mean_inconsistency);
+        extra_report_.set("inconsistency", flicker.inconsistency);
+        extra_report_.set("mean_relative_l2", flicker.mean_relative_l2);
+        extra_report_.set("relative_l2", flicker.relative_l2);
+        if (options_.plot.empty())
+            return;
+        const relight::NamedReport named{options_.method, flicker};
+        files::save_text(options_.plot, relight::inconsistency_plot(
+                                            {&named, 1}, fmt::format("Temporal inconsistency, {}",
+                                                                     options_.frames)));
+    }
+
+    /// Runs on another thread; touches no state but the binner and has_warned_.
+    PreparedFrame prepare(std::size_t frame) {
+        PreparedFrame result;
+        Stopwatch watch;
+        auto image = std::make_shared<const cubemap::EnvironmentImage>(sequence_.read(frame));
+        result.seconds_load = watch.lap();
+        cubemap::CubeMap map = cube_map_of(*image, options_.environment);
+        if (pattern_)
+            result.sharp = backdrop_of(image, options_.environment);
+        result.seconds_resample = watch.lap();
+        // One warning is enough for all frames.
+        if (!has_warned_) {
+            EnvironmentOptions frame_options = options_.environment;
+            frame_options.path = sequence_.path(frame).string();
+            has_warned_ =
+                warn_about(frame_options, *image, cubemap::light_from_below(map), session_);
+        }
+        try {
+            if (options_.method == "prt") {
+                result.binned = binner_.bin(std::move(map));
+            } else {
+                result.lights =
+                    options_.method == "clusters"
+                        ? frame_lights_.frames.at(frame)
+                        : lights::place_lights(
+                              lights::Method::Importance, map, options_.num_lights,
+                              options_.seed + static_cast<std::uint64_t>(sequence_.number(frame)));
+                result.background = std::move(map);
+            }
+        } catch (const std::invalid_argument& error) { // a radiance beyond all bounds
+            throw std::runtime_error(
+                fmt::format("{}: {}", sequence_.path(frame).string(), error.what()));
+        }
+        result.seconds_bin = watch.lap();
+        return result;
+    }
+
+    /// Lights the scene; returns the background, where it is not the relighter's environment.
+    cubemap::CubeMap light(PreparedFrame frame) {
+        totals_.seconds_load += frame.seconds_load;
+        totals_.seconds_resample += frame.seconds_resample;
+        totals_.seconds_bin += frame.seconds_bin;
+        if (options_.method != "prt") {
+            totals_.seconds_trace += relighter_.set_lights(frame.lights).seconds_trace;
+            return std::move(frame.background);
+        }
+        const relight::UpdateReport update =
+            relighter_.set_frame(std::move(frame.binned), options_.bound);
+        totals_.seconds_trace += update.seconds_trace;
+        totals_.num_clusters += update.num_clusters;
+        totals_.num_resummed += static_cast<std::size_t>(update.resummed);
+        return {};
+    }
+
+    void write(std::size_t frame, const cubemap::CubeMap& background,
+               const relight::Backdrop& sharp) {
+        if (!pattern_ || is_there_[frame])
+            return;
+        const std::string path = output_path(frame);
+        Lighting lighting = lighting_of(relighter_);
+        if (background.resolution != 0)
+            lighting.environment = &background;
+        lighting.sharp = sharp;
+        writer_.save(path, lighting);
+        record_->add(sequence_.number(frame), sequence_.path(frame), path);
+        ++num_written_;
+    }
+
+    void report() {
+        const double per_frame =
+            totals_.num_lit == 0 ? 0.0 : 1e3 / static_cast<double>(totals_.num_lit);
+        const double relight_ms = per_frame * totals_.seconds_relight;
+        session_.say(fmt::format(
+            "{}: {} frames by {}, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that "
+            "load {:.0f}, "
+            "resample {:.0f}, bin {:.1f} ms; {:.1f} frames/s in all{}",
+            options_.output.path.empty() ? options_.vertices : options_.output.path,
+            totals_.num_lit, options_.method, relight_ms,
+            totals_.seconds_trace > 0.0
+                ? fmt::format(" (shadow rays {:.1f} ms)", per_frame * totals_.seconds_trace)
+                : "",
+            per_frame * totals_.seconds_write, per_frame * totals_.seconds_load,
+            per_frame * totals_.seconds_resample, per_frame * totals_.seconds_bin,
+            seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0,
+            num_written_ == 0 ? "" : options_.output.exposure_text(writer_)));
+        Report result = {{"frames", sequence_.size()},
+                         {"exposure", writer_.exposure_ev(options_.output.path)},
+                         {"frames_lit", totals_.num_lit},
+                         {"frames_kept", num_kept_},
+                         {"frames_resummed", totals_.num_resummed},
+                         {"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters_changed", totals_.num_clusters},
+                         {"receivers", lit_.scene().transfer.num_receivers()},
+                         {"method", options_.method},
+                         {"seconds_load_scene", seconds_load_scene_},
+                         {"seconds_load", totals_.seconds_load},
+                         {"seconds_resample", totals_.seconds_resample},
+                         {"seconds_bin", totals_.seconds_bin},
+                         {"seconds_wait", totals_.seconds_wait},
+                         {"seconds_relight", totals_.seconds_relight},
+                         {"seconds_relight_frames", seconds_relight_frames_},
+                         {"seconds_trace", totals_.seconds_trace},
+                         {"seconds_write", totals_.seconds_write},
+                         {"seconds_frames", seconds_frames_}};
+        result.update(extra_report_);
+        session_.report(result);
+    }
+
+    const AnimateOptions& options_;
+    const cubemap::FrameSequence& sequence_;
+    Session& session_;
+    Stopwatch watch_;
+    std::optional<cubemap::FramePattern> pattern_;
+    LitScene lit_;
+    relight::Relighter relighter_;
+    relight::EnvironmentBinner binner_;
+    Painter writer_;
+    std::optional<FrameRecord> record_;
+    std::vector<bool> is_there_;
+    std::vector<std::size_t> todo_;
+    std::size_t num_kept_ = 0, num_written_ = 0;
+    Totals totals_;
+    /// --method clusters
+    lights::FrameLights frame_lights_;
+    Report extra_report_;
+    std::vector<double> seconds_relight_frames_;
+    bool has_warned_ = false;
+    double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;
+};
+
+cubemap::FrameRange frame_range(const std::string& text) {
+    try {
+        return cubemap::FrameRange::parse(text);
+    } catch (const std::runtime_error& error) {
+        throw UsageError("--frames", error.what());
+    }
+}
+
+void run(const AnimateOptions& options, Session& session) {
+    std::optional<cubemap::FrameRange> range;
+    if (!options.range.empty())
+        range = frame_range(options.range);
+    const cubemap::FrameSequence sequence(cubemap::find_frames(options.frames, range),
+                                          [&](const std::filesystem::path& path) {
+                                              EnvironmentOptions environment = options.environment;
+                                              environment.path = path.string();
+                                              return load_image(environment, session);
+                                          });
+    options.check(sequence);
+    Animation animation(options, sequence, session);
+    try {
+        animation.run();
+    } catch (const prt::Cancelled&) {
+        if (options.output.path.empty())
+            throw;
+        throw std::runtime_error(animation.cancelled_message());
+    }
+}
+
+} // namespace
+
+void add_animate(Command& program, Session& session) {
+    Command command = program.add_command(
+        "animate", "light a scene with a sequence of environments: pictures, a movie or numbers");
+    auto options = std::make_shared<AnimateOptions>();
+    options->add_to(command);
+    session.add_common_options(command);
+    command.on_run([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

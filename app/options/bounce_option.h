@@ -1,0 +1,44 @@
+// --bounces of the commands that light a scene.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "app/command_line/command_line.h"
+#include "relumine/relumine.h"
+
+namespace relumine::app {
+
+class BounceOption {
+public:
+    void add_to(Command& command);
+
+    /// Returns whether light is to bounce: as often as was asked for, or where nothing was said and
+    /// the scene has bounces. `path` is the scene's, for messages.
+    ///
+    /// Throws:  std::runtime_error where bounces were asked for and the scene has none.
+    [[nodiscard]] bool applies_to(const Scene& scene, const std::string& path) const;
+
+    /// Adds bounces to the present light, and those of `more` light (LitScene::bounce()). None
+    /// where there is nothing to do.
+    std::optional<BounceReport> bounce(LitScene& lit, const relumine::OutputOptions& output,
+                                       const std::string& path,
+                                       std::span<const glm::vec3> more = {}) const;
+    /// Lets the light of a Relighter of its own bounce.
+    ///
+    /// Throws:  std::runtime_error for an albedo under which light grows for ever.
+    void set(relight::Relighter& relighter, const Scene& scene,
+             const relumine::OutputOptions& output, const std::string& path) const;
+
+    [[nodiscard]] const BounceLimits& limits() const { return limits_; }
+
+private:
+    bool is_given_ = false;
+    BounceLimits limits_;
+};
+
+/// ", 5 bounces 12.3 ms", or nothing.
+[[nodiscard]] std::string text_of(const std::optional<BounceReport>& bounces);
+
+} // namespace relumine::app

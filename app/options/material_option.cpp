@@ -1,0 +1,171 @@
+#include "app/options/material_option.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cstdint>
+#include <map>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/command_line/command_line.h"
+
+namespace relumine::app {
+
+namespace {
+
+/// A model, and the names of its values on the command line.
+struct Model {
+    std::string_view name;
+    prt::Highlight highlight;
+    std::string_view albedo;
+    /// Empty: none
+    std::string_view specular;
+    /// Empty: none
+    std::string_view width;
+    float max_width;
+};
+constexpr std::array<Model, 3> Models = {{
+    {"ggx", prt::Highlight::Ggx, "albedo", "f0", "roughness", 1.0f},
+    {"blinn", prt::Highlight::BlinnPhong, "kd", "ks", "exponent", 1e6f},
+    {"lambert", prt::Highlight::None, "albedo", "", "", 0.0f},
+}};
+
+class Parser {
+public:
+    Parser(const std::string& text, const std::string& option) : text_(text), option_(option) {}
+    SurfaceMaterial parse();
+
+private:
+    [[noreturn]] void fail(const std::string& expected, std::string_view got) const {
+        throw UsageError(option_, fmt::format("expected {}, got '{}'", expected, got));
+    }
+    const Model& take_model(std::string_view& rest, SurfaceMaterial& result) const;
+    void read_values(std::string_view rest, const Model& model);
+    [[nodiscard]] std::vector<float> numbers(std::string_view key, float max) const;
+    [[nodiscard]] std::optional<glm::vec3> color(std::string_view key) const;
+
+    const std::string& text_;
+    const std::string& option_;
+    std::map<std::string_view, std::vector<std::string_view>> values_;
+};
+
+/// Group names may have any letters: the model is looked for behind the last = that a model's name
+/// follows.
+const Model& Parser::take_model(std::string_view& rest, SurfaceMaterial& result) const {
+    const std::string_view text = text_;
+    for (std::size_t start = text.size() + 1; start-- > 0;) {
+        if (start > 0 && text[start - 1] != '=')
+            continue;
+        for (const Model& model : Models) {
+            const std::string_view tail = text.substr(start);
+            if (tail != model.name && !tail.starts_with(fmt::format("{}:", model.name)))
+                continue;
+            if (start == 1)
+                fail("a group's name before =", text);
+            result.group = start > 0 ? text.substr(0, start - 1) : "";
+            rest = tail.substr(std::min(model.name.size() + 1, tail.size()));
+            return model;
+        }
+    }
+    fail("[GROUP=]ggx:..., [GROUP=]blinn:... or [GROUP=]lambert:...", text);
+}
+
+/// key=number,number,number,key=number: words without = belong to the key before them.
+void Parser::read_values(std::string_view rest, const Model& model) {
+    std::vector<std::string_view> keys = {model.albedo};
+    for (const std::string_view key : {model.specular, model.width})
+        if (!key.empty())
+            keys.push_back(key);
+    std::vector<std::string_view>* current = nullptr;
+    while (!rest.empty()) {
+        const std::size_t comma = std::min(rest.find(','), rest.size());
+        std::string_view word = rest.substr(0, comma);
+        const bool ends_in_comma = comma + 1 == rest.size();
+        rest.remove_prefix(std::min(comma + 1, rest.size()));
+        if (const std::size_t equals = word.find('='); equals != std::string_view::npos) {
+            const std::string_view key = word.substr(0, equals);
+            if (std::find(keys.begin(), keys.end(), key) == keys.end())
+                fail(fmt::format("{} of {}", fmt::join(keys, ", "), model.name), key);
+            if (values_.contains(key))
+                fail(fmt::format("{} once", key), text_);
+            current = &values_[key];
+            word.remove_prefix(equals + 1);
+        }
+        if (current == nullptr || ends_in_comma)
+            fail(fmt::format("{}:NAME=VALUE,...", model.name), text_);
+        current->push_back(word);
+    }
+}
+
+std::vector<float> Parser::numbers(std::string_view key, float max) const {
+    std::vector<float> result;
+    const auto found = values_.find(key);
+    if (found == values_.end())
+        return result;
+    for (const std::string_view word : found->second) {
+        float value = 0.0f;
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+        if (error != std::errc() || end != word.data() + word.size() ||
+            !(value >= 0.0f && value <= max))
+            fail(fmt::format("numbers of 0 to {} as {}", max, key), word);
+        result.push_back(value);
+    }
+    return result;
+}
+
+std::optional<glm::vec3> Parser::color(std::string_view key) const {
+    const std::vector<float> values = numbers(key, 1.0f);
+    if (values.empty())
+        return std::nullopt;
+    if (values.size() == 1)
+        return glm::vec3(values[0]);
+    if (values.size() != 3)
+        fail(fmt::format("1 or 3 numbers of {}", key), fmt::format("{}", fmt::join(values, ",")));
+    return glm::vec3(values[0], values[1], values[2]);
+}
+
+SurfaceMaterial Parser::parse() {
+    SurfaceMaterial result;
+    std::string_view rest;
+    const Model& model = take_model(rest, result);
+    read_values(rest, model);
+    result.highlight = model.highlight;
+    result.albedo = color(model.albedo);
+    if (!model.specular.empty())
+        result.specular = color(model.specular);
+    if (!model.width.empty()) {
+        const std::vector<float> width = numbers(model.width, model.max_width);
+        if (width.size() != 1)
+            fail(fmt::format("one number of {} of {}", model.width, model.name), text_);
+        result.roughness_or_exponent = width[0];
+    }
+    if (model.highlight == prt::Highlight::BlinnPhong) {
+        if (!result.specular)
+            fail("ks of blinn", text_);
+        const glm::vec3 sum = result.albedo.value_or(glm::vec3(0.0f)) + *result.specular;
+        if (std::max({sum.r, sum.g, sum.b}) > 1.0f + 1e-6f)
+            fail("kd + ks of 1 or less", text_);
+    }
+    return result;
+}
+
+} // namespace
+
+SurfaceMaterial parse_material(const std::string& text, const std::string& option) {
+    return Parser(text, option).parse();
+}
+
+prt::SurfaceOverride surface_override(const std::vector<SurfaceMaterial>& options,
+                                      const mesh::TriangleMesh& mesh, const std::string& option) {
+    try {
+        return relumine::surface_override(options, mesh);
+    } catch (const std::invalid_argument& error) {
+        throw UsageError(option, error.what());
+    }
+}
+
+} // namespace relumine::app

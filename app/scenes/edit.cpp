@@ -1,0 +1,331 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/printf.h>
+#include <glm/geometric.hpp>
+
+#include "app/commands.h"
+#include "app/options/bounce_option.h"
+#include "app/options/environment_options.h"
+#include "app/options/output_options.h"
+#include "app/scenes/lit_by.h"
+#include "app/scenes/lit_scene.h"
+#include "app/service/file_watch.h"
+#include "cubemap/image/environment.h"
+#include "cubemap/layers/layer_file.h"
+#include "relight/light_editor.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct EditArguments {
+    SceneOptions scene;
+    EnvironmentOptions environment;
+    std::string layers;
+    OutputOptions output;
+    BounceOption bounces;
+    /// Direction of the quick edit, X,Y,Z. Empty: LAYERS are given.
+    std::string disc;
+    double radius_degrees = 10.0;
+    std::string gain = "2";
+    std::string saved_environment;
+    /// --who: a position X,Y,Z. Empty: not asked for.
+    std::string who;
+    /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
+    std::string lit_by;
+    bool watch = false;
+};
+
+void check_saved_environment(const EditArguments& options) {
+    const std::string& path = options.saved_environment;
+    require_environment_name("--save-env", path);
+    if (std::filesystem::path(path).lexically_normal() ==
+        std::filesystem::path(options.output.path).lexically_normal())
+        throw std::runtime_error(fmt::format("{}: expected another name than the output's", path));
+    check_output(path, {options.scene.path, options.environment.path});
+}
+
+/// The quick edit without a layer file: one gain layer.
+cubemap::LightLayer disc_layer(const EditArguments& options) {
+    const glm::vec3 direction = parse_vec3("--disc", options.disc);
+    if (!(glm::length(direction) > 0.0f))
+        throw UsageError("--disc", fmt::format("expected a direction, got '{}'", options.disc));
+    cubemap::LightLayer layer;
+    layer.name = "disc";
+    layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
+    layer.effect = cubemap::Gain{.tint = parse_color("--gain", options.gain)};
+    return layer;
+}
+
+cubemap::LightLayers layers_of(const EditArguments& options) {
+    if (options.layers.empty() == options.disc.empty())
+        throw UsageError("edit", "expected either LAYERS or --disc");
+    if (!options.layers.empty())
+        return cubemap::load_layers(options.layers);
+    cubemap::LightLayers layers;
+    layers.layers.push_back(disc_layer(options));
+    return layers;
+}
+
+/// `OUT.%04d.png` with the frame's number.
+std::string numbered(const std::string& pattern, int frame) {
+    std::string name;
+    try {
+        name = fmt::sprintf(pattern, frame);
+    } catch (const std::exception&) { // not a pattern for one number
+        name = pattern;
+    }
+    if (name == pattern)
+        throw UsageError("--output",
+                         fmt::format("expected a number like %04d in the name, as the layers have "
+                                     "frames, got '{}'",
+                                     pattern));
+    return name;
+}
+
+/// Refuses what cannot be written before any work is done.
+void check_outputs(const EditArguments& options, const cubemap::LightLayers& layers) {
+    OutputOptions output = options.output;
+    if (options.who.empty() && options.lit_by.empty() && !layers.frames.empty())
+        output.path = numbered(output.path, 0);
+    if (!options.who.empty()) {
+        require_extension("--output", output.path, {".exr", ".png"});
+        static_cast<void>(parse_vec3("--who", options.who));
+    }
+    if (!options.lit_by.empty())
+        static_cast<void>(lit_by_region(options.lit_by, layers.layers));
+    output.check({options.scene.path, options.environment.path, options.layers});
+    if (!options.saved_environment.empty())
+        check_saved_environment(options);
+}
+
+class Edit {
+public:
+    Edit(const EditArguments& options, cubemap::LightLayers layers, Session& session)
+        : options_(options), session_(session), layers_(std::move(layers)),
+          lit_(lit_scene(options.scene)), editor_(lit_.editor()) {}
+
+    void run() {
+        check_receivers();
+        Environment environment = load_environment(options_.environment, session_);
+        RelightTimes full = lit_.light(std::move(environment));
+        if (layers_.rotate_degrees)
+            full = editor_.set_rotation(*layers_.rotate_degrees);
+        seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
+        apply_one_by_one();
+        bounce();
+        write_output();
+        if (!options_.saved_environment.empty())
+            cubemap::save_environment(options_.saved_environment, editor_.environment());
+        if (options_.watch)
+            watch();
+        Report result = {{"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters_touched", clusters_touched_},
+                         {"seconds_edit", seconds_edit_},
+                         {"seconds_full", seconds_full_},
+                         {"bounces", bounced_.num_bounces},
+                         {"seconds_bounces", bounced_.seconds},
+                         {"edits", edits_}};
+        if (!options_.lit_by.empty())
+            result.set("lit_by_share", lit_by_share_);
+        if (painter_)
+            result.set("exposure", painter_->exposure_ev(options_.output.path));
+        session_.report(result);
+    }
+
+private:
+    void check_receivers() {
+        static_cast<void>(options_.bounces.applies_to(lit_.scene(), options_.scene.path));
+        if (!options_.who.empty()) // a map, whatever the receivers are
+            return;
+        painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
+        OutputOptions output = options_.output;
+        if (options_.lit_by.empty() && !layers_.frames.empty())
+            output.path = numbered(output.path, 0);
+        output.check_fits(lit_.scene());
+    }
+
+    void write_output() {
+        if (!options_.who.empty())
+            save_who();
+        else if (!options_.lit_by.empty())
+            save_lit_by();
+        else if (!layers_.frames.empty())
+            save_frames();
+        else
+            painter_->save(options_.output.path, lit_.lighting());
+    }
+
+    /// Edits are timed without their bounces, which come once, before anything is written.
+    void bounce() {
+        const auto report = options_.bounces.bounce(lit_, options_.output.for_scene(lit_.scene()),
+                                                    options_.scene.path);
+        if (!report)
+            return;
+        bounced_ = *report;
+        session_.say(
+            fmt::format("{} bounces in {:.1f} ms", report->num_bounces, 1e3 * report->seconds));
+    }
+
+    void record(const std::string& name, const relight::UpdateReport& report) {
+        clusters_touched_ += report.num_clusters;
+        seconds_edit_ += report.seconds;
+        edits_.push_back({{"name", name},
+                          {"clusters", report.num_clusters},
+                          {"receivers", report.num_receivers},
+                          {"sharp_lights", report.num_sharp_lights},
+                          {"seconds", report.seconds}});
+        session_.say(
+            fmt::format("{}: touched {} of {} clusters in {:.2f} ms; a full relight took {:.1f} ms",
+                        name, report.num_clusters, lit_.scene().transfer.num_clusters(),
+                        1e3 * report.seconds, 1e3 * seconds_full_));
+    }
+
+    void apply_one_by_one() {
+        std::vector<cubemap::LightLayer> layers;
+        for (const cubemap::LightLayer& layer : layers_.layers) {
+            layers.push_back(layer);
+            record(layer.name, editor_.set_layers(layers));
+            session_.poll();
+        }
+    }
+
+    void save_frames() {
+        const int first = static_cast<int>(std::ceil(layers_.frames.front().frame));
+        const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
+        for (int frame = first; frame <= last; ++frame) {
+            record(fmt::format("frame {}", frame),
+                   editor_.set_layers(cubemap::layers_at(layers_, frame)));
+            bounce();
+            painter_->save(numbered(options_.output.path, frame), lit_.lighting());
+            session_.poll();
+        }
+    }
+
+    /// The environment weighted by what it gives to the receiver nearest to the position.
+    void save_who() const {
+        const glm::vec3 position = parse_vec3("--who", options_.who);
+        const std::uint32_t receiver = nearest_receiver(lit_.scene(), position);
+        const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
+        const cubemap::CubeMap map = lit_.contribution_map({&receiver, 1});
+        save_map(options_.output.path, map, options_.output.exposure_ev().value_or(0.0));
+        session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
+                                 prt::receiver_name(lit_.scene().layout), receiver, nearest.x,
+                                 nearest.y, nearest.z));
+    }
+
+    /// The scene as a region of the environment lights it, with that region behind it.
+    void save_lit_by() {
+        const Share part = lit_.lit_by(lit_by_region(options_.lit_by, editor_.layers()));
+        painter_->save(options_.output.path, part.lighting());
+        lit_by_share_ = part.share;
+        session_.say(
+            fmt::format("{}: what '{}' lights, {:.1f} % of the light that the scene reflects",
+                        options_.output.path, options_.lit_by, 100.0 * part.share));
+    }
+
+    void watch() {
+        using Clock = std::chrono::system_clock;
+        FileWatch file(options_.environment.path);
+        session_.say(fmt::format("{}: watching; Ctrl-C ends", options_.environment.path));
+        while (const std::optional<Clock::time_point> saved = file.wait(session_.stop())) {
+            // A program may save in several steps; what does not load yet will be saved again.
+            try {
+                Environment environment = load_environment(options_.environment, session_);
+                const double seconds_load = environment.seconds_load + environment.seconds_resample;
+                const relight::UpdateReport report = lit_.update(std::move(environment));
+                const double since_saved =
+                    std::chrono::duration<double>(Clock::now() - *saved).count();
+                Stopwatch output;
+                record("saved", report);
+                const std::size_t index = edits_.size() - 1;
+                bounce();
+                write_output();
+                const double seconds_output = output.total();
+                // The file system's clock may be a tick behind.
+                const double seconds_reaction = std::max(0.0, since_saved - seconds_load);
+                edits_[index].update({{"seconds_load", seconds_load},
+                                      {"seconds_reaction", seconds_reaction},
+                                      {"seconds_output", seconds_output}});
+                session_.say(
+                    fmt::format("lit {:.1f} ms after it was saved, and {:.1f} ms to load it; "
+                                "{:.1f} ms to write {}",
+                                1e3 * seconds_reaction, 1e3 * seconds_load, 1e3 * seconds_output,
+                                options_.output.path));
+            } catch (const std::runtime_error& error) {
+                session_.complain(error.what());
+            }
+        }
+    }
+
+    const EditArguments& options_;
+    Session& session_;
+    cubemap::LightLayers layers_;
+    LitScene lit_;
+    relight::LightEditor& editor_;
+    /// Not for --who.
+    std::optional<Painter> painter_;
+    double seconds_full_ = 0.0;
+    double seconds_edit_ = 0.0;
+    double lit_by_share_ = 0.0;
+    std::size_t clusters_touched_ = 0;
+    BounceReport bounced_;
+    std::vector<Report> edits_;
+};
+
+void run(const EditArguments& options, Session& session) {
+    cubemap::LightLayers layers = layers_of(options);
+    check_outputs(options, layers);
+    Edit(options, std::move(layers), session).run();
+}
+
+} // namespace
+
+void add_edit(Command& program, Session& session) {
+    Command command =
+        program.add_command("edit", "put light layers over the environment and update the scene");
+    auto options = std::make_shared<EditArguments>();
+    options->scene.add_to(command);
+    options->environment.add_to(command);
+    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)")
+        .file();
+    options->output.add_to(command);
+    options->bounces.add_to(command);
+    command.add_option("--disc", options->disc,
+                       "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
+                       "scene to the light");
+    command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
+        .between(1e-6, 180.0)
+        .show_default();
+    command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
+        .show_default();
+    command
+        .add_option("--save-env", options->saved_environment,
+                    "write the edited environment: cube .exr or .hdr")
+        .file();
+    command.add_option(
+        "--who", options->who,
+        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
+    command
+        .add_option(
+            "--lit-by", options->lit_by,
+            "write the scene as lit by a region of the environment alone: a layer's name, or "
+            "X,Y,Z,RADIUS for a disc")
+        .excludes("--who");
+    command.add_flag("--watch", options->watch,
+                     "go on: when another program saves ENV, update and write OUT again");
+    session.add_common_options(command);
+    command.on_run([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

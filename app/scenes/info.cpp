@@ -1,0 +1,143 @@
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/environments/info_environment.h"
+#include "app/meshes/info_mesh.h"
+#include "app/options/environment_options.h"
+#include "app/options/output_options.h"
+#include "app/options/receiver_options.h"
+#include "files/output_file.h"
+#include "prt/scene/scene_file.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct InfoArguments {
+    std::string path;
+    std::string layout;
+    std::string picture;
+    bool check = false;
+};
+
+/// One line more where they are not the vertices.
+void say_receivers(const prt::Scene& scene, const Session& session) {
+    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout)) {
+        const prt::Camera& camera = pixels->camera;
+        session.say(fmt::format("receivers           {} of {}, {:.1f} % of its samples",
+                                scene.receivers.num_own(), prt::description(scene.layout),
+                                100.0 * static_cast<double>(scene.receivers.num_own()) /
+                                    static_cast<double>(pixels->num_samples())));
+        session.say(fmt::format("view                from ({}, {}, {}) to ({}, {}, {}), {} degrees",
+                                camera.eye.x, camera.eye.y, camera.eye.z, camera.target.x,
+                                camera.target.y, camera.target.z, camera.fov_degrees));
+    } else if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout)) {
+        session.say(fmt::format("receivers           {} of {}, {:.1f} % of the atlas",
+                                scene.receivers.num_own(), prt::description(scene.layout),
+                                100.0 * static_cast<double>(scene.receivers.num_own()) /
+                                    static_cast<double>(texels->num_texels())));
+    }
+}
+
+void describe_scene(const InfoArguments& options, const Session& session) {
+    const prt::Scene scene = prt::load_scene(options.path); // which checks all of it
+    const prt::SceneSettings& settings = scene.settings;
+    const prt::VisibleCounts& counts = scene.transfer.counts;
+    const auto file_bytes = std::filesystem::file_size(options.path);
+    session.say(
+        fmt::format("scene               {} vertices, {} triangles from {} (xxHash64 {:016x})",
+                    scene.mesh.num_vertices(), scene.mesh.num_triangles(), settings.source,
+                    settings.source_hash));
+    say_receivers(scene, session);
+    session.say(fmt::format("clusters            {}", scene.transfer.num_clusters()));
+    session.say(settings.epsilon ? fmt::format("epsilon             {}", *settings.epsilon)
+                                 : fmt::format("tolerance           {} 1/sr", settings.tolerance));
+    session.say(fmt::format("depth, resolution   at least {}, up to R = {}", settings.min_level,
+                            settings.face_resolution));
+    session.say(fmt::format(
+        "bias, floor         {}, {}", settings.bias,
+        settings.floor_vertices == 0 ? "none" : fmt::format("{0} x {0}", settings.floor_vertices)));
+    session.say(fmt::format("partly seen         {} of {} (block, cluster) pairs",
+                            counts.num_mixed(), counts.num_blocks() * counts.num_leaves));
+    session.say(fmt::format("file                {:.1f} MB{}",
+                            static_cast<double>(file_bytes) * 1e-6,
+                            options.check ? ", checked: whole and sound" : ""));
+    Report result = {{"kind", "scene"},
+                     {"vertices", scene.mesh.num_vertices()},
+                     {"triangles", scene.mesh.num_triangles()},
+                     {"receivers", scene.receivers.num_own()},
+                     {"clusters", scene.transfer.num_clusters()},
+                     {"source", settings.source},
+                     {"source_hash", fmt::format("{:016x}", settings.source_hash)},
+                     {"min_depth", settings.min_level},
+                     {"face_resolution", settings.face_resolution},
+                     {"bias", settings.bias},
+                     {"floor", settings.floor_vertices},
+                     {"file_bytes", file_bytes}};
+    if (options.check)
+        result.set("checked", true);
+    if (settings.epsilon)
+        result.set("epsilon", *settings.epsilon);
+    else
+        result.set("tolerance", settings.tolerance);
+    if (const Report layout = layout_json(scene); !layout.empty())
+        result.set("layout", layout);
+    session.report(result);
+}
+
+void run(const InfoArguments& options, const Session& session) {
+    for (const std::filesystem::path& file : cubemap::environment_files(options.path))
+        static_cast<void>(files::size(file)); // a name that is not there says so first
+    const std::string extension = extension_of(options.path);
+    const bool is_environment = extension == ".exr" || extension == ".hdr";
+    if (!options.picture.empty() && extension == ".prt")
+        throw UsageError(
+            "--picture",
+            fmt::format("expected an environment or a mesh to draw, got '{}'", options.path));
+    if (options.check && extension != ".prt")
+        throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
+    if (extension == ".prt")
+        describe_scene(options, session);
+    else if (is_environment)
+        describe_environment({options.path, options.layout, options.picture}, session);
+    else
+        describe_mesh({options.path, options.picture}, session);
+}
+
+} // namespace
+
+void add_info(Command& program, Session& session) {
+    Command command =
+        program.add_command("info", "what a file is: a scene, an environment or a mesh");
+    auto options = std::make_shared<InfoArguments>();
+    command
+        .add_option("FILE", options->path,
+                    ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
+        .file()
+        .required();
+    command
+        .add_option("--layout", options->layout,
+                    "layout of an environment, where the file does not tell")
+        .one_of(layout_names());
+    command
+        .add_option("--picture", options->picture,
+                    "draw an environment, lat-long with the axes and the sun marked, or a mesh "
+                    "with its faults marked: .png")
+        .file();
+    command.add_flag(
+        "--check", options->check,
+        "verify a scene: all checksums, sections and what must hold between them; exit code 1 and "
+        "one line when something is wrong");
+    session.add_common_options(command);
+    command.on_run([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

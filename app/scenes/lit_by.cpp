@@ -1,0 +1,54 @@
+#include "app/scenes/lit_by.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "app/session.h"
+#include "files/nearest_name.h"
+
+namespace relumine::app {
+
+cubemap::Region lit_by_region(const std::string& text,
+                              std::span<const cubemap::LightLayer> layers) {
+    const auto layer =
+        std::find_if(layers.begin(), layers.end(), [&](const auto& l) { return l.name == text; });
+    if (layer != layers.end())
+        return layer->region;
+    const auto refuse = [&](const std::string& why) {
+        std::vector<std::string> names;
+        for (const cubemap::LightLayer& each : layers)
+            names.push_back(each.name);
+        throw UsageError(
+            "--lit-by",
+            fmt::format("expected a layer ({}) or X,Y,Z,RADIUS with a RADIUS in degrees, got "
+                        "'{}'{}{}",
+                        names.empty() ? "there is none" : fmt::format("{}", fmt::join(names, ", ")),
+                        text, why, files::did_you_mean(text, names)));
+    };
+    const std::size_t last_comma = text.rfind(',');
+    if (last_comma == std::string::npos)
+        refuse("");
+    cubemap::Disc disc;
+    try {
+        disc.direction = parse_vec3("--lit-by", text.substr(0, last_comma));
+    } catch (const UsageError&) {
+        refuse("");
+    }
+    const std::optional<double> radius = parse_number(text.substr(last_comma + 1));
+    if (!radius)
+        refuse("");
+    disc.radius_degrees = *radius;
+    try {
+        cubemap::validate(cubemap::Region(disc));
+    } catch (const std::invalid_argument& error) {
+        refuse(fmt::format(": {}", error.what()));
+    }
+    return disc;
+}
+
+} // namespace relumine::app

@@ -1,0 +1,505 @@
+#include "relumine/precompute.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/options/checkpoint_options.h"
+#include "app/options/memory_option.h"
+#include "app/options/output_options.h"
+#include "app/options/plan_option.h"
+#include "app/options/receiver_options.h"
+#include "app/options/refine_options.h"
+#include "app/options/surface_options.h"
+#include "mesh/floor.h"
+#include "mesh/half_edge/winding.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct PrecomputeArguments {
+    std::string mesh;
+    std::string output;
+    std::string normals = "file";
+    /// Of the mesh; empty: as is the custom of its format
+    std::string up;
+    std::string engine = "beam";
+    /// `relumine plan`: choose the clusters and leave the rest to the parts.
+    bool is_plan = false;
+    PlanOption parts;
+    MeshOptions mesh_options;
+    /// 0: all vertices stay
+    std::uint32_t simplify = 0;
+    RefineOptionGroup refine;
+    ReceiverOptions receivers;
+    SurfaceOptions surfaces;
+    CheckpointOptions checkpoint;
+    MemoryOption memory;
+    PrecomputeOptions precompute;
+};
+
+/// Everything that the command line says of the work.
+PrecomputeOptions precompute_options(const PrecomputeArguments& options,
+                                     const mesh::TriangleMesh& mesh, Session& session) {
+    PrecomputeOptions result = options.precompute;
+    result.engine = options.engine == "beam" ? Engine::Beams : Engine::Embree;
+    result.receivers = options.receivers.receivers();
+    result.view = options.receivers.view();
+    result.surface = options.surfaces.surface(mesh);
+    result.floor_surface = options.surfaces.floor_surface();
+    result.glossy_tolerance = options.surfaces.glossy_tolerance();
+    result.max_memory = options.memory.max_bytes();
+    result.output = options.output;
+    result.team = session.team;
+    result.checkpoint_seconds = options.checkpoint.seconds();
+    result.resume = options.checkpoint.resume();
+    result.stop = session.stop();
+    result.on_progress = [&session, clusters = session.progress("precompute"),
+                          highlights = session.progress("highlights"),
+                          bounces = session.progress("bounces"),
+                          last = Stage::Clusters](Stage stage, double fraction) mutable {
+        if (std::exchange(last, stage) != stage)
+            session.end_progress();
+        if (const auto& show = stage == Stage::Clusters     ? clusters
+                               : stage == Stage::Highlights ? highlights
+                                                            : bounces)
+            show(fraction);
+    };
+    result.on_warning = [&session](Warning kind, const std::string& message) {
+        session.warn(kind == Warning::HighlightsWithoutView ? message + " (see --view)" : message);
+    };
+    result.on_note = [&session](const std::string& message) {
+        session.detail(message);
+    };
+    return result;
+}
+
+/// The option that helps where the memory does not suffice.
+std::string advice(MemoryLimitExceeded::Part part) {
+    if (part == MemoryLimitExceeded::Part::Clusters)
+        return "; a larger --tolerance takes less";
+    if (part == MemoryLimitExceeded::Part::Highlights)
+        return "; a larger --glossy-tolerance takes less";
+    if (part == MemoryLimitExceeded::Part::Bounces)
+        return "; a larger error of --bounces takes less";
+    return "";
+}
+
+Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report) {
+    const auto with_checkpoint = [&](const std::string& message) {
+        return report.checkpoint.empty()
+                   ? message
+                   : fmt::format("{}; the same command with --resume goes on from {}", message,
+                                 report.checkpoint.string());
+    };
+    try {
+        return precompute(std::move(mesh), options, &report);
+    } catch (const TooMuchWork& error) {
+        throw UsageError(error.cause == TooMuchWork::Cause::MinLevel ? "--min-depth"
+                         : options.epsilon                           ? "--epsilon"
+                                                                     : "--tolerance",
+                         error.what());
+    } catch (const MemoryLimitExceeded& error) {
+        throw std::runtime_error(with_checkpoint(error.what() + advice(error.part)));
+    } catch (const std::exception& error) {
+        if (report.checkpoint.empty())
+            throw;
+        throw std::runtime_error(with_checkpoint(error.what()));
+    }
+}
+
+Report glossy_report(const PrecomputeOptions& options, const PrecomputeReport& facts,
+                     const prt::Transfer& transfer, const Session& session) {
+    const prt::GlossyStatistics& statistics = *facts.highlights;
+    const double cells_per_block = static_cast<double>(statistics.num_entries) /
+                                   static_cast<double>(transfer.counts.num_blocks());
+    const std::size_t bytes = transfer.glossy->num_bytes();
+    session.say(fmt::format(
+        "highlights: {:.0f} cells per block of {} receivers in {:.1f} s, {:.1f} MB",
+        cells_per_block, prt::BlockSize, statistics.seconds, static_cast<double>(bytes) * 1e-6));
+    return {{"tolerance", options.glossy_tolerance},
+            {"cells", statistics.num_entries},
+            {"cells_per_block", cells_per_block},
+            {"rays", statistics.num_rays},
+            {"seconds", statistics.seconds},
+            {"bytes", bytes},
+            {"narrowest_roughness", prt::narrowest_roughness(options.face_resolution)}};
+}
+
+Report bounce_report(const prt::BounceStatistics& bounces, const Scene& scene,
+                     const Session& session) {
+    const auto num_receivers = static_cast<double>(scene.transfer.num_receivers());
+    session.say(fmt::format(
+        "bounces: {:.1f} emitters per receiver, shared by {:.1f}, in {:.1f} s, {:.1f} % of the "
+        "directions end at surfaces, standard error {:.4f}",
+        static_cast<double>(bounces.num_emitters) / num_receivers, bounces.mean_averaged,
+        bounces.seconds, 100.0 * bounces.mean_closure, bounces.rms_error));
+    return {{"rays", bounces.num_rays},
+            {"emitters", bounces.num_emitters},
+            {"averaged", bounces.mean_averaged},
+            {"closure", bounces.mean_closure},
+            {"standard_error", bounces.rms_error},
+            {"spectral_radius", scene.bounces->spectral_radius},
+            {"seconds", bounces.seconds}};
+}
+
+Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts,
+                 const Scene& scene, const Session& session) {
+    const prt::PrecomputeStatistics& clusters = facts.clusters;
+    Report report = {{"vertices", facts.num_vertices},
+                     {"receivers", scene.receivers.num_own()},
+                     {"triangles", facts.num_triangles},
+                     {"clusters", clusters.num_clusters},
+                     {"directions", clusters.num_directions},
+                     {"samples", clusters.num_samples},
+                     {"rays", clusters.num_rays},
+                     {"deepest_level", clusters.deepest_level},
+                     {"column_bytes", clusters.column_bytes},
+                     {"bias", facts.bias},
+                     {"seconds_clustering", clusters.seconds},
+                     {"seconds_checkpoints", clusters.seconds_checkpoints},
+                     {"peak_bytes", peak_bytes()},
+                     {"file_bytes", facts.file_bytes}};
+    if (const Report layout = layout_json(scene); !layout.empty())
+        report.set("layout", layout);
+    if (facts.atlas)
+        report.update(atlas_json(*facts.atlas, std::get<prt::TexelLayout>(scene.layout)));
+    if (facts.memory) {
+        report.set("memory_estimate", facts.memory->peak_bytes);
+        report.set("clusters_estimate", facts.memory->num_clusters);
+    }
+    if (facts.highlights_estimate)
+        report.set("highlights_estimate", *facts.highlights_estimate);
+    if (facts.highlights)
+        report.set("glossy", glossy_report(options, facts, scene.transfer, session));
+    return report;
+}
+
+/// How evenly the processes worked, and how long they waited for each other.
+Report process_report(const std::vector<ProcessFigures>& processes, const Session& session) {
+    Report report = Report::array();
+    double rays = 0.0, most_rays = 0.0, most_waiting = 0.0;
+    for (const ProcessFigures& process : processes) {
+        rays += static_cast<double>(process.num_rays);
+        most_rays = std::max(most_rays, static_cast<double>(process.num_rays));
+        most_waiting = std::max(most_waiting, process.seconds_waiting / process.seconds);
+        report.push_back({{"rays", process.num_rays},
+                          {"seconds", process.seconds},
+                          {"seconds_waiting", process.seconds_waiting},
+                          {"seconds_of_processors", process.seconds_of_processors}});
+    }
+    session.say(fmt::format(
+        "{} processes: the one with the most rays has {:.3f} times the mean; up to {:.1f} % of "
+        "the time is waiting and sending",
+        processes.size(), most_rays * static_cast<double>(processes.size()) / rays,
+        100.0 * most_waiting));
+    return report;
+}
+
+/// How fine the floor's shadows are: what one of its vertices spans.
+Report floor_report(const Scene& scene, const Session& session) {
+    const std::size_t n = scene.settings.floor_vertices;
+    const mesh::FloorPlace place =
+        mesh::floor_place(std::span(scene.mesh.positions).subspan(*first_floor_vertex(scene)),
+                          scene.settings.floor_vertices);
+    session.say(fmt::format(
+        "floor: {0} x {0} vertices over {1:.4g} x {1:.4g}; one spans {2:.3g} under the mesh and "
+        "{3:.3g} at the edge",
+        n, 2.0f * place.half_side, place.spacing_inside, place.spacing_outside));
+    return {{"vertices", n},
+            {"side", 2.0f * place.half_side},
+            {"spacing_inside", place.spacing_inside},
+            {"spacing_outside", place.spacing_outside}};
+}
+
+/// The parts of the seconds from start to finish: "clusters 8.1, highlights 3.0, the rest 0.4".
+std::string where_time_went(const PrecomputeReport& facts, double seconds) {
+    const double highlights = facts.highlights ? facts.highlights->seconds : 0.0;
+    const double bounces = facts.bounces ? facts.bounces->seconds : 0.0;
+    return fmt::format("clusters {:.1f}{}{}, the rest {:.1f}", facts.clusters.seconds,
+                       facts.highlights ? fmt::format(", highlights {:.1f}", highlights) : "",
+                       facts.bounces ? fmt::format(", bounces {:.1f}", bounces) : "",
+                       std::max(seconds - facts.clusters.seconds - highlights - bounces, 0.0));
+}
+
+/// Triangles that are wound the wrong way round look inwards, where it is dark, unless the file's
+/// normals say otherwise.
+void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
+                     const Session& session) {
+    const mesh::Winding winding = mesh::find_winding(mesh);
+    std::size_t num_black = 0;
+    std::uint32_t first = 0;
+    for (std::uint32_t i = static_cast<std::uint32_t>(mesh.num_triangles()); i-- > 0;)
+        if (winding.is_wrong[i] && mesh::faces_with_normals(mesh, i)) {
+            ++num_black;
+            first = i;
+        }
+    if (num_black != 0)
+        session.warn(fmt::format(
+            "{}: {} of {} triangles are wound the wrong way round, the first is triangle {}: they "
+            "look inwards and stay dark; `relumine mesh repair` turns them",
+            path, num_black, mesh.num_triangles(), first));
+}
+
+/// What there is to say of a plan.
+void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch,
+                Session& session) {
+    PrecomputeReport facts;
+    plan(std::move(mesh), work, &facts);
+    session.end_progress();
+    const double seconds = watch.total();
+    session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
+                            work.output.string(), facts.num_receivers, facts.clusters.num_clusters,
+                            seconds, static_cast<double>(facts.file_bytes) * 1e-6));
+    session.report({{"vertices", facts.num_vertices},
+                    {"receivers", facts.num_receivers},
+                    {"triangles", facts.num_triangles},
+                    {"clusters", facts.clusters.num_clusters},
+                    {"rays", facts.clusters.num_rays},
+                    {"bias", facts.bias},
+                    {"peak_bytes", peak_bytes()},
+                    {"file_bytes", facts.file_bytes},
+                    {"seconds", seconds}});
+}
+
+void run(const PrecomputeArguments& options, const Command& command, Session& session) {
+    if (options.parts.is_given() && session.team != nullptr)
+        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
+                                   "precompute` does them without mpirun");
+    if (options.parts.is_given())
+        return options.parts.run(command, options.output,
+                                 options.engine == "beam" ? Engine::Beams : Engine::Embree,
+                                 session);
+    if (options.mesh.empty())
+        throw UsageError("MESH", "expected a mesh, got none");
+    if (session.team != nullptr && session.team->part().index != 0) {
+        const Patience for_checkpoints;
+        return assist(*session.team, session.stop());
+    }
+    Stopwatch watch;
+    // Found out now, not after a minute of work.
+    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
+    check_output(options.output, {options.mesh});
+    options.receivers.check();
+    options.surfaces.check();
+    options.refine.check();
+    if ((options.refine.is_wanted() || options.simplify != 0) &&
+        !std::holds_alternative<Vertices>(options.receivers.receivers()))
+        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
+                         "expected vertices as receivers");
+
+    MeshOptions mesh_options = options.mesh_options;
+    mesh_options.normals =
+        options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
+    if (!options.up.empty())
+        mesh_options.up = options.up == "x"   ? mesh::UpAxis::X
+                          : options.up == "z" ? mesh::UpAxis::Z
+                                              : mesh::UpAxis::Y;
+    Mesh mesh = load_mesh(options.mesh, mesh_options);
+    const bool turns_by_custom =
+        options.up.empty() && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
+    if (turns_by_custom)
+        session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
+                                options.mesh));
+    for (const std::string& warning : mesh.geometry.warnings)
+        session.warn(fmt::format("{}: {}", options.mesh, warning));
+    for (const std::string& name : mesh.geometry.missing)
+        session.warn(fmt::format("{}: no {} is found", options.mesh, name));
+    warn_of_winding(mesh.geometry, options.mesh, session);
+    session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
+                               mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
+
+    if (options.simplify != 0)
+        mesh = simplified_to(std::move(mesh), options.simplify, session);
+    if (options.refine.is_wanted())
+        mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
+
+    const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
+    if (options.is_plan)
+        return write_plan(std::move(mesh), work, watch, session);
+    PrecomputeReport facts;
+    const Scene scene = [&] {
+        const Patience for_checkpoints;
+        return precomputed(std::move(mesh), work, facts);
+    }();
+    session.end_progress();
+
+    Report report = report_of(work, facts, scene, session);
+    const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
+    const std::string others = on_vertices
+                                   ? ""
+                                   : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
+                                                 prt::description(scene.layout));
+    const prt::PrecomputeStatistics& clusters = facts.clusters;
+    const double seconds = watch.total();
+    session.say(fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({}; "
+                            "{:.1f} M rays/s), {:.1f} MB",
+                            options.output, facts.num_vertices, facts.num_triangles, others,
+                            clusters.num_clusters, seconds, where_time_went(facts, seconds),
+                            static_cast<double>(clusters.num_rays) / clusters.seconds * 1e-6,
+                            static_cast<double>(facts.file_bytes) * 1e-6));
+    if (scene.settings.floor_vertices != 0)
+        report.set("floor", floor_report(scene, session));
+    if (facts.bounces)
+        report.set("bounces", bounce_report(*facts.bounces, scene, session));
+    if (!facts.processes.empty())
+        report.set("processes", process_report(facts.processes, session));
+    report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
+    report.set("seconds", seconds);
+    session.report(report);
+}
+
+/// Everything that decides which light reaches what.
+void add_work_options(Command& command, const std::shared_ptr<PrecomputeArguments>& options) {
+    command
+        .add_option(
+            "--floor",
+            [options](const std::string& text) {
+                const std::optional<std::uint32_t> side =
+                    text.empty() ? std::optional<std::uint32_t>(193) : parse_count(text);
+                if (!side)
+                    throw UsageError(
+                        "--floor",
+                        fmt::format("expected a number of vertices, got '{0}'; the mesh goes "
+                                    "first: relumine precompute {0} --floor",
+                                    text));
+                if (*side < 2 || *side > 65535)
+                    throw UsageError("--floor",
+                                     fmt::format("expected 2 to 65535 vertices, got '{}'", text));
+                options->mesh_options.floor_vertices = side;
+            },
+            "add a floor of N x N vertices under the mesh; 193 when no N is given")
+        .value_is_optional()
+        .type_name("[N]");
+    command
+        .add_option("--floor-scale", options->mesh_options.floor_scale,
+                    "side of the floor over the mesh's width, or half its height if that is more")
+        .needs("--floor")
+        .between(1e-6, 1e6)
+        .show_default();
+    command
+        .add_option("--up", options->up,
+                    "the mesh's axis that points up (y; z for .stl, which comes from CAD)")
+        .one_of({"x", "y", "z"});
+    command
+        .add_option("--normals", options->normals,
+                    "vertex normals: the file's where it has them, or always smooth")
+        .one_of({"file", "smooth"})
+        .show_default();
+    add_crease_option(command, options->mesh_options.crease);
+    command
+        .add_option("--simplify", options->simplify,
+                    "light so many of the mesh's vertices, those that shape it; all of its "
+                    "triangles go on to throw shadows")
+        .between(4, 4294967294.0)
+        .type_name("N");
+    options->refine.add_to_precompute(command);
+    command
+        .add_option("--tolerance", options->precompute.tolerance,
+                    "RMS error of the transfer allowed within a cluster, 1/sr")
+        .between(0.0, 1e6)
+        .show_default();
+    command
+        .add_option("--epsilon", options->precompute.epsilon,
+                    "the paper's form of the tolerance: grows lax with the mesh's size")
+        .between(0.0, 1e6)
+        .excludes("--tolerance");
+    command
+        .add_option("--min-depth", options->precompute.min_level,
+                    "every cell is split at least this often")
+        .between(0, prt::MaxLevel)
+        .show_default();
+    command
+        .add_option("--face-resolution", options->precompute.face_resolution,
+                    "R: cells stop at single texels of a 6 x R x R environment")
+        .between(1, 1u << prt::MaxLevel)
+        .show_default();
+    command
+        .add_option("--bias", options->precompute.bias,
+                    "lift of the rays' origins off the surface, in the mesh's unit")
+        .between(0.0, LargestPosition);
+    command
+        .add_option("--engine", options->engine,
+                    "how visibility is traced: whole beams of rays, or each ray with Embree; the "
+                    "results are "
+                    "the same")
+        .one_of({"beam", "embree"})
+        .show_default();
+    options->receivers.add_to(command);
+    options->surfaces.add_to(command);
+    options->memory.add_to(command);
+}
+
+void add_bounce_options(Command& command, const std::shared_ptr<PrecomputeArguments>& options) {
+    command
+        .add_option(
+            "--bounces",
+            [options](const std::string& text) {
+                const float standard = prt::BounceOptions{}.tolerance;
+                const std::optional<double> tolerance =
+                    text.empty() ? std::optional<double>(standard) : parse_number(text);
+                if (!tolerance || !(*tolerance >= 1e-4 && *tolerance <= 1.0))
+                    throw UsageError(
+                        "--bounces",
+                        fmt::format("expected a standard error of 0.0001 to 1, got '{0}'; the mesh "
+                                    "goes first: relumine precompute {0} --bounces",
+                                    text));
+                options->precompute.bounce_tolerance = static_cast<float>(*tolerance);
+            },
+            "light goes on from surface to surface; the standard error of one "
+            "bounce under a sun or a white sky of radiance 1, 0.01 when it is not given")
+        .value_is_optional()
+        .type_name("[ERROR]");
+    command
+        .add_flag("--two-sided", options->precompute.two_sided_bounces,
+                  "backs of surfaces send the bounced light that their fronts do")
+        .needs("--bounces");
+}
+
+} // namespace
+
+void add_precompute(Command& program, Session& session) {
+    Command command =
+        program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
+    auto options = std::make_shared<PrecomputeArguments>();
+    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl").file();
+    command
+        .add_option("-o,--output", options->output,
+                    "the scene file to write, .prt; with --plan the part")
+        .file()
+        .required();
+    options->parts.add_to(command);
+    add_work_options(command, options);
+    add_bounce_options(command, options);
+    options->checkpoint.add_to(command);
+    session.add_common_options(command);
+    command.on_run([options, command, &session] { run(*options, command, session); });
+}
+
+void add_plan(Command& program, Session& session) {
+    Command command = program.add_command(
+        "plan", "plan a precompute in parts, for many machines: MESH -> SCENE.plan");
+    auto options = std::make_shared<PrecomputeArguments>();
+    options->is_plan = true;
+    options->precompute.checkpoint_seconds = 0.0;
+    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
+        .file()
+        .required();
+    command.add_option("-o,--output", options->output, "the plan to write, .plan")
+        .file()
+        .required();
+    add_work_options(command, options);
+    session.add_common_options(command);
+    command.on_run([options, command, &session] { run(*options, command, session); });
+}
+
+} // namespace relumine::app

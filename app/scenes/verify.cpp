@@ -1,0 +1,124 @@
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "app/commands.h"
+#include "app/options/bounce_option.h"
+#include "app/options/environment_options.h"
+#include "app/scenes/lit_scene.h"
+
+namespace relumine::app {
+
+namespace {
+
+struct VerifyArguments {
+    SceneOptions scene;
+    EnvironmentOptions environment;
+    std::size_t num_samples = 2000;
+    std::size_t num_surface_points = VerifyOptions{}.num_surface_points;
+    std::uint64_t seed = 1;
+    BounceOption bounces;
+    float albedo = 0.5f;
+    std::uint32_t num_paths = VerifyOptions{}.num_paths;
+};
+
+/// The error between the vertices, for people and for --json.
+Report surface_report(const mesh::TriangleMesh& mesh, const Verification::Surface& surface,
+                      const Session& session) {
+    const relight::ErrorReport& error = surface.error;
+    const glm::vec3 worst =
+        prt::value_at(mesh, mesh.positions, surface.points[error.worst_receiver]);
+    session.say(fmt::format("between the vertices, {} points of the surface: relative L2 {:.5f}, "
+                            "mean error {:.3f} %, largest {:.2f} % at ({}, {}, {})",
+                            surface.points.size(), error.relative_l2, 100.0 * error.mean_abs,
+                            100.0 * error.max_abs, worst.x, worst.y, worst.z));
+    return {{"points", surface.points.size()},
+            {"relative_l2", error.relative_l2},
+            {"mean_abs", error.mean_abs},
+            {"max_abs", error.max_abs},
+            {"bias", error.bias},
+            {"mean_radiance", error.mean_radiance},
+            {"worst_position", worst}};
+}
+
+void run(const VerifyArguments& options, Session& session) {
+    LitScene lit = lit_scene(options.scene);
+    lit.light(load_environment(options.environment, session));
+    const std::optional<BounceReport> bounces =
+        options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
+
+    Stopwatch watch;
+    const Verification check = lit.verify({.num_samples = options.num_samples,
+                                           .seed = options.seed,
+                                           .num_surface_points = options.num_surface_points,
+                                           .num_paths = options.num_paths,
+                                           .stop = session.stop(),
+                                           .on_progress = session.progress("exact integration")});
+    session.end_progress();
+    const relight::ErrorReport& error = check.error;
+    const double seconds = watch.lap();
+
+    const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
+    const std::string name = prt::receiver_name(lit.scene().layout);
+    session.say(
+        fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
+                    check.receivers.size(), lit.environment().resolution, seconds));
+    session.say(fmt::format("relative L2 {:.5f}, mean error {:.3f} %, largest {:.2f} %, bias "
+                            "{:+.3f} % of the mean radiance {:.4g}",
+                            error.relative_l2, 100.0 * error.mean_abs, 100.0 * error.max_abs,
+                            100.0 * error.bias, error.mean_radiance));
+    if (bounces)
+        session.say(
+            fmt::format("with {} bounces at albedo {}, against {} paths per receiver, whose "
+                        "noise is {:.5f} of the relative L2",
+                        bounces->num_bounces, options.albedo, options.num_paths, check.noise));
+    session.say(fmt::format("largest at {} {} ({}, {}, {})", name, error.worst_receiver, worst.x,
+                            worst.y, worst.z));
+    Report report = {{"relative_l2", error.relative_l2},
+                     {"mean_abs", error.mean_abs},
+                     {"max_abs", error.max_abs},
+                     {"bias", error.bias},
+                     {"bounces", bounces ? bounces->num_bounces : 0},
+                     {"noise", check.noise},
+                     {"samples", check.receivers.size()},
+                     {"mean_radiance", error.mean_radiance},
+                     {name == "vertex" ? "worst_vertex" : "worst_receiver", error.worst_receiver},
+                     {"worst_position", worst},
+                     {"face_resolution", lit.environment().resolution},
+                     {"seconds", seconds}};
+    if (check.surface)
+        report.set("surface", surface_report(lit.scene().mesh, *check.surface, session));
+    session.report(report);
+}
+
+} // namespace
+
+void add_verify(Command& program, Session& session) {
+    Command command = program.add_command(
+        "verify",
+        "compare relighting with exact integration: every pixel of the file, every shadow ray");
+    auto options = std::make_shared<VerifyArguments>();
+    options->scene.add_to(command);
+    options->environment.add_to(command);
+    command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
+        .show_default();
+    command
+        .add_option("--surface", options->num_surface_points,
+                    "points of the surface chosen at random, where exact light is compared with "
+                    "what the vertices interpolate; 0 for none")
+        .type_name("N")
+        .show_default();
+    command.add_option("--seed", options->seed, "seed of the choice").show_default();
+    options->bounces.add_to(command);
+    command.add_option("--albedo", options->albedo, "of all surfaces, for bounces")
+        .between(0.0, 1.0)
+        .show_default();
+    command.add_option("--paths", options->num_paths, "paths per receiver that bounces are held to")
+        .between(1, 1u << 24)
+        .show_default();
+    session.add_common_options(command);
+    command.on_run([options, &session] { run(*options, session); });
+}
+
+} // namespace relumine::app

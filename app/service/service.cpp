@@ -1,0 +1,422 @@
+#include "app/service/service.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstdint>
+#include <list>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "app/command_line/command_line.h"
+#include "app/command_table.h"
+#include "app/movies/frame_record.h"
+#include "app/options/bounce_option.h"
+#include "app/options/environment_options.h"
+#include "app/options/output_options.h"
+#include "app/report.h"
+#include "app/scenes/lit_scene.h"
+#include "app/session.h"
+#include "cubemap/layers/layer_file.h"
+#include "cubemap/layers/layer_list.h"
+#include "files/json_value.h"
+#include "files/nearest_name.h"
+#include "files/shared_memory.h"
+#include "prt/precompute.h"
+#include "relight/pictures/array_file.h"
+#include "relumine/lit_scene.h"
+
+namespace relumine::app {
+
+namespace {
+
+using files::JsonReader;
+using files::JsonValue;
+
+/// How a member of a request is written as an argument of the command line.
+struct Argument {
+    /// "--exposure=1"; empty: a flag that is not set
+    std::string option;
+    /// The value of an argument without a name
+    std::optional<std::string> value;
+};
+
+/// "face-resolution" for "face_resolution": what is easier to write in other languages.
+std::string with_dashes(std::string name) {
+    std::replace(name.begin(), name.end(), '_', '-');
+    return name;
+}
+
+/// The name of an option's member: "exposure" of --exposure, "scene" of SCENE.
+std::string member_of(const OptionTable& option) {
+    std::string name = option.argument;
+    std::transform(name.begin(), name.end(), name.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    for (const std::string& each : option.names)
+        if (each.starts_with("--"))
+            name = each.substr(2);
+    return name;
+}
+
+std::string number_text(double number) {
+    return fmt::format("{}", number);
+}
+
+/// The text of a value as the command line has it: numbers of a list with commas between them.
+std::string value_text(const JsonReader& json, const JsonValue& value, const std::string& name) {
+    if (const auto* text = std::get_if<std::string>(&value.value))
+        return *text;
+    if (const auto* number = std::get_if<double>(&value.value))
+        return number_text(*number);
+    if (const auto* list = std::get_if<JsonValue::Array>(&value.value)) {
+        std::string text;
+        for (const JsonValue& each : *list)
+            text += (text.empty() ? "" : ",") + number_text(json.number(each, "a list's value"));
+        return text;
+    }
+    throw UsageError(name, "expected text, a number or a list of numbers");
+}
+
+/// A number of a client, as it wrote it.
+Report id_of(double number) {
+    constexpr double LargestWhole = 0x1p53;
+    return number == std::floor(number) && std::abs(number) <= LargestWhole
+               ? Report(static_cast<std::int64_t>(number))
+               : Report(number);
+}
+
+Argument argument_of(const JsonReader& json, const OptionTable& option, const JsonValue& value) {
+    const std::string name = member_of(option);
+    if (option.value == OptionTable::Value::None)
+        return {.option = json.boolean(value, fmt::format("\"{}\"", name)) ? "--" + name : "",
+                .value = {}};
+    const std::string text = value_text(json, value, name);
+    if (option.names.empty())
+        return {.option = {}, .value = text};
+    return {.option = fmt::format("--{}={}", name, text), .value = {}};
+}
+
+} // namespace
+
+struct Service::Impl {
+    explicit Impl(Session& given) : session(given) {}
+
+    /// One request that the service knows: adds its options and its work to a command line.
+    struct Request {
+        const char* name;
+        const char* description;
+        void (Impl::*declare)(Command&);
+    };
+    /// All requests.
+    static const std::vector<Request>& requests();
+
+    // The requests. Each sets the report.
+    void declare_scene(Command& command);
+    void declare_environment(Command& command);
+    void declare_edit(Command& command);
+    void declare_picture(Command& command);
+    void declare_radiance(Command& command);
+    void declare_help(Command& command);
+
+    void set_environment(const EnvironmentOptions& options);
+    void set_layers(const std::string& path);
+    void write_radiance(const std::string& output, const std::string& shared_memory);
+    /// Adds the bounces of the present light and reports them.
+    void bounce();
+
+    LitScene& lit() {
+        if (!scene)
+            throw std::runtime_error("expected the request scene first");
+        return *scene;
+    }
+    const LitScene& lit_by_environment() {
+        if (lit().radiance().empty())
+            throw std::runtime_error("expected the request environment first");
+        return *scene;
+    }
+
+    void perform(const JsonReader& json, const JsonValue& root);
+
+    Session& session;
+    std::string scene_path;
+    std::optional<LitScene> scene;
+    BounceOption bounces;
+
+    /// Environments that came before, as they light the scene, the last first.
+    struct Binned {
+        std::string key;
+        BinnedEnvironment environment;
+        relight::EnvironmentFile file;
+    };
+    std::list<Binned> binned;
+
+    /// Of the present request.
+    Report report;
+    std::string arguments;
+    const JsonReader* json = nullptr;
+    const JsonValue* layers = nullptr;
+};
+
+const std::vector<Service::Impl::Request>& Service::Impl::requests() {
+    static const std::vector<Request> All = {
+        {"scene", "load a scene in place of the present one", &Impl::declare_scene},
+        {"environment", "light the scene with an environment; layers stay over it",
+         &Impl::declare_environment},
+        {"edit", "put layers over the environment in place of the present ones",
+         &Impl::declare_edit},
+        {"picture", "write the lit scene as `relumine relight` does", &Impl::declare_picture},
+        {"radiance", "hand out the radiance of all receivers, albedo 1", &Impl::declare_radiance},
+        {"help", "the requests and their members", &Impl::declare_help},
+    };
+    return All;
+}
+
+void Service::Impl::declare_scene(Command& command) {
+    auto options = std::make_shared<SceneOptions>();
+    auto bounce_option = std::make_shared<BounceOption>();
+    options->add_to(command);
+    bounce_option->add_to(command);
+    command.on_run([this, options, bounce_option] {
+        LitScene loaded = lit_scene(*options);
+        static_cast<void>(bounce_option->applies_to(loaded.scene(), options->path));
+        bounces = *bounce_option;
+        binned.clear();
+        scene.emplace(std::move(loaded));
+        scene_path = options->path;
+        report = {{"receivers", scene->scene().receivers.num_own()},
+                  {"clusters", scene->scene().transfer.num_clusters()},
+                  {"vertices", scene->scene().mesh.num_vertices()},
+                  {"triangles", scene->scene().mesh.num_triangles()}};
+    });
+}
+
+void Service::Impl::declare_environment(Command& command) {
+    auto options = std::make_shared<EnvironmentOptions>();
+    options->add_to(command);
+    command.on_run([this, options] { set_environment(*options); });
+}
+
+void Service::Impl::set_environment(const EnvironmentOptions& options) {
+    /// More are forgotten, the oldest first.
+    constexpr std::size_t MaxBytes = std::size_t{1} << 29;
+    // The same file with the same options is not read again, unless it was saved meanwhile.
+    const std::string key = arguments + '\n' + FrameRecord::stamp(options.path);
+    LitScene& target = lit();
+    auto found =
+        std::find_if(binned.begin(), binned.end(), [&](const Binned& b) { return b.key == key; });
+    const bool is_kept = found != binned.end();
+    if (is_kept) {
+        binned.splice(binned.begin(), binned, found);
+    } else {
+        Environment environment = load_environment(options, session);
+        binned.push_front({key, target.bin(std::move(environment.map)), environment.file});
+        std::size_t bytes = 0;
+        for (auto each = binned.begin(); each != binned.end();) {
+            bytes += (each->environment.map.texels.size() + each->file.image->pixels.size()) *
+                     sizeof(glm::vec3);
+            each =
+                bytes > MaxBytes && each != binned.begin() ? binned.erase(each) : std::next(each);
+        }
+    }
+    target.light(binned.front().environment, binned.front().file);
+    report = {{"face_resolution", target.environment().resolution}, {"was_kept", is_kept}};
+    bounce();
+}
+
+void Service::Impl::declare_edit(Command& command) {
+    auto path = std::make_shared<std::string>();
+    command
+        .add_option("--layers", *path,
+                    "a list of layers as in a layer file, or the path of a layer file")
+        .required();
+    command.on_run([this, path] { set_layers(*path); });
+}
+
+void Service::Impl::set_layers(const std::string& path) {
+    static_cast<void>(lit_by_environment());
+    std::vector<cubemap::LightLayer> list;
+    if (layers != nullptr)
+        list = cubemap::read_layers(*json, *layers, ".");
+    else
+        list = cubemap::load_layers(path).layers;
+    const std::size_t count = list.size();
+    const UpdateReport update = lit().set_layers(std::move(list));
+    report = {
+        {"layers", count}, {"clusters", update.num_clusters}, {"receivers", update.num_receivers}};
+    bounce();
+}
+
+void Service::Impl::bounce() {
+    if (const auto done = bounces.bounce(lit(), {}, scene_path))
+        report.update({{"bounces", done->num_bounces}, {"seconds_bounces", done->seconds}});
+}
+
+void Service::Impl::declare_picture(Command& command) {
+    auto options = std::make_shared<OutputOptions>();
+    options->add_to(command);
+    command.on_run([this, options] {
+        const LitScene& source = lit_by_environment();
+        options->check({scene_path});
+        options->check_fits(source.scene());
+        Painter painter(source, options->for_scene(source.scene()));
+        painter.save(options->path, source.lighting());
+        report = {{"output", options->path}, {"exposure", painter.exposure_ev(options->path)}};
+    });
+}
+
+void Service::Impl::declare_radiance(Command& command) {
+    struct Options {
+        std::string output;
+        std::string shared_memory;
+    };
+    auto options = std::make_shared<Options>();
+    command.add_option("-o,--output", options->output, "an .npy file [receivers x 3]").file();
+    command.add_option("--shared-memory", options->shared_memory,
+                       "POSIX shared memory that the client has made: float32 [receivers x 3]");
+    command.on_run([this, options] { write_radiance(options->output, options->shared_memory); });
+}
+
+void Service::Impl::write_radiance(const std::string& output, const std::string& shared_memory) {
+    if (output.empty() == shared_memory.empty())
+        throw UsageError("output", "expected either output or shared-memory");
+    const std::span<const glm::vec3> radiance = lit_by_environment().radiance();
+    if (output.empty()) {
+        files::write_shared_memory(shared_memory, std::as_bytes(radiance));
+    } else {
+        if (extension_of(output) != ".npy")
+            throw UsageError("output",
+                             fmt::format("expected a name that ends in .npy, got '{}'", output));
+        check_output(output, {scene_path});
+        relight::save_npy(output, radiance);
+    }
+    report = {{"receivers", radiance.size()}, {"bytes", radiance.size_bytes()}};
+}
+
+void Service::Impl::declare_help(Command& command) {
+    command.on_run([this] {
+        std::vector<Report> all;
+        for (const Request& request : requests()) {
+            CommandLine line("relumine", "", "");
+            Command below = line.root().add_command(request.name, request.description);
+            (this->*request.declare)(below);
+            Report members;
+            const CommandTable table = line.table();
+            for (const OptionTable& option : table.commands.front().options)
+                if (member_of(option) != "help")
+                    members.set(member_of(option), option.description);
+            all.push_back(
+                {{"do", request.name}, {"description", request.description}, {"members", members}});
+        }
+        report = {{"requests", all}};
+    });
+}
+
+/// Makes a command line of the request's members and runs it: so they are checked as there.
+void Service::Impl::perform(const JsonReader& reader, const JsonValue& root) {
+    const JsonValue::Object& members = reader.object(root, "a request");
+    const std::string& name = reader.string(reader.required(root, members, "do"), "\"do\"");
+    std::vector<std::string_view> names;
+    for (const Request& each : requests())
+        names.emplace_back(each.name);
+    const auto index =
+        static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    if (index == names.size())
+        throw UsageError("do", fmt::format("expected a request, got '{}'{}", name,
+                                           files::did_you_mean(name, names)));
+    const Request& request = requests()[index];
+    CommandLine line("relumine", "", "");
+    Command command = line.root().add_command(request.name, request.description);
+    (this->*request.declare)(command);
+
+    const std::vector<OptionTable> options = line.table().commands.front().options;
+    std::vector<std::string> known = {"do", "id"};
+    for (const OptionTable& option : options)
+        if (member_of(option) != "help")
+            known.push_back(member_of(option));
+    std::vector<std::string> words = {request.name};
+    std::vector<std::string> values;
+    json = &reader;
+    layers = nullptr;
+    for (const auto& [given, value] : members) {
+        const std::string member = with_dashes(given);
+        if (std::find(known.begin(), known.end(), member) == known.end())
+            throw UsageError(given, fmt::format("no member of the request {}{}", name,
+                                                files::did_you_mean(member, known)));
+        if (member == "do" || member == "id")
+            continue;
+        const OptionTable& option =
+            *std::find_if(options.begin(), options.end(),
+                          [&](const OptionTable& each) { return member_of(each) == member; });
+        if (member == "layers" && std::holds_alternative<JsonValue::Array>(value.value)) {
+            layers = &value;
+            words.emplace_back("--layers=a list");
+            continue;
+        }
+        const Argument argument = argument_of(reader, option, value);
+        if (argument.value)
+            values.push_back(*argument.value);
+        else if (!argument.option.empty())
+            words.push_back(argument.option);
+    }
+    if (!values.empty()) {
+        words.emplace_back("--");
+        words.insert(words.end(), values.begin(), values.end());
+    }
+    arguments.clear();
+    for (const std::string& word : words)
+        arguments += word + '\n';
+    static_cast<void>(line.run(std::move(words)));
+}
+
+Service::Service(Session& session) : impl_(std::make_unique<Impl>(session)) {}
+Service::~Service() = default;
+
+std::string Service::answer(std::string_view request) {
+    const JsonReader reader("request");
+    Report id;
+    bool has_id = false;
+    const auto answered = [&](bool is_ok, const Report& fields) {
+        Report answer = {{"ok", is_ok}};
+        answer.update(fields);
+        answer.update(impl_->session.take_notes());
+        if (has_id)
+            answer.set("id", id);
+        return answer.text();
+    };
+    const auto failed = [&](const std::string& message) {
+        return answered(false, {{"error", one_line(message)}});
+    };
+    const Stopwatch watch;
+    impl_->report = Report();
+    try {
+        const JsonValue root = reader.parse(std::as_bytes(std::span(request)));
+        if (const auto* members = std::get_if<JsonValue::Object>(&root.value))
+            if (const JsonValue* given = JsonReader::find(*members, "id")) {
+                if (const auto* number = std::get_if<double>(&given->value))
+                    id = id_of(*number);
+                else
+                    id = Report(reader.string(*given, "\"id\""));
+                has_id = true;
+            }
+        impl_->perform(reader, root);
+        impl_->report.set("seconds", watch.total());
+        return answered(true, impl_->report);
+    } catch (const prt::Cancelled&) {
+        throw;
+    } catch (const std::bad_alloc&) {
+        return failed("out of memory");
+    } catch (const std::exception& error) {
+        return failed(error.what());
+    }
+}
+
+std::string Service::refusal(const std::string& message) {
+    return Report{{"ok", false}, {"error", one_line(message)}}.text();
+}
+
+} // namespace relumine::app

@@ -1,0 +1,57 @@
+#include "mpi/greeting.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <hwy/targets.h>
+
+namespace relumine::mpi {
+
+Greeting greeting(const std::vector<std::string>& arguments) {
+    // The lowest bit is the best target.
+    const auto targets = static_cast<std::int64_t>(hwy::SupportedTargets());
+    return {.version = RELUMINE_VERSION,
+            .instruction_set = hwy::TargetName(targets & -targets),
+            .arguments = arguments};
+}
+
+std::vector<std::byte> packed(const Greeting& greeting) {
+    std::string text = greeting.version + '\0' + greeting.instruction_set + '\0';
+    for (const std::string& argument : greeting.arguments)
+        text += argument + '\0';
+    const auto bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
+
+Greeting unpacked(std::span<const std::byte> bytes) {
+    std::vector<std::string> words(1);
+    for (const std::byte byte : bytes) {
+        if (byte == std::byte{0})
+            words.emplace_back();
+        else
+            words.back() += static_cast<char>(byte);
+    }
+    words.resize(std::max<std::size_t>(words.size(), 3));
+    return {.version = words[0],
+            .instruction_set = words[1],
+            .arguments = {words.begin() + 2, words.end() - 1}};
+}
+
+std::string difference(const Greeting& first, const Greeting& own) {
+    const auto differ = [](const std::string& what, const std::string& expected,
+                           const std::string& got) {
+        return fmt::format("expected the {} '{}' of the first process, got '{}'", what, expected,
+                           got);
+    };
+    if (own.version != first.version)
+        return differ("version", first.version, own.version);
+    if (own.instruction_set != first.instruction_set)
+        return differ("instruction set", first.instruction_set, own.instruction_set);
+    if (own.arguments != first.arguments)
+        return differ("arguments", fmt::format("{}", fmt::join(first.arguments, " ")),
+                      fmt::format("{}", fmt::join(own.arguments, " ")));
+    return "";
+}
+
+} // namespace relumine::mpi

@@ -1,0 +1,19 @@
+#include "prt/clusters/dealt_tiles.h"
+
+#include <algorithm>
+
+#include "prt/clusters/visible_counts.h"
+
+namespace relumine::prt {
+
+std::vector<std::uint32_t> places_of(const Part& part, std::size_t num_receivers) {
+    constexpr std::size_t Width = VisibleCounts::TileBlocks * BlockSize;
+    std::vector<std::uint32_t> places;
+    places.reserve(num_receivers / part.count + Width);
+    for (std::size_t begin = part.index * Width; begin < num_receivers; begin += part.count * Width)
+        for (std::size_t place = begin; place < std::min(begin + Width, num_receivers); ++place)
+            places.push_back(static_cast<std::uint32_t>(place));
+    return places;
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,240 @@
+#include "prt/parts/scene_part.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include "prt/clusters/dealt_tiles.h"
+#include "prt/parts/part_list.h"
+#include "prt/scene/scene_sections.h"
+#include "prt/scene/section_file.h"
+#include "prt/scene/section_reader.h"
+
+namespace relumine::prt {
+
+namespace {
+
+/// Picks ranges out of bytes that come piece by piece. Ranges ascend.
+class Picker {
+public:
+    struct Range {
+        std::uint64_t begin = 0, end = 0;
+    };
+    explicit Picker(std::vector<Range> ranges) : ranges_(std::move(ranges)) {
+        std::uint64_t size = 0;
+        for (const Range& range : ranges_)
+            size += range.end - range.begin;
+        picked_.reserve(static_cast<std::size_t>(size));
+    }
+
+    void take(std::span<const std::byte> piece) {
+        const std::uint64_t end = done_ + piece.size();
+        for (; next_ < ranges_.size() && ranges_[next_].begin < end; ++next_) {
+            const Range& range = ranges_[next_];
+            const auto first = static_cast<std::size_t>(std::max(range.begin, done_) - done_);
+            const auto last = static_cast<std::size_t>(std::min(range.end, end) - done_);
+            picked_.insert(picked_.end(), piece.begin() + static_cast<std::ptrdiff_t>(first),
+                           piece.begin() + static_cast<std::ptrdiff_t>(last));
+            if (range.end > end)
+                break; // goes on in the next piece
+        }
+        done_ = end;
+    }
+
+    template<typename Element>
+    [[nodiscard]] std::vector<Element> elements() const {
+        std::vector<Element> result(picked_.size() / sizeof(Element));
+        if (!result.empty())
+            std::memcpy(result.data(), picked_.data(), picked_.size());
+        return result;
+    }
+
+private:
+    std::vector<Range> ranges_;
+    std::vector<std::byte> picked_;
+    std::size_t next_ = 0;
+    std::uint64_t done_ = 0;
+};
+
+/// Reads the counts of the part's tiles, and nothing else of the counts stays in memory.
+VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCounts& whole,
+                             const Part& part, std::size_t num_own) {
+    constexpr std::uint64_t WordBytes = sizeof(std::uint64_t);
+    const auto words_before = [&](std::size_t tile) {
+        return std::uint64_t{whole.tile_begin(tile)} * whole.words_per_block();
+    };
+    const std::size_t num_tiles = whole.num_tiles();
+    std::vector<Picker::Range> words;
+    for (std::size_t tile = part.index; tile < num_tiles; tile += part.count)
+        words.push_back({words_before(tile) * WordBytes, words_before(tile + 1) * WordBytes});
+    const std::uint64_t num_bytes = words_before(num_tiles) * WordBytes;
+
+    VisibleCounts counts{.num_receivers = num_own, .num_leaves = whole.num_leaves};
+    Picker visible(words);
+    stream_section(path, "visible", num_bytes, [&](auto piece) { visible.take(piece); });
+    counts.visible = visible.elements<std::uint64_t>();
+
+    // Where the counts of a tile begin follows from the mixed pairs of all tiles before.
+    Picker mixed(words);
+    std::vector<std::uint64_t> pairs(num_tiles + 1);
+    std::uint64_t word = 0;
+    std::size_t tile = 0;
+    stream_section(path, "mixed", num_bytes, [&](std::span<const std::byte> piece) {
+        mixed.take(piece);
+        for (std::size_t at = 0; at < piece.size(); at += WordBytes, ++word) {
+            while (word == words_before(tile + 1))
+                ++tile;
+            std::uint64_t bits = 0;
+            std::memcpy(&bits, piece.data() + at, WordBytes);
+            pairs[tile + 1] += static_cast<std::uint64_t>(std::popcount(bits));
+        }
+    });
+    counts.mixed = mixed.elements<std::uint64_t>();
+    for (std::size_t i = 0; i < num_tiles; ++i)
+        pairs[i + 1] += pairs[i];
+
+    std::vector<Picker::Range> entries;
+    for (std::size_t own = part.index; own < num_tiles; own += part.count)
+        entries.push_back({pairs[own] * BlockSize, pairs[own + 1] * BlockSize});
+    Picker values(entries);
+    stream_section(path, "counts", pairs[num_tiles] * BlockSize,
+                   [&](auto piece) { values.take(piece); });
+    counts.counts = values.elements<std::uint8_t>();
+    try {
+        counts.index();
+    } catch (const std::invalid_argument&) {
+        throw std::runtime_error(fmt::format(
+            "{}: expected counts that fit the receivers and the tree, got others", path.string()));
+    }
+    return counts;
+}
+
+/// A part as its file has it.
+struct StoredLight {
+    Part part;
+    std::string whole;
+    std::uint32_t num_receivers = 0;
+    std::vector<std::uint32_t> receivers;
+    std::vector<glm::vec3> radiance;
+};
+
+StoredLight read_lit_part(const std::filesystem::path& path) {
+    const SectionReader reader(path, read_sections(path));
+    if (!reader.has("lit"))
+        throw std::runtime_error(fmt::format(
+            "{}: expected a part that `relumine relight --part` wrote, got another file",
+            path.string()));
+    const files::Json json = reader.json("lit");
+    StoredLight stored;
+    try {
+        stored.part = {.index = natural(json.at("index")), .count = natural(json.at("count"))};
+        stored.whole = json.at("light").string();
+        stored.num_receivers = natural(json.at("receivers"));
+        if (stored.part.index >= stored.part.count || stored.part.count > MaxParts)
+            throw std::out_of_range("expected an index below the count");
+    } catch (const std::exception&) {
+        reader.fail("lit", "JSON with the place of the part");
+    }
+    stored.receivers = reader.elements<std::uint32_t>("lit_receivers");
+    stored.radiance = reader.elements<glm::vec3>("lit_radiance", stored.receivers.size());
+    return stored;
+}
+
+} // namespace
+
+ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
+    if (part.index >= part.count || part.count > MaxParts)
+        throw std::invalid_argument(
+            fmt::format("{}: expected a part of 1 to {}", path.string(), MaxParts));
+    const std::array<std::string, 3> Counts = {"visible", "mixed", "counts"};
+    std::uint32_t version = 0;
+    Sections sections = read_sections(path, &version, Counts);
+    const auto refuse = [&](const std::string& expected, const std::string& got) {
+        throw std::runtime_error(
+            fmt::format("{}: expected {}, got {}", path.string(), expected, got));
+    };
+    if (version != SceneFileVersion)
+        refuse(fmt::format(".prt version {} for a part of the receivers", SceneFileVersion),
+               fmt::format("version {}", version));
+    if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
+        refuse("a scene", "a plan or a part");
+    if (sections.contains("g_specular_b") || sections.contains("bounce_weights"))
+        refuse("a scene without highlights and bounces for a part of the receivers", "one with");
+    Scene whole = plan_of(path, std::move(sections));
+    ScenePart result;
+    result.num_receivers = whole.receivers.size();
+    const std::vector<std::uint32_t> places = places_of(part, result.num_receivers);
+    Receivers own;
+    Transfer transfer;
+    transfer.quadtree = std::move(whole.transfer.quadtree);
+    for (const std::uint32_t place : places) {
+        const std::uint32_t receiver = whole.transfer.order[place];
+        result.receivers.push_back(receiver);
+        transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));
+        own.positions.push_back(whole.receivers.positions[receiver]);
+        own.normals.push_back(whole.receivers.normals[receiver]);
+        if (!whole.receivers.surfaces.empty())
+            own.surfaces.push_back(whole.receivers.surfaces[receiver]);
+    }
+    transfer.normals = own.normals;
+    transfer.counts = counts_of_part(
+        path, {.num_receivers = result.num_receivers, .num_leaves = transfer.quadtree.num_leaves()},
+        part, places.size());
+    set_surfaces(transfer, own);
+    whole.receivers = std::move(own);
+    whole.transfer = std::move(transfer);
+    result.scene = std::move(whole);
+    return result;
+}
+
+std::uint64_t save_lit_part(const std::filesystem::path& path, const LitPart& part) {
+    const files::Json json = {{"index", part.part.index},
+                              {"count", part.part.count},
+                              {"receivers", part.num_receivers},
+                              {"light", part.light}};
+    const std::string text = json.text(2);
+    Sections sections;
+    sections["lit"] = bytes_of(std::vector<char>(text.begin(), text.end()));
+    sections["lit_receivers"] = bytes_of(part.receivers);
+    sections["lit_radiance"] = bytes_of(part.radiance);
+    // A scene's reader says what it is.
+    sections["plan"] = bytes_of(std::vector<char>{'{', '}'});
+    sections["part"] = sections["lit"];
+    return write_sections(path, sections);
+}
+
+std::vector<glm::vec3> join_lit_parts(std::span<const std::filesystem::path> paths) {
+    const auto parts = all_parts_of("light", paths, read_lit_part);
+    const std::size_t num_receivers = parts.front()->num_receivers;
+    std::vector<glm::vec3> radiance(num_receivers);
+    std::vector<bool> is_known(num_receivers);
+    std::size_t num_known = 0;
+    for (const auto& part : parts)
+        for (std::size_t i = 0; i < part->receivers.size(); ++i) {
+            const std::uint32_t receiver = part->receivers[i];
+            if (receiver >= num_receivers || is_known[receiver])
+                throw std::runtime_error(
+                    fmt::format("{}: expected each receiver once", paths[0].string()));
+            is_known[receiver] = true;
+            ++num_known;
+            radiance[receiver] = part->radiance[i];
+        }
+    if (num_known != num_receivers)
+        throw std::runtime_error(fmt::format("{}: expected parts with all {} receivers, got {}",
+                                             paths[0].string(), num_receivers, num_known));
+    return radiance;
+}
+
+std::uint64_t bytes_hash(std::span<const std::byte> bytes) {
+    return XXH64(bytes.data(), bytes.size(), 0);
+}
+
+} // namespace relumine::prt

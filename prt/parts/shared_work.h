@@ -1,0 +1,43 @@
+// What the processes that share a precompute send each other.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/glossy/glossy_precompute.h"
+#include "prt/parts/parts.h"
+#include "prt/precompute.h"
+#include "prt/receivers/receivers.h"
+
+namespace relumine::prt {
+
+/// All that a process must know to do its part.
+struct SharedWork {
+    /// Positions and triangles alone
+    mesh::TriangleMesh blockers = {};
+    /// Without their points on the mesh
+    Receivers receivers = {};
+    /// Numbers alone
+    PrecomputeOptions clusters = {};
+    /// Numbers alone; only where there are highlights
+    std::optional<GlossyOptions> highlights = {};
+    /// Whether beams are traced, or single rays
+    bool has_beams = true;
+    /// Whether there are checkpoints
+    bool has_checkpoint = false;
+};
+
+/// Returns bytes for other processes on machines of the same kind. They hold the mesh and the
+/// receivers as they lie in memory.
+[[nodiscard]] std::vector<std::byte> packed_work(const SharedWork& work);
+/// Throws: std::runtime_error for other bytes.
+[[nodiscard]] SharedWork unpacked_work(std::span<const std::byte> bytes);
+
+[[nodiscard]] std::vector<std::byte> packed_light(const PartLight& light);
+/// Throws: std::runtime_error for other bytes.
+[[nodiscard]] PartLight unpacked_light(std::span<const std::byte> bytes);
+
+} // namespace relumine::prt

@@ -1,0 +1,96 @@
+#include "prt/parts/team_checkpoint.h"
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <utility>
+
+#include "files/packed_parts.h"
+
+namespace relumine::prt {
+
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+void add_bytes(files::ByteWriter& writer, std::span<const std::byte> bytes) {
+    writer.add<std::uint64_t>(bytes.size());
+    writer.add_all(bytes);
+}
+
+Bytes next_bytes(files::ByteReader& reader) {
+    return reader.next_all<std::byte>(static_cast<std::size_t>(reader.next<std::uint64_t>()));
+}
+
+/// Puts what each process has of one record or state into one.
+Bytes together(const std::vector<Bytes>& of_processes) {
+    files::ByteWriter writer;
+    bool is_empty = true;
+    for (const Bytes& bytes : of_processes) {
+        add_bytes(writer, bytes);
+        is_empty = is_empty && bytes.empty();
+    }
+    return is_empty ? Bytes() : writer.take();
+}
+
+std::vector<Bytes> apart(std::span<const std::byte> bytes, std::size_t count) {
+    std::vector<Bytes> of_processes(count);
+    if (bytes.empty())
+        return of_processes;
+    files::ByteReader reader(bytes);
+    for (Bytes& of_process : of_processes)
+        of_process = next_bytes(reader);
+    if (!reader.at_end())
+        throw std::runtime_error("checkpoint: expected one of as many processes");
+    return of_processes;
+}
+
+} // namespace
+
+bool TeamCheckpoint::first_says(bool answer) {
+    std::array<std::int64_t, 1> values = {store_ != nullptr && answer ? 1 : 0};
+    team_.max(values);
+    return values[0] != 0;
+}
+
+Checkpoint::Saved TeamCheckpoint::load(const std::string& part, bool with_state) {
+    const std::size_t count = team_.part().count;
+    std::vector<Bytes> to_each;
+    if (store_ != nullptr) {
+        const Saved saved = store_->load(part, with_state);
+        std::vector<files::ByteWriter> writers(count);
+        const auto add = [&](std::span<const std::byte> bytes) {
+            const std::vector<Bytes> of_processes = apart(bytes, count);
+            for (std::size_t i = 0; i < count; ++i)
+                add_bytes(writers[i], of_processes[i]);
+        };
+        add(saved.state);
+        for (const Bytes& record : saved.records)
+            add(record);
+        for (files::ByteWriter& writer : writers)
+            to_each.push_back(writer.take());
+    }
+    const Bytes own = team_.scatter(std::move(to_each));
+    files::ByteReader reader(own);
+    Saved saved{.state = next_bytes(reader)};
+    while (!reader.at_end())
+        saved.records.push_back(next_bytes(reader));
+    return saved;
+}
+
+bool TeamCheckpoint::is_due() {
+    return first_says(store_ != nullptr && store_->is_due());
+}
+
+bool TeamCheckpoint::is_worthwhile() {
+    return first_says(store_ != nullptr && store_->is_worthwhile());
+}
+
+bool TeamCheckpoint::save(const std::string& part, std::span<const std::byte> record,
+                          std::span<const std::byte> state) {
+    const std::vector<Bytes> records = team_.gather({record.begin(), record.end()});
+    const std::vector<Bytes> states = team_.gather({state.begin(), state.end()});
+    return first_says(store_ != nullptr && store_->save(part, together(records), together(states)));
+}
+
+} // namespace relumine::prt

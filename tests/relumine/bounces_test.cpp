@@ -1,0 +1,208 @@
+// Bounces of light, from a mesh to what pixels, texels and glossy vertices show.
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "prt/receivers/mesh_point.h"
+#include "tests/relumine/small_scenes.h"
+
+namespace relumine {
+namespace {
+
+class BouncesFile : public scenes::InFolder {};
+
+/// Two squares of n x n vertices that meet at a right angle and face each other: a floor and a red
+/// wall. The floor has the left half of the atlas.
+mesh::TriangleMesh corner(std::uint32_t n) {
+    mesh::TriangleMesh mesh;
+    for (const bool is_wall : {false, true}) {
+        const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+        for (std::uint32_t j = 0; j < n; ++j)
+            for (std::uint32_t i = 0; i < n; ++i) {
+                const float s = static_cast<float>(i) / static_cast<float>(n - 1);
+                const float t = static_cast<float>(j) / static_cast<float>(n - 1);
+                mesh.positions.push_back(is_wall ? glm::vec3(s, t, 0.0f) : glm::vec3(s, 0.0f, t));
+                mesh.normals.push_back(is_wall ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0));
+                mesh.colors.push_back(is_wall ? glm::vec3(0.8f, 0.1f, 0.1f) : glm::vec3(0.5f));
+                mesh.uvs.emplace_back(0.01f + 0.48f * s + (is_wall ? 0.5f : 0.0f),
+                                      0.02f + 0.96f * t);
+            }
+        for (std::uint32_t j = 0; j + 1 < n; ++j)
+            for (std::uint32_t i = 0; i + 1 < n; ++i) {
+                const std::uint32_t at = first + j * n + i;
+                const mesh::Triangle a = {at, at + 1, at + n + 1}, b = {at, at + n + 1, at + n};
+                mesh.triangles.push_back(is_wall ? a : mesh::Triangle{a[0], a[2], a[1]});
+                mesh.triangles.push_back(is_wall ? b : mesh::Triangle{b[0], b[2], b[1]});
+            }
+    }
+    return mesh;
+}
+
+constexpr Camera View45{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30};
+
+PrecomputeOptions options(std::variant<Vertices, Pixels, Texels> receivers) {
+    PrecomputeOptions result{.tolerance = 0.03f, .receivers = receivers, .bounce_tolerance = 0.01f};
+    if (std::holds_alternative<Pixels>(receivers))
+        result.view = View{View45};
+    return result;
+}
+
+cubemap::CubeMap sun_and_sky() {
+    cubemap::CubeMap map(16, glm::vec3(0.2f, 0.3f, 0.5f));
+    map.at(cubemap::Face::PositiveZ, 8, 3) = glm::vec3(60.0f);
+    return map;
+}
+
+std::vector<glm::vec3> bounced(LitScene& lit) {
+    lit.light(sun_and_sky());
+    lit.bounce(bounce_albedo(lit.scene()));
+    return {lit.bounced().begin(), lit.bounced().end()};
+}
+
+/// How far pixels or texels are from the light that the vertices of the same mesh interpolate.
+double difference_to_vertices(const LitScene& lit, std::span<const glm::vec3> light,
+                              std::span<const glm::vec3> of_vertices) {
+    const prt::Receivers& receivers = lit.scene().receivers;
+    double difference = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < receivers.num_own(); ++i) {
+        const glm::vec3 expected =
+            prt::value_at(lit.scene().mesh, of_vertices, receivers.points[i]);
+        const glm::dvec3 d = glm::dvec3(light[i]) - glm::dvec3(expected);
+        difference += glm::dot(d, d);
+        all += glm::dot(glm::dvec3(expected), glm::dvec3(expected));
+    }
+    return std::sqrt(difference / all);
+}
+
+TEST(Bounces, OfPixelsAndTexelsComeFromTheVertices) {
+    const mesh::TriangleMesh mesh = corner(33);
+    LitScene vertices(precompute(mesh, options(Vertices{})));
+    const std::vector<glm::vec3> of_vertices = bounced(vertices);
+    for (const auto& receivers : std::initializer_list<std::variant<Vertices, Pixels, Texels>>{
+             Pixels{.width = 40, .height = 30}, Texels{.width = 64, .height = 32}}) {
+        LitScene lit(precompute(mesh, options(receivers)));
+        const prt::Receivers& own = lit.scene().receivers;
+        EXPECT_EQ(own.num_added, mesh.num_vertices());
+        const std::vector<glm::vec3> light = bounced(lit);
+        EXPECT_LT(difference_to_vertices(lit, light, of_vertices), 0.04);
+        // The wall's red is on the floor.
+        EXPECT_GT(light[own.num_own() + 3].r, 1.5f * light[own.num_own() + 3].g);
+        const Verification check = lit.verify({.num_samples = 200, .num_paths = 600});
+        EXPECT_LT(check.error.relative_l2, 0.03 + check.noise);
+        for (const std::uint32_t receiver : check.receivers)
+            EXPECT_LT(receiver, own.num_own());
+        const Picture picture = lit.draw();
+        EXPECT_EQ(picture.pixels.size(), std::holds_alternative<Pixels>(receivers) ? 1200u : 2048u);
+    }
+}
+
+TEST_F(BouncesFile, KeepTheVerticesBehindPixels) {
+    PrecomputeOptions how = options(Pixels{.width = 20, .height = 16});
+    how.output = file("scene.prt");
+    how.two_sided_bounces = true;
+    LitScene made(precompute(corner(9), how));
+    LitScene read(load_scene(file("scene.prt")));
+    EXPECT_EQ(read.scene().receivers.num_added, 162u);
+    EXPECT_EQ(read.scene().bounces, made.scene().bounces);
+    EXPECT_TRUE(read.scene().settings.two_sided_bounces);
+    EXPECT_EQ(bounced(read), bounced(made));
+
+    const auto refuses = [&](const auto& damage, const char* what) {
+        Scene scene = read.scene();
+        damage(scene);
+        try {
+            save_scene(file("damaged.prt"), scene);
+            ADD_FAILURE() << what;
+        } catch (const std::runtime_error& error) {
+            EXPECT_NE(std::string(error.what()).find(what), std::string::npos) << error.what();
+        }
+    };
+    refuses([](Scene& scene) { scene.bounces->weights[3] = 2.0f; }, "keep at most all");
+    refuses([](Scene& scene) { scene.bounces->spectral_radius = std::nanf(""); }, "0 to 1");
+    // Pixels send nothing.
+    refuses(
+        [](Scene& scene) {
+            for (std::uint32_t& place : scene.bounces->emitters.places)
+                place = 0;
+        },
+        "light that comes from vertices");
+    EXPECT_FALSE(std::filesystem::exists(file("damaged.prt")));
+}
+
+/// Lifted off the floor by its sphere of directions, the roof faces up; its back is over the floor.
+mesh::TriangleMesh floor_under_a_roof() {
+    mesh::TriangleMesh mesh = corner(17);
+    mesh.positions.resize(2 * 17 * 17);
+    for (std::size_t i = 17 * 17; i < mesh.num_vertices(); ++i) {
+        const glm::vec3 wall = mesh.positions[i];
+        mesh.positions[i] = {wall.x, 0.4f, wall.y};
+        mesh.normals[i] = {0, 1, 0};
+    }
+    for (std::size_t i = mesh.num_triangles() / 2; i < mesh.num_triangles(); ++i)
+        std::swap(mesh.triangles[i][1], mesh.triangles[i][2]);
+    return mesh;
+}
+
+TEST(Bounces, OfBacksAreVerifiedAsTheyWereMade) {
+    for (const bool two_sided : {false, true}) {
+        PrecomputeOptions how = options(Vertices{});
+        how.two_sided_bounces = two_sided;
+        LitScene lit(precompute(floor_under_a_roof(), how));
+        lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
+        lit.bounce(std::vector(lit.scene().receivers.size(), glm::vec3(0.8f)));
+        float largest = 0.0f;
+        for (const glm::vec3& light : lit.bounced())
+            largest = std::max(largest, light.g);
+        EXPECT_EQ(largest > 0.1f, two_sided);
+        const Verification check = lit.verify({.num_samples = 200, .num_paths = 400});
+        EXPECT_LT(check.error.relative_l2, 0.02 + check.noise) << two_sided;
+    }
+}
+
+TEST(Bounces, GlossyReceiversGainTheDiffusePart) {
+    const prt::Surface glossy{.albedo = glm::vec3(0.5f, 0.25f, 0.1f),
+                              .specular = glm::vec3(0.04f),
+                              .highlight = prt::Highlight::Ggx,
+                              .roughness_or_exponent = 0.4f};
+    prt::Surface matt = glossy;
+    matt.highlight = prt::Highlight::None;
+    std::vector<std::vector<glm::vec3>> lights;
+    for (const prt::Surface& surface : {glossy, matt}) {
+        PrecomputeOptions how = options(Vertices{});
+        how.view = View{View45};
+        how.surface = everywhere(surface);
+        how.glossy_tolerance = 0.1f;
+        LitScene lit(precompute(corner(9), how));
+        EXPECT_EQ(lit.scene().transfer.glossy.has_value(), surface == glossy);
+        lit.light(sun_and_sky());
+        const std::vector<glm::vec3> direct(lit.radiance().begin(), lit.radiance().end());
+        lit.bounce(bounce_albedo(lit.scene()));
+        for (std::size_t i = 0; i < direct.size(); ++i)
+            ASSERT_EQ(lit.radiance()[i], direct[i] + lit.bounced()[i]);
+        lights.emplace_back(lit.bounced().begin(), lit.bounced().end());
+    }
+    // The bounced light is that of a Lambert surface.
+    for (std::size_t i = 0; i < lights[0].size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(lights[0][i][c], lights[1][i][c], 1e-4f + 1e-3f * lights[1][i][c]);
+    EXPECT_GT(lights[0][5].r, 0.01f);
+}
+
+TEST(Bounces, OfGlossyPixelsComeFromMattVertices) {
+    PrecomputeOptions how = options(Pixels{.width = 20, .height = 16});
+    how.surface = everywhere({.albedo = glm::vec3(0.5f),
+                              .specular = glm::vec3(0.04f),
+                              .highlight = prt::Highlight::Ggx,
+                              .roughness_or_exponent = 0.5f});
+    how.glossy_tolerance = 0.1f;
+    LitScene lit(precompute(corner(9), how));
+    const std::vector<prt::Surface>& surfaces = lit.scene().receivers.surfaces;
+    EXPECT_EQ(surfaces.front().highlight, prt::Highlight::Ggx);
+    EXPECT_EQ(surfaces.back().highlight, prt::Highlight::None);
+    const std::vector<glm::vec3> light = bounced(lit);
+    EXPECT_GT(light.front().g, 0.0f);
+    EXPECT_EQ(lit.draw().pixels.size(), 320u);
+}
+
+} // namespace
+} // namespace relumine

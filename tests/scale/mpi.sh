@@ -1,0 +1,149 @@
+#!/usr/bin/env bash
+# Runs relumine-mpi on this one host, with more ranks than processors: the bytes of `relumine`, from any number of ranks, after
+# any of them was killed, and one clear line when something is wrong.
+#   mpi.sh RELUMINE RELUMINE_MPI
+set -euo pipefail
+relumine=$(realpath "$1")
+relumine_mpi=$(realpath "$2")
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cd "$folder"
+
+as_root=()
+[ "$(id -u)" -ne 0 ] || as_root=(--allow-run-as-root)
+start() { # RANKS ARGS: rank by rank, no network
+    local ranks=$1
+    shift
+    mpirun "${as_root[@]}" --oversubscribe --bind-to none --mca btl self,vader -n "$ranks" "$relumine_mpi" "$@"
+}
+
+# ranks_of RUN: the processes of a start() in the background.
+ranks_of() {
+    local run
+    run=$(pgrep -P "$1" -x mpirun || echo "$1")
+    pgrep -P "$run" -x relumine-mpi || true
+}
+
+failed=0
+check() { # NAME CONDITION...
+    local name=$1
+    shift
+    if "$@"; then echo "$name: as it should be"; else echo "$name: WRONG"; failed=1; fi
+}
+
+"$relumine" generate knot -o . --vertices 6000 -q
+cat >squares.obj <<'OBJ'
+v -1 0 1
+v 1 0 1
+v 1 0 -1
+v -1 0 -1
+v -0.5 0.5 0.5
+v 0.5 0.5 0.5
+v 0.5 0.5 -0.5
+v -0.5 0.5 -0.5
+vt 0.02 0.02
+vt 0.48 0.02
+vt 0.48 0.98
+vt 0.02 0.98
+vt 0.52 0.02
+vt 0.98 0.02
+vt 0.98 0.98
+vt 0.52 0.98
+f 1/1 2/2 3/3
+f 1/1 3/3 4/4
+f 5/5 6/6 7/7
+f 5/5 7/7 8/8
+OBJ
+vertices=(knot.ply --floor 30 --tolerance 0.03)
+glossy=(knot.ply --tolerance 0.06 --view auto --material ggx:roughness=0.4,f0=0.04 --glossy-tolerance 0.2)
+texels=(squares.obj --receivers texels:96x96 --tolerance 0.03)
+for kind in vertices glossy texels; do
+    declare -n options=$kind
+    "$relumine" precompute "${options[@]}" -o "$kind.prt" -q
+    for ranks in 1 2 3 5 8; do
+        start "$ranks" precompute "${options[@]}" -o shared.prt --threads 1 -q
+        check "$kind, $ranks ranks" cmp -s "$kind.prt" shared.prt
+        rm -f shared.prt
+    done
+done
+start 1 precompute "${vertices[@]}" -o shared.prt --threads 2 -q
+check "1 rank of 2 threads" cmp -s vertices.prt shared.prt
+rm -f shared.prt
+
+# Light: each rank reads its own tiles.
+"$relumine" generate sun_sky -o . --face-resolution 64 -q
+for scene in vertices texels; do
+    "$relumine" relight "$scene.prt" sun_sky.exr -o whole.npy -q
+    for ranks in 1 2 3 8; do
+        start "$ranks" relight "$scene.prt" sun_sky.exr -o shared.npy --threads 1 -q
+        check "light of $scene, $ranks ranks" cmp -s whole.npy shared.npy
+        rm -f shared.npy
+    done
+done
+
+# Kills a rank at ten moments. What is left goes on, or begins anew where there was no checkpoint yet.
+longer=(knot.ply --floor 60 --tolerance 0.012 --checkpoint-seconds 0.05)
+"$relumine" precompute "${longer[@]}" -o longer.prt -q
+num_killed=0
+for delay in 0.6 0.8 1.0 1.2 1.4 1.6 1.8 2.0 2.3 2.6; do
+    start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
+    run=$!
+    sleep "$delay"
+    rank=$(ranks_of "$run" | sort -R | head -n 1)
+    [ -z "$rank" ] || { kill -9 "$rank" 2>/dev/null && num_killed=$((num_killed + 1)); }
+    wait "$run" || true
+done
+start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q
+check "$num_killed ranks killed, then --resume" cmp -s longer.prt killed.prt
+check "no checkpoint is left" test ! -e killed.prt.checkpoint
+
+refuses() { # NAME CODE TEXT COMMAND...: one line of relumine-mpi, which has the text; nothing written
+    local name=$1 code=$2 text=$3 got=0
+    shift 3
+    rm -f out.prt
+    "$@" >refusal.log 2>&1 || got=$?
+    local lines
+    lines=$(grep -c '^relumine-mpi: ' refusal.log || true)
+    if [ "$got" -ne "$code" ] || [ "$lines" -ne 1 ] || ! grep -q -- "$text" refusal.log || [ -e out.prt ]; then
+        echo "$name: WRONG: exit code $got, $lines lines"
+        cat refusal.log
+        failed=1
+    else
+        echo "$name: $(grep '^relumine-mpi: ' refusal.log)"
+    fi
+}
+refuses "no mesh" 1 "nothing.ply" start 3 precompute nothing.ply -o out.prt
+refuses "other arguments" 1 "process 1: expected the arguments" \
+    mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader \
+    -n 1 "$relumine_mpi" precompute knot.ply -o out.prt : -n 1 "$relumine_mpi" precompute squares.obj -o out.prt
+refuses "no folder" 1 "no/such/out.prt" start 3 precompute "${vertices[@]}" -o no/such/out.prt -q
+refuses "another command" 2 "expected precompute" start 3 verify vertices.prt
+refuses "a picture of shared light" 2 "--output" start 2 relight vertices.prt sun_sky.exr -o out.png
+refuses "shared highlights" 1 "glossy.prt: expected a scene without highlights" \
+    start 2 relight glossy.prt sun_sky.exr -o out.npy -q
+refuses "parts" 2 "expected a mesh" start 2 precompute --plan knot.plan --part 1/2 -o out.prt
+refuses "a limit of memory" 1 "no limit of memory" start 2 precompute knot.ply --max-memory 1G -o out.prt
+if mkdir small && mount -t tmpfs -o size=100k none small 2>/dev/null; then
+    refuses "a full disk" 1 "small/out.prt: cannot write" start 3 precompute "${vertices[@]}" -o small/out.prt -q
+    check "nothing is left on it" test -z "$(ls small)"
+    umount small
+else
+    echo "a full disk: cannot be made here"
+fi
+
+# A rank that is stopped never answers.
+start 3 precompute knot.ply --floor 60 --tolerance 0.012 -o out.prt --threads 1 --timeout 3 >silent.log 2>&1 &
+run=$!
+silent=
+while [ -z "$silent" ] && kill -0 "$run" 2>/dev/null; do
+    sleep 0.5
+    silent=$(ranks_of "$run" | tail -n 1)
+done
+sleep 1
+kill -STOP "$silent"
+code=0
+wait "$run" || code=$?
+kill -9 "$silent" 2>/dev/null || true
+check "a rank that never answers: $(grep '^relumine-mpi: ' silent.log || true)" \
+    test "$code" -eq 1 -a "$(grep -c '^relumine-mpi: expected all 3 processes to answer' silent.log)" -eq 1 -a ! -e out.prt
+exit "$failed"
