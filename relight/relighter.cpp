@@ -509,10 +509,8 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
     tbb::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
         if (dimmed_[tile] != 0)
             light_tile(scene, tile, lights_, light_, dimmed_[tile]);
-        const std::size_t size =
-            transfer_.counts.tile_begin(tile + 1) - transfer_.counts.tile_begin(tile);
         if (sharp_changed || transfer_.glossy)
-            touched_[tile] = ~std::uint64_t{0} >> (prt::VisibleCounts::TileBlocks - size);
+            touched_[tile] = transfer_.counts.tile_blocks(tile);
         for_blocks(tile, touched_[tile], [&](std::size_t block) {
             light_glossy(block);
             write_radiance(block);
