@@ -1,5 +1,6 @@
 #include "prt/scene/bounce_sections.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -9,7 +10,9 @@ namespace {
 
 const std::string Radius = "bounce_radius", Weights = "bounce_weights",
                   EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
-                  AveragedSizes = "bounce_near_size", Averaged = "bounce_near";
+                  AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
+                  OpenParts = "bounce_open", Distances = "bounce_distance",
+                  HitCounts = "bounce_rays_hit";
 
 /// Numbers below 2^7 take a byte, below 2^14 two, and so on: seven bits a byte, the lowest first,
 /// the eighth set where more follow.
@@ -64,11 +67,11 @@ void add_lists(Sections& sections, const std::string& size_name, const std::stri
 }
 
 PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
-                      const std::string& name, std::size_t num_receivers) {
+                      const std::string& name, std::size_t num_lists, std::size_t num_receivers) {
     PlaceLists lists;
-    const auto sizes = reader.elements<std::uint32_t>(size_name, num_receivers);
+    const auto sizes = reader.elements<std::uint32_t>(size_name, num_lists);
     Numbers numbers(reader, name);
-    lists.begin.reserve(num_receivers + 1);
+    lists.begin.reserve(num_lists + 1);
     std::uint64_t num_places = 0;
     for (const std::uint32_t size : sizes)
         num_places += size;
@@ -111,9 +114,32 @@ std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_
     BounceMatrix matrix;
     matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
     matrix.weights = reader.elements<float>(Weights, num_receivers);
-    matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers);
-    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers);
+    matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers, num_receivers);
+    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
     return matrix;
+}
+
+void add_bounce_samples(Sections& sections, const BounceSamples& samples) {
+    sections[OpenParts] = bytes_of(samples.open_parts);
+    sections[Distances] = bytes_of(samples.distances);
+    sections[HitCounts] = bytes_of(samples.num_hits);
+    add_lists(sections, EmitterSizes, Emitters, samples.emitters);
+}
+
+std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, std::size_t num_own,
+                                                 std::size_t num_receivers) {
+    if (!reader.has(OpenParts))
+        return std::nullopt;
+    BounceSamples samples;
+    samples.open_parts = reader.elements<float>(OpenParts, num_own);
+    samples.distances = reader.elements<float>(Distances, num_own);
+    samples.num_hits = reader.elements<std::uint32_t>(HitCounts, num_own);
+    samples.emitters = read_lists(reader, EmitterSizes, Emitters, num_own, num_receivers);
+    for (std::size_t i = 0; i < num_own; ++i)
+        if (!(samples.distances[i] >= 0.0f && std::isfinite(samples.open_parts[i])) ||
+            samples.emitters[i].size() > samples.num_hits[i])
+            reader.fail(HitCounts, "samples that fit each other");
+    return samples;
 }
 
 } // namespace relumine::prt
