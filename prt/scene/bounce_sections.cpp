@@ -1,15 +1,22 @@
 #include "prt/scene/bounce_sections.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace relumine::prt {
 
 namespace {
 
 const std::string Radius = "bounce_radius", Weights = "bounce_weights",
-                  EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
+                  EmitterSizes = "bounce_hits_size", Emitters = EmitterSection,
                   AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
                   HitCounts = "bounce_rays_hit";
@@ -95,6 +102,44 @@ PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
     return lists;
 }
 
+/// Reads lists of places that come piece by piece, as add_lists() writes them, and calls
+/// on_place(list, place) for each.
+template<typename OnPlace>
+void stream_lists(const SectionReader& reader, std::span<const std::uint32_t> sizes,
+                  std::size_t num_receivers, const OnPlace& on_place) {
+    std::size_t list = 0;
+    std::uint32_t num_left = sizes.empty() ? 0 : sizes[0];
+    std::uint64_t place = 0, number = 0;
+    std::uint32_t shift = 0;
+    const auto skip_empty = [&] {
+        while (list < sizes.size() && num_left == 0) {
+            place = 0;
+            if (++list < sizes.size())
+                num_left = sizes[list];
+        }
+    };
+    stream_section(reader.path(), Emitters, std::nullopt, [&](std::span<const std::byte> piece) {
+        for (const std::byte byte : piece) {
+            const auto bits = std::to_integer<std::uint64_t>(byte);
+            number |= (bits & 0x7fu) << shift;
+            shift += 7;
+            if (bits >= 0x80u && shift < 35)
+                continue;
+            skip_empty();
+            place += number;
+            if (bits >= 0x80u || list == sizes.size() || place >= num_receivers)
+                reader.fail(Emitters, "lists of receivers");
+            on_place(list, static_cast<std::uint32_t>(place));
+            --num_left;
+            number = 0;
+            shift = 0;
+        }
+    });
+    skip_empty();
+    if (list != sizes.size() || shift != 0)
+        reader.fail(Emitters, "an end after the last list");
+}
+
 } // namespace
 
 void add_bounce_sections(Sections& sections, const BounceMatrix& matrix) {
@@ -117,6 +162,40 @@ std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_
     matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers, num_receivers);
     matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
     return matrix;
+}
+
+BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receivers,
+                            const Part& part) {
+    BounceRows rows;
+    BounceMatrix& matrix = rows.matrix;
+    matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
+    matrix.weights = reader.elements<float>(Weights, num_receivers);
+    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
+    rows.num_emitters = reader.elements<std::uint32_t>(EmitterSizes, num_receivers);
+    try {
+        require_rows(matrix, rows.num_emitters);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", reader.path().string(), error.what()));
+    }
+    // Which rows are the process's depends on the lowest place.
+    std::size_t lowest = num_receivers;
+    stream_lists(reader, rows.num_emitters, num_receivers,
+                 [&](std::size_t, std::uint32_t place) {
+                     lowest = std::min(lowest, std::size_t{place});
+                 });
+    rows.first = lowest == num_receivers ? 0 : first_emitter(lowest, matrix.averaged);
+    std::uint64_t num_places = 0;
+    for (std::size_t row = 0; row < num_receivers; ++row) {
+        num_places += has_row(part, row, rows.first) ? rows.num_emitters[row] : 0;
+        matrix.emitters.begin.push_back(num_places);
+    }
+    matrix.emitters.places.reserve(static_cast<std::size_t>(num_places));
+    stream_lists(reader, rows.num_emitters, num_receivers,
+                 [&](std::size_t row, std::uint32_t place) {
+                     if (has_row(part, row, rows.first))
+                         matrix.emitters.places.push_back(place);
+                 });
+    return rows;
 }
 
 void add_bounce_samples(Sections& sections, const BounceSamples& samples) {
