@@ -4,8 +4,8 @@
 #include <array>
 #include <cstdio>
 #include <memory>
-#include <stdexcept>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 

@@ -454,9 +454,11 @@ private:
                 std::memcpy(&report_.processes.emplace_back(), bytes.data(),
                             sizeof(ProcessFigures));
         prt::join_light(transfer, light);
-        if (options_.bounce_tolerance)
-            scene_.bounces =
-                prt::join_bounces_of(scene_.receivers, transfer, light, &report_.bounces.emplace());
+        if (!options_.bounce_tolerance)
+            return;
+        scene_.bounces =
+            prt::join_bounces_of(scene_.receivers, transfer, light, &report_.bounces.emplace());
+        report_.bounces->seconds = seconds_bounces_;
     }
 
     /// What the scene remembers of how it was made.
@@ -563,8 +565,11 @@ private:
             bounces.max_bytes = *bytes;
         scene_.settings.two_sided_bounces = options_.two_sided_bounces;
         if (options_.team != nullptr) {
+            const auto start = std::chrono::steady_clock::now();
             own_bounces_ = bounce_samples(scene_.mesh, scene_.receivers, scene_.transfer,
                                           of_mesh ? *of_mesh : rays, bounces);
+            seconds_bounces_ =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
             return;
         }
         prt::set_surfaces(scene_.transfer, scene_.receivers);
@@ -611,6 +616,7 @@ private:
     std::optional<prt::TeamCheckpoint> team_checkpoint_;
     /// Of this process, where others have theirs.
     std::optional<prt::BounceSamples> own_bounces_;
+    double seconds_bounces_ = 0.0;
     std::optional<prt::PlannedBounces> planned_bounces_;
 };
 

@@ -63,8 +63,8 @@ struct SharedLight::Impl {
                 path.string()));
     }
     void require_same(const cubemap::CubeMap& environment) {
-        require_same(fmt::format(
-            "{:016x}", prt::bytes_hash(std::as_bytes(std::span(environment.texels)))));
+        require_same(
+            fmt::format("{:016x}", prt::bytes_hash(std::as_bytes(std::span(environment.texels)))));
     }
 
     /// The part's values by the receivers' order, in the first process.
@@ -189,8 +189,7 @@ RelightTimes SharedLight::light(cubemap::CubeMap environment) {
 UpdateReport SharedLight::set_frame(BinnedEnvironment frame, double bound) {
     impl_->require_same(frame.map);
     impl_->bounced.clear();
-    return impl_->relighter ? impl_->relighter->set_frame(std::move(frame), bound)
-                            : UpdateReport();
+    return impl_->relighter ? impl_->relighter->set_frame(std::move(frame), bound) : UpdateReport();
 }
 
 RelightTimes SharedLight::set_lights(std::span<const lights::DistantLight> lights) {
@@ -207,11 +206,10 @@ void SharedLight::set_bounces(const relight::SurfaceBounces& bounces) {
         throw std::invalid_argument("expected a scene with bounces, got one without");
     impl_->limits = bounces.limits;
     if (!impl_->bounce_light)
-        impl_->bounce_light.emplace(
-            *impl_->lit.scene().bounces, impl_->lit.scene().transfer,
-            relight::SharedRows{.reduction = &impl_->team,
-                                .first = impl_->rows->first,
-                                .num_emitters = impl_->rows->num_emitters});
+        impl_->bounce_light.emplace(*impl_->lit.scene().bounces, impl_->lit.scene().transfer,
+                                    relight::SharedRows{.reduction = &impl_->team,
+                                                        .first = impl_->rows->first,
+                                                        .num_emitters = impl_->rows->num_emitters});
     impl_->bounce_light->set_albedo(bounces.albedo);
 }
 

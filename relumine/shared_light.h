@@ -56,8 +56,8 @@ public:
     /// Adds the bounces to the present light; does nothing where set_bounces() was not called.
     BounceReport bounce();
 
-    /// The light of all receivers, in the first process. It points into this object, and is good until
-    /// the light changes. The others have no light.
+    /// The light of all receivers, in the first process. It points into this object, and is good
+    /// until the light changes. The others have no light.
     [[nodiscard]] Lighting lighting();
     /// What bounce() added, [num_receivers]; empty without it.
     [[nodiscard]] std::span<const glm::vec3> bounced() const;

@@ -12,8 +12,8 @@
 
 namespace relumine {
 
-/// Returns compute(indices): a value for each index. Where processes share the work, each computes a
-/// slice of neighbours, and all get all values. Null: this process does it all.
+/// Returns compute(indices): a value for each index. Where processes share the work, each computes
+/// a slice of neighbours, and all get all values. Null: this process does it all.
 ///
 /// Throws:  as Reduction::sum().
 template<typename Value, typename Index, typename Compute>
@@ -32,7 +32,8 @@ std::vector<Value> in_slices(prt::Reduction* reduction, std::span<const Index> i
     const auto bytes = std::as_bytes(std::span(own));
     std::vector<Value> values(indices.size());
     std::size_t at = 0;
-    for (const std::vector<std::byte>& slice : reduction->all_gather({bytes.begin(), bytes.end()})) {
+    for (const std::vector<std::byte>& slice :
+         reduction->all_gather({bytes.begin(), bytes.end()})) {
         if (slice.size() > (values.size() - at) * sizeof(Value))
             throw std::runtime_error("expected a value of each index");
         if (!slice.empty())

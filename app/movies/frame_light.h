@@ -33,8 +33,8 @@ public:
     RelightTimes set_lights(std::span<const lights::DistantLight> lights);
     /// Adds the bounces, where there are any.
     void bounce();
-    /// In the first process alone; it is good until the light changes. Where it is not drawn it has the
-    /// radiance alone.
+    /// In the first process alone; it is good until the light changes. Where it is not drawn it has
+    /// the radiance alone.
     [[nodiscard]] Lighting lighting(bool is_drawn);
 
     [[nodiscard]] bool is_first() const { return team_ == nullptr || team_->part().index == 0; }

@@ -76,9 +76,8 @@ bool BounceOption::set(SharedLight& light, const relumine::OutputOptions& output
     const Scene& scene = light.lit().scene();
     if (!applies_to(scene, path))
         return false;
-    naming(path, [&] {
-        light.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_));
-    });
+    naming(path,
+           [&] { light.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_)); });
     return true;
 }
 

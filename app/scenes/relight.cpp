@@ -38,8 +38,7 @@ struct RelightArguments {
     prt::Part part = {.index = 0, .count = 0};
 };
 
-void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced,
-                  const std::string& path) {
+void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced, const std::string& path) {
     if (bounced.empty())
         throw std::runtime_error(
             fmt::format("{}: expected bounces for --only-bounces, got none", path));
@@ -181,9 +180,9 @@ void light_with_list(const RelightArguments& options, Session& session) {
 /// Parts are numbers alone: what shapes a picture does not suit them.
 void require_numbers(const RelightArguments& options, const Command& command) {
     constexpr std::array<std::string_view, 16> Fitting = {
-        "SCENE",     "ENV",      "--output",  "--part",  "--clusters-only",
-        "--layout",  "--from",   "--fix-env", "--flip",  "--face-resolution",
-        "--tilt",    "--rotate", "--json",    "--quiet", "--verbose",
+        "SCENE",    "ENV",      "--output",  "--part",  "--clusters-only",
+        "--layout", "--from",   "--fix-env", "--flip",  "--face-resolution",
+        "--tilt",   "--rotate", "--json",    "--quiet", "--verbose",
         "--threads"};
     for (const std::string& name : command.given_options())
         if (std::find(Fitting.begin(), Fitting.end(), name) == Fitting.end())

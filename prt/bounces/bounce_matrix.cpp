@@ -78,9 +78,8 @@ std::size_t first_emitter(std::size_t lowest_place, const PlaceLists& averaged) 
         end = std::exchange(first, lowest);
     }
     const auto end = static_cast<std::ptrdiff_t>(averaged.begin[first]);
-    const bool are_apart =
-        std::all_of(averaged.places.begin(), averaged.places.begin() + end,
-                    [first](std::uint32_t place) { return place < first; });
+    const bool are_apart = std::all_of(averaged.places.begin(), averaged.places.begin() + end,
+                                       [first](std::uint32_t place) { return place < first; });
     return are_apart ? first : 0;
 }
 

@@ -81,8 +81,9 @@ private:
     /// work take as many steps as the one with the most blocks.
     template<typename Work>
     void run_pass(const std::string& part, double progress_before, const Work& work) {
-        // Work between two looks at the checkpoint: about a tenth of a second.
-        constexpr std::size_t BlocksPerStep = 256;
+        // Work of all processes between two looks at the checkpoint: about a tenth of a second.
+        const std::size_t blocks_per_step =
+            std::max<std::size_t>(256 / reduction_.part().count, 16);
         std::size_t num_saved = options_.checkpoint != nullptr ? take_up(part) : 0;
         std::size_t num_done = num_saved;
         std::mutex mutex;
@@ -92,7 +93,7 @@ private:
                 num_saved = num_done;
         };
         while (num_done < most_blocks_) {
-            const std::size_t end = std::min(num_done + BlocksPerStep, most_blocks_);
+            const std::size_t end = std::min(num_done + blocks_per_step, most_blocks_);
             tbb::parallel_for(std::min(num_done, blocks_.size()), std::min(end, blocks_.size()),
                               [&](std::size_t block) {
                                   if (options_.stop.stop_requested())

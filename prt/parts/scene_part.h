@@ -39,8 +39,8 @@ struct ScenePart {
 
 /// Reads the part's tiles of a scene of the present version, and checks them.
 ///
-/// Memory:  the mesh, all receivers, the counts and rows of the part, and the file as it is on disk.
-/// Throws:  as load_scene(); std::runtime_error "path: expected X, got Y" for a scene with
+/// Memory:  the mesh, all receivers, the counts and rows of the part, and the file as it is on
+/// disk. Throws:  as load_scene(); std::runtime_error "path: expected X, got Y" for a scene with
 ///          highlights.
 [[nodiscard]] ScenePart load_scene_part(const std::filesystem::path& path, const Part& part);
 

@@ -179,10 +179,9 @@ BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receive
     }
     // Which rows are the process's depends on the lowest place.
     std::size_t lowest = num_receivers;
-    stream_lists(reader, rows.num_emitters, num_receivers,
-                 [&](std::size_t, std::uint32_t place) {
-                     lowest = std::min(lowest, std::size_t{place});
-                 });
+    stream_lists(reader, rows.num_emitters, num_receivers, [&](std::size_t, std::uint32_t place) {
+        lowest = std::min(lowest, std::size_t{place});
+    });
     rows.first = lowest == num_receivers ? 0 : first_emitter(lowest, matrix.averaged);
     std::uint64_t num_places = 0;
     for (std::size_t row = 0; row < num_receivers; ++row) {

@@ -277,8 +277,7 @@ private:
         const auto for_runs = [&](std::uint32_t process, const auto& visit) {
             for (std::size_t begin = first; begin < last; begin += RowsPerTask)
                 if (prt::has_row({process, part.count}, begin, first_))
-                    visit(std::span(gathered_)
-                              .subspan(begin, std::min(RowsPerTask, last - begin)));
+                    visit(std::span(gathered_).subspan(begin, std::min(RowsPerTask, last - begin)));
         };
         std::vector<PaddedRgb> own;
         for_runs(part.index, [&](std::span<const PaddedRgb> run) {

@@ -86,7 +86,8 @@ CoarseBounces::Rows CoarseBounces::rows_of_groups(std::size_t num_rows, std::siz
     return rows;
 }
 
-/// Gives all processes the groups of each. Groups lie within runs of rows, so each is in one process.
+/// Gives all processes the groups of each. Groups lie within runs of rows, so each is in one
+/// process.
 void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Reduction& reduction) {
     const prt::Part part = reduction.part();
     const auto has_group = [&](std::uint32_t process, std::size_t group) {
@@ -186,9 +187,8 @@ CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
             for (std::uint64_t i = fine.row_begin[row]; i < fine.row_begin[row + 1]; ++i)
                 sums.add(fine.entries[i].group / GroupsPerGroup, fine.entries[i].weight);
         };
-        levels_.push_back(
-            level_of(rows_of_groups(fine.num_groups(), GroupsPerGroup, all, add_row),
-                     GroupsPerGroup));
+        levels_.push_back(level_of(rows_of_groups(fine.num_groups(), GroupsPerGroup, all, add_row),
+                                   GroupsPerGroup));
     }
 }
 

@@ -18,8 +18,8 @@ namespace relumine::relight {
 /// Hackbusch 1985, "Multi-Grid Methods and Applications", chapter 16].
 class CoarseBounces {
 public:
-    /// Leaves the rows before `first` out, from which no other row gets light. Where processes share
-    /// the rows, each makes the groups of its own, and all get all groups.
+    /// Leaves the rows before `first` out, from which no other row gets light. Where processes
+    /// share the rows, each makes the groups of its own, and all get all groups.
     ///
     /// Cost:    a pass over the emitters.
     CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
