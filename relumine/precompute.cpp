@@ -446,9 +446,11 @@ private:
         light[0].glossy = std::exchange(transfer.glossy, {});
         light[0].bounces = std::exchange(own_bounces_, {});
         report_.processes = {own_figures};
-        for (const std::vector<std::byte>& bytes : options_.team->gather({}))
+        for (std::vector<std::byte>& bytes : options_.team->gather({})) {
             if (!bytes.empty())
                 light.push_back(prt::unpacked_light(bytes));
+            bytes = {}; // as much as the light
+        }
         for (const std::vector<std::byte>& bytes : options_.team->gather({}))
             if (!bytes.empty())
                 std::memcpy(&report_.processes.emplace_back(), bytes.data(),
@@ -666,7 +668,9 @@ void assist(prt::Team& team, const std::stop_token& stop) {
     }
     light.counts = std::move(transfer.counts);
     const ProcessFigures figures = work.figures(statistics);
-    static_cast<void>(team.gather(prt::packed_light(light)));
+    std::vector<std::byte> packed = prt::packed_light(light);
+    light = {};
+    static_cast<void>(team.gather(std::move(packed)));
     const auto bytes = std::as_bytes(std::span(&figures, 1));
     static_cast<void>(team.gather({bytes.begin(), bytes.end()}));
 }

@@ -233,9 +233,9 @@ TEST_F(Animate, ResumeMakesOnlyWhatIsNotThereAnyMore) {
 
 TEST_F(Animate, NumbersAreTheSameWhenPicturesGoOn) {
     lamps(3);
-    const std::vector<std::string> command = {
-        "animate",    "scene.prt", "lamp.%d.hdr", "-o",     "lit.%d.png",
-        "--vertices", "v.npy",     "--size",      "40x30", "-q"};
+    const std::vector<std::string> command = {"animate",    "scene.prt",  "lamp.%d.hdr", "-o",
+                                              "lit.%d.png", "--vertices", "v.npy",       "--size",
+                                              "40x30",      "-q"};
     succeed(command);
     const std::string numbers = read("v.npy"), picture = read("lit.1.png");
     fs::remove(folder() / "lit.1.png");

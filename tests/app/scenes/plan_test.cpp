@@ -166,7 +166,8 @@ TEST_F(PlanTest, WrongUsageIsNamed) {
     misuse({"precompute", "knot.ply", "--plan", "scene.plan", "--part", "1/2", "-o", "part"},
            "MESH");
     misuse({"plan", "knot.ply", "-o", "scene.prt"}, "--output");
-    misuse({"plan", "knot.ply", "-o", "scene.plan", "--bounces"}, "--bounces");
+    misuse({"plan", "knot.ply", "-o", "scene.plan", "--bounces", "7"}, "--bounces");
+    misuse({"plan", "knot.ply", "-o", "scene.plan", "--two-sided"}, "--two-sided");
 }
 
 TEST_F(PlanTest, HighlightsJoinToTheSameFileFromAnyNumberOfParts) {
