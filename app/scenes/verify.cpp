@@ -7,6 +7,7 @@
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/scenes/lit_scene.h"
+#include "prt/parts/team.h"
 
 namespace relumine::app {
 
@@ -53,6 +54,7 @@ void run(const VerifyArguments& options, Session& session) {
                                            .seed = options.seed,
                                            .num_surface_points = options.num_surface_points,
                                            .num_paths = options.num_paths,
+                                           .reduction = session.team,
                                            .stop = session.stop(),
                                            .on_progress = session.progress("exact integration")});
     session.end_progress();

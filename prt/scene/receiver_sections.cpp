@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "prt/scene/bounce_sections.h"
-
 namespace relumine::prt {
 
 namespace {
@@ -232,8 +230,8 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
                                                       : std::get<TexelLayout>(layout).texels.size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
-        const std::size_t most_added = has_bounces(reader) ? mesh.num_vertices() : 0;
-        if (count < num_own || count - num_own > most_added)
+        // check_scene() asks for the bounces of those that were added.
+        if (count < num_own || count - num_own > mesh.num_vertices())
             reader.fail("r_positions",
                         "the layout's receivers, and no more vertices than there are");
         receivers.num_added = count - num_own;

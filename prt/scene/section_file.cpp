@@ -91,14 +91,17 @@ public:
         return result;
     }
 
-    void stream(const std::string& wanted, std::uint64_t size,
+    void stream(const std::string& wanted, std::optional<std::uint64_t> wanted_size,
                 const std::function<void(std::span<const std::byte>)>& on_piece) {
         const std::vector<SectionEntry> table = checked_table(checked_header());
         const auto entry = std::find_if(table.begin(), table.end(), [&](const SectionEntry& other) {
             return name(other) == wanted;
         });
-        if (entry == table.end() || entry->size != size)
-            fail(fmt::format("a section '{}' of {} bytes", wanted, size), "another");
+        if (entry == table.end())
+            fail(fmt::format("a section '{}'", wanted), "none");
+        const std::uint64_t size = entry->size;
+        if (wanted_size && size != *wanted_size)
+            fail(fmt::format("a section '{}' of {} bytes", wanted, *wanted_size), "another");
         const std::byte* stored = bytes_.data() + entry->offset;
         if (XXH64(stored, entry->stored_size, 0) != entry->checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", wanted));
@@ -341,7 +344,8 @@ Sections read_sections(const std::filesystem::path& path, std::uint32_t* version
     return Reader(path).sections(version, left_out);
 }
 
-void stream_section(const std::filesystem::path& path, const std::string& name, std::uint64_t size,
+void stream_section(const std::filesystem::path& path, const std::string& name,
+                    std::optional<std::uint64_t> size,
                     const std::function<void(std::span<const std::byte>)>& on_piece) {
     Reader(path).stream(name, size, on_piece);
 }
