@@ -269,6 +269,7 @@ void SplitMesh::split() {
     if (mesh_.num_vertices() + num_marked_ >= None)
         throw std::invalid_argument("expected fewer than 2^32 vertices");
     std::sort(marked_.begin(), marked_.end());
+    middles_.clear();
     std::vector<std::uint32_t> triangles;
     for (const std::uint32_t edge : marked_) {
         add_middles(edge);
@@ -286,7 +287,6 @@ void SplitMesh::split() {
         edges_[edge].first_middle = None;
     }
     marked_.clear();
-    middles_.clear();
     num_marked_ = 0;
 }
 

@@ -26,6 +26,8 @@ namespace relumine::mesh {
 /// direction between its normals.
 class SplitMesh {
 public:
+    static constexpr std::uint32_t None = 0xffffffff;
+
     explicit SplitMesh(TriangleMesh mesh);
 
     [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
@@ -64,6 +66,14 @@ public:
     /// Splits the marked edges.
     void split();
 
+    /// A vertex that the last split() made, and the ends of the edge in whose middle it lies.
+    struct Middle {
+        std::uint32_t low = 0, high = 0, vertex = 0;
+        /// The next pair of the same edge.
+        std::uint32_t next = None;
+    };
+    /// Returns the vertices that the last split() made, ascending.
+    [[nodiscard]] std::span<const Middle> new_vertices() const { return middles_; }
     /// Returns the triangles that the last split() made, at the beginning all.
     [[nodiscard]] std::span<const std::uint32_t> changed_triangles() const { return changed_; }
 
@@ -76,7 +86,6 @@ public:
     [[nodiscard]] const Origin& origin(std::uint32_t triangle) const { return origins_[triangle]; }
 
 private:
-    static constexpr std::uint32_t None = 0xffffffff;
     struct Edge {
         std::uint32_t low = 0, high = 0;
         /// A side, 3 * triangle + k; the others follow in next_side_.
@@ -85,10 +94,6 @@ private:
         bool is_split = false, is_marked = false;
         /// While it is being split.
         std::uint32_t first_middle = None;
-    };
-    /// The new vertex of a pair of ends, and the next pair of the same edge.
-    struct Middle {
-        std::uint32_t low = 0, high = 0, vertex = 0, next = None;
     };
     /// Edges by their places: a table with open addresses.
     class Table {
@@ -123,7 +128,7 @@ private:
     std::vector<Origin> origins_;
     std::vector<std::uint32_t> marked_;
     std::size_t num_marked_ = 0;
-    /// Of the edges that are being split.
+    /// Of the edges that are being split, or were the last time.
     std::vector<Middle> middles_;
     std::vector<std::uint32_t> changed_;
 };

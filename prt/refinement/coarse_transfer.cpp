@@ -124,9 +124,9 @@ void CoarseDirections::add_light(const cubemap::CubeMap& light,
         lights_[j] = static_cast<float>(powers[texels[j]] / all);
 }
 
-std::vector<CoarseDirections::Bits> CoarseDirections::trace(const Receivers& receivers,
-                                                            const Blockers& blockers, float bias,
-                                                            const Progress& progress) const {
+std::vector<CoarseDirections::Bits>
+CoarseDirections::trace(const Receivers& receivers, const Blockers& blockers, float bias,
+                        const Progress& progress, std::span<const Neighbours> neighbours) const {
     const std::vector<std::uint32_t> order = spatial_order(receivers);
     std::vector<glm::vec3> origins, normals;
     for (const std::uint32_t receiver : order) {
@@ -147,14 +147,24 @@ std::vector<CoarseDirections::Bits> CoarseDirections::trace(const Receivers& rec
             std::fill(rays.begin(), rays.end(), 0u);
             directions_above_horizon(arrays, first, patches_[p], rays);
             glm::vec3 mean_normal(0.0f);
-            for (std::size_t i = 0; i < size; ++i)
+            bool has_rays = false;
+            for (std::size_t i = 0; i < size; ++i) {
+                const std::uint32_t receiver = order[first + i];
+                if (!neighbours.empty() && neighbours[receiver].low != nullptr) {
+                    const std::uint64_t low = (*neighbours[receiver].low)[p];
+                    const std::uint64_t high = (*neighbours[receiver].high)[p];
+                    result[receiver][p] = rays[i] & low & high;
+                    rays[i] &= low ^ high;
+                }
                 if (rays[i] != 0)
                     mean_normal += normals[first + i];
-            if (std::any_of(rays.begin(), rays.end(), [](std::uint64_t r) { return r != 0; }))
+                has_rays = has_rays || rays[i] != 0;
+            }
+            if (has_rays)
                 blockers.clear_blocked({std::span(origins).subspan(first, size), mean_normal},
                                        patches_[p], rays);
             for (std::size_t i = 0; i < size; ++i)
-                result[order[first + i]][p] = rays[i];
+                result[order[first + i]][p] |= rays[i];
         }
     });
     return result;

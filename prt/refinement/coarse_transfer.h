@@ -29,13 +29,21 @@ public:
     /// `light` is the environment that matters most, or null.
     explicit CoarseDirections(const cubemap::CubeMap* light = nullptr);
 
+    /// What reaches two points on either side of a receiver; null where nothing is known.
+    struct Neighbours {
+        const Bits* low = nullptr;
+        const Bits* high = nullptr;
+    };
+
     /// Finds the directions whose light reaches each receiver: those above its horizon that are not
-    /// blocked. Rays start as in precompute().
+    /// blocked. Rays start as in precompute(). Where the neighbours of a receiver agree on a
+    /// direction above its horizon, the receiver agrees with them, and no ray is traced.
     ///
-    /// Shape:   the result is [receivers.size()].
+    /// Shape:   the result is [receivers.size()]; `neighbours` too, or it is empty.
     /// Throws:  Cancelled when `progress` says so.
     [[nodiscard]] std::vector<Bits> trace(const Receivers& receivers, const Blockers& blockers,
-                                          float bias, const Progress& progress) const;
+                                          float bias, const Progress& progress,
+                                          std::span<const Neighbours> neighbours = {}) const;
 
     /// A point with a normal and what reaches it.
     struct Point {

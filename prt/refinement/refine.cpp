@@ -22,6 +22,7 @@ namespace {
 
 using mesh::SplitMesh;
 using Bits = CoarseDirections::Bits;
+using Neighbours = CoarseDirections::Neighbours;
 
 /// Middles that are traced together: 50 MB.
 constexpr std::size_t PointsPerStep = std::size_t{1} << 18;
@@ -29,13 +30,23 @@ constexpr std::size_t PointsPerStep = std::size_t{1} << 18;
 /// Triangles with a side longer than this part of the scene's diagonal are asked for their centre.
 constexpr float LargeTriangle = 1.0f / 16.0f;
 
+/// Parts of the mesh's diagonal. What is narrower than an edge may hide between its ends, so
+/// middles of edges are asked in all directions. Along edges shorter than this, whose ends face
+/// alike, they are asked only in directions on which the ends do not agree: few on a fine mesh.
+constexpr float FineEdge = 1.0f / 256.0f;
+constexpr float LeastCosineOfAlike = 0.97f;
+
 /// Of the mesh's diagonal.
 constexpr float ShortestEdge = 1e-3f;
 
 /// With a limit of vertices, a round takes this part of what is left. Fewer rounds would split
-/// edges that the next round finds to matter less; measured.
+/// edges that the next round finds to matter less; measured. The last rounds take at least a part
+/// of the whole, since every round looks at all edges.
 constexpr std::size_t RoundsToLimit = 6;
-constexpr std::size_t FewestOfRound = 32;
+constexpr std::size_t FewestOfRound = 32, PartsOfWhole = 64;
+
+/// Bounds of edges give way to errors until so small a part of the first edges has bounds only.
+constexpr std::size_t PartsWithBounds = 16;
 
 /// As vertex_receivers() does it: a part of the way to the triangle's centre, or the bias.
 constexpr float LargestPartOfWay = 0.25f;
@@ -49,6 +60,7 @@ public:
           bias_(options.bias.value_or(step_)),
           directions_(options.light ? &*options.light : nullptr),
           large_(LargeTriangle * mesh::bounds(mesh).diagonal()),
+          fine_(FineEdge * mesh::bounds(mesh).diagonal()),
           min_edge_(options.min_edge.value_or(ShortestEdge * mesh::bounds(mesh).diagonal())) {}
 
     mesh::TriangleMesh run() {
@@ -118,13 +130,27 @@ private:
         const auto first = static_cast<std::ptrdiff_t>(vertex_bits_.size());
         Receivers added{.positions = {all.positions.begin() + first, all.positions.end()},
                         .normals = {all.normals.begin() + first, all.normals.end()}};
-        const std::vector<Bits> bits = trace(added);
+        std::vector<Neighbours> ends;
+        if (first != 0)
+            for (const SplitMesh::Middle& middle : split_.new_vertices())
+                ends.push_back(neighbours(middle.low, middle.high));
+        const std::vector<Bits> bits = trace(added, ends);
         vertex_bits_.insert(vertex_bits_.end(), bits.begin(), bits.end());
     }
 
-    std::vector<Bits> trace(const Receivers& receivers) {
+    std::vector<Bits> trace(const Receivers& receivers,
+                            std::span<const Neighbours> neighbours = {}) {
         report_.num_points += receivers.size();
-        return directions_.trace(receivers, blockers_, bias_, progress_);
+        return directions_.trace(receivers, blockers_, bias_, progress_, neighbours);
+    }
+
+    /// Returns what the ends of an edge tell of its middle.
+    [[nodiscard]] Neighbours neighbours(std::uint32_t low, std::uint32_t high) const {
+        const mesh::TriangleMesh& mesh = split_.mesh();
+        if (glm::distance(mesh.positions[low], mesh.positions[high]) > fine_ ||
+            glm::dot(mesh.normals[low], mesh.normals[high]) < LeastCosineOfAlike)
+            return {};
+        return {&vertex_bits_[low], &vertex_bits_[high]};
     }
 
     [[nodiscard]] CoarseDirections::Point vertex(std::uint32_t index) const {
@@ -209,12 +235,14 @@ private:
                 errors_[edges[next]] = 0.0f;
                 is_asked_[edges[next]] = true;
             }
+            std::vector<Neighbours> ends;
             for (const Pair& pair : pairs) {
                 add_mean({pair.ends.low, pair.ends.high}, receivers);
+                ends.push_back(neighbours(pair.ends.low, pair.ends.high));
                 if (pair.ends.is_rim)
                     move_inside(pair.ends.triangle, receivers.positions.back());
             }
-            const std::vector<Bits> bits = trace(receivers);
+            const std::vector<Bits> bits = trace(receivers, ends);
             std::vector<float> errors(pairs.size());
             tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
                 const std::array<CoarseDirections::Point, 2> both = {vertex(pairs[i].ends.low),
@@ -267,29 +295,39 @@ private:
         }
     };
 
-    /// Returns the edges beyond the error, those that matter most first: at least the first `most`
-    /// are sorted, and not only bounds of them are known.
+    [[nodiscard]] Candidate candidate(std::uint32_t edge) const {
+        return {double{errors_[edge]} * double{errors_[edge]} * split_.area_beside(edge), edge};
+    }
+
+    /// Returns the edges beyond the error, at most so many, those that matter most first. The error
+    /// of each was asked. An edge that has a bound only may stay behind for the next round.
     std::vector<Candidate> candidates(std::size_t most) {
+        std::vector<Candidate> all;
+        for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
+            if (errors_[edge] > *options_.error && may_split(edge))
+                all.push_back(candidate(edge));
         for (;;) {
-            std::vector<Candidate> result;
-            for (std::uint32_t edge = 0; edge < split_.num_edges(); ++edge)
-                if (errors_[edge] > *options_.error && may_split(edge))
-                    result.push_back(
-                        {double{errors_[edge]} * double{errors_[edge]} * split_.area_beside(edge),
-                         edge});
-            if (result.size() > most) {
-                std::nth_element(result.begin(), result.begin() + static_cast<std::ptrdiff_t>(most),
-                                 result.end());
-                result.resize(most);
-            }
-            std::sort(result.begin(), result.end());
+            const std::size_t size = std::min(all.size(), most);
+            if (size < all.size())
+                std::nth_element(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(size),
+                                 all.end());
+            const auto end = all.begin() + static_cast<std::ptrdiff_t>(size);
             std::vector<std::uint32_t> unknown;
-            for (const Candidate& candidate : result)
-                if (!is_asked_[candidate.edge])
-                    unknown.push_back(candidate.edge);
-            if (unknown.empty())
-                return result;
+            for (auto first = all.begin(); first != end; ++first)
+                if (!is_asked_[first->edge])
+                    unknown.push_back(first->edge);
             ask(unknown);
+            for (auto first = all.begin(); first != end; ++first)
+                *first = candidate(first->edge);
+            const auto last = std::remove_if(all.begin(), end, [this](const Candidate& each) {
+                return !(errors_[each.edge] > *options_.error);
+            });
+            if (size == all.size() || unknown.size() <= size / PartsWithBounds) {
+                all.erase(last, all.end());
+                std::sort(all.begin(), all.end());
+                return all;
+            }
+            all.erase(last, end);
         }
     }
 
@@ -297,7 +335,9 @@ private:
     bool split_by_error() {
         // Without a limit that is near, all of them.
         const std::size_t most = room();
-        const std::size_t of_round = std::max(most / RoundsToLimit, FewestOfRound);
+        const std::size_t whole = options_.max_vertices - base_.num_vertices();
+        const std::size_t of_round =
+            std::max({most / RoundsToLimit, FewestOfRound, whole / PartsOfWhole});
         const std::vector<Candidate> found = candidates(2 * of_round);
         const std::size_t wanted = found.size() < of_round ? most : of_round;
         report_.is_at_limit = false;
@@ -350,7 +390,7 @@ private:
     float step_;
     float bias_;
     CoarseDirections directions_;
-    float large_;
+    float large_, fine_;
     float min_edge_;
     /// [num_vertices].
     std::vector<Bits> vertex_bits_;

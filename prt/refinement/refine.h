@@ -58,7 +58,8 @@ struct RefineReport {
 /// be: mesh::SplitMesh says how. Transfer is found in 1,536 directions, horizons included, first at
 /// the vertices, then at new ones, round by round. Middles of edges are asked where the ends differ
 /// enough, or the edge is long in the scene. Triangles that are large in the scene are asked for
-/// their centre, too.
+/// their centre, too. Along edges that are short in the scene, middles and new vertices are traced
+/// only in directions on which the ends do not agree.
 ///
 /// Vertices of the mesh keep index and position; its triangles come first, too, each cut down.
 ///

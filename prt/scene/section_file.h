@@ -14,7 +14,7 @@
 namespace relumine::prt {
 
 /// The version that is written. All versions up to this one are read.
-inline constexpr std::uint32_t SceneFileVersion = 3;
+inline constexpr std::uint32_t SceneFileVersion = 4;
 
 /// Sections by name (1 to 16 ASCII letters), each a string of bytes.
 using Sections = std::map<std::string, std::vector<std::byte>>;

@@ -34,6 +34,8 @@ struct Settings {
     /// Empty: all
     std::string only;
     bool growth = false, cost = false;
+    /// Of the meshes that show the growth.
+    std::size_t largest = 500'000;
 };
 
 /// Maps whose light adds up.
@@ -278,10 +280,11 @@ void print_cost(const bench::Inputs& inputs) {
 }
 
 /// To twice the vertices, at several sizes.
-void print_growth(const bench::Inputs& inputs) {
+void print_growth(const Settings& settings, const bench::Inputs& inputs) {
     fmt::print("| vertices | refined to | traced points | processor time | per n log n |\n"
                "|---|---|---|---|---|\n");
-    for (const std::size_t size : {62'500, 250'000, 1'000'000}) {
+    constexpr std::size_t Smallest = 62'500;
+    for (std::size_t size = Smallest; size <= settings.largest; size *= 2) {
         const std::size_t n = inputs.is_tiny() ? 1000 : size;
         Mesh mesh(data_gen::knot(n));
         RefineReport report;
@@ -315,14 +318,15 @@ int main(int argc, char** argv) {
                      "processor time against a precompute of the final mesh instead");
     program.add_flag(
         "--growth", settings.growth,
-        "processor time of refining up to a million vertices to twice as many instead");
+        "processor time of refining a knot to twice its vertices, at several sizes, instead");
+    program.add("--largest", settings.largest, "vertices of the largest knot of --growth");
     return program.run(argc, argv, [&] {
         if (inputs.is_tiny())
             settings.num_points = 100;
         if (settings.cost || inputs.is_tiny())
             print_cost(inputs);
         if (settings.growth || inputs.is_tiny())
-            print_growth(inputs);
+            print_growth(settings, inputs);
         if (!settings.cost && !settings.growth)
             print_errors(settings, inputs);
     });

@@ -1,6 +1,8 @@
 #include "prt/refinement/refine.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +14,7 @@
 #include "mesh/half_edge/edge_uses.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
+#include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/scenes.h"
 
@@ -55,18 +58,28 @@ TEST(CoarseDirections, WhatReachesAPointOverAnEmptyFloor) {
     EXPECT_EQ(count, 6u * 16u * 16u / 2u) << "the upper half";
 }
 
+/// A point on each side of the wall, both ends of an edge, and one between them on the right.
+struct BesideTheWall {
+    Receivers points;
+    std::vector<CoarseDirections::Bits> bits;
+    std::array<CoarseDirections::Point, 2> ends;
+
+    explicit BesideTheWall(const CoarseDirections& directions) {
+        points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
+        points.normals.assign(3, glm::vec3(0, 1, 0));
+        bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            ends[i] = {points.normals[i], &bits[i]};
+    }
+};
+
 TEST(CoarseDirections, TheDifferenceAtAWallIsTheClosedForm) {
     // On one side of the wall half of the sky is seen, on the other the other half. The middle
     // differs from the mean by half of its T everywhere: RMS^2 = 1/(4 pi) Int_hemisphere
     // (cos / 2 pi)^2 = 1 / (24 pi^2).
     const CoarseDirections directions;
-    Receivers points;
-    points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
-    points.normals.assign(3, glm::vec3(0, 1, 0));
-    const auto bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
-    const std::array<CoarseDirections::Point, 2> ends = {
-        CoarseDirections::Point{points.normals[0], &bits[0]},
-        CoarseDirections::Point{points.normals[1], &bits[1]}};
+    const BesideTheWall beside(directions);
+    const auto& [points, bits, ends] = beside;
     EXPECT_NEAR(directions.difference({points.normals[2], &bits[2]}, ends, 0.5f),
                 std::sqrt(1.0 / 24.0) / 3.14159265, 3e-4);
     EXPECT_EQ(directions.difference({points.normals[0], &bits[0]}, std::span(ends).first(1), 1.0f),
@@ -109,19 +122,89 @@ TEST(CoarseDirections, TheLightOfAnEnvironmentCounts) {
     const glm::vec3 w = glm::vec3(cubemap::texel_direction(cubemap::Face::PositiveX, 64, 32, 128));
     for (std::size_t j = 0; j < DirectionPatch::Size; ++j)
         EXPECT_LT(glm::distance(directions.patches().back().direction(j), w), 0.02f);
-    Receivers points;
-    points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
-    points.normals.assign(3, glm::vec3(0, 1, 0));
-    const auto bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
-    const std::array<CoarseDirections::Point, 2> ends = {
-        CoarseDirections::Point{points.normals[0], &bits[0]},
-        CoarseDirections::Point{points.normals[1], &bits[1]}};
+    const BesideTheWall beside(directions);
+    const auto& [points, bits, ends] = beside;
     EXPECT_NEAR(directions.difference({points.normals[2], &bits[2]}, ends, 0.5f),
                 std::sqrt(1.0 / 24.0 + 4.0 * double{w.y * w.y} / 4.0) / 3.14159265, 1e-3);
     // Light without power and light from everywhere are no reason for patches.
     const cubemap::CubeMap black(64), white(64, glm::vec3(1.0f));
     for (const cubemap::CubeMap* map : {&black, &white})
         EXPECT_EQ(CoarseDirections(map).patches().size(), CoarseDirections::NumEvenPatches);
+}
+
+/// Counts the rays that are asked for.
+class CountingBlockers final : public Blockers {
+public:
+    explicit CountingBlockers(const Blockers& blockers) : blockers_(blockers) {}
+    [[nodiscard]] std::uint32_t occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                         std::uint32_t active) const override {
+        num_rays_ += static_cast<std::uint64_t>(std::popcount(active));
+        return blockers_.occluded(origin, directions, active);
+    }
+    [[nodiscard]] std::uint64_t num_rays() const { return num_rays_; }
+
+private:
+    const Blockers& blockers_;
+    mutable std::atomic<std::uint64_t> num_rays_ = 0;
+};
+
+/// Small triangles, 0.2 and more above the ground.
+mesh::TriangleMesh leaves() {
+    mesh::TriangleMesh mesh = scenes::triangle_soup(600, 1);
+    for (std::size_t i = 0; i < mesh.num_vertices(); ++i) {
+        const glm::vec3 corner = mesh.positions[i / 3 * 3];
+        if (i % 3 != 0)
+            mesh.positions[i] = corner + 0.15f * (mesh.positions[i] - corner);
+    }
+    for (glm::vec3& position : mesh.positions)
+        position.y = 0.7f + 0.4f * position.y;
+    mesh.normals.assign(mesh.num_vertices(), glm::vec3(0, 1, 0));
+    return mesh;
+}
+
+TEST(CoarseDirections, MiddlesOfFineEdgesHaveTheErrorOfThePlainWay) {
+    const mesh::TriangleMesh mesh = scenes::floor_grid(250, 3.0f);
+    const mesh::TriangleMesh shaded = scenes::joined(mesh, leaves());
+    const RayScene rays(shaded);
+    const BeamScene beams(shaded, rays);
+    const CountingBlockers counted(rays);
+    const CoarseDirections directions;
+    const Progress progress({}, {});
+    const float bias = automatic_bias(shaded);
+    const auto at_vertices = directions.trace(vertex_receivers(mesh), beams, bias, progress);
+    Receivers middles;
+    std::vector<CoarseDirections::Neighbours> ends;
+    std::vector<mesh::EdgeUse> edges;
+    mesh::for_each_edge(mesh::edge_uses(mesh.triangles), [&](std::span<const mesh::EdgeUse> edge) {
+        const auto& [low, high] = std::pair(edge[0].low, edge[0].high);
+        if (edge.size() != 2 || (low + high) % 7 != 0)
+            return;
+        edges.push_back(edge[0]);
+        middles.positions.push_back(0.5f * (mesh.positions[low] + mesh.positions[high]));
+        middles.normals.push_back(glm::normalize(mesh.normals[low] + mesh.normals[high]));
+        ends.push_back({&at_vertices[low], &at_vertices[high]});
+    });
+    const auto plain = directions.trace(middles, counted, bias, progress);
+    const std::uint64_t num_plain = counted.num_rays();
+    const auto narrowed = directions.trace(middles, counted, bias, progress, ends);
+    EXPECT_LT(counted.num_rays() - num_plain, num_plain / 20);
+    double squares = 0.0, largest_error = 0.0;
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        const auto [low, high] = std::pair(edges[i].low, edges[i].high);
+        const std::array<CoarseDirections::Point, 2> both = {
+            CoarseDirections::Point{mesh.normals[low], &at_vertices[low]},
+            CoarseDirections::Point{mesh.normals[high], &at_vertices[high]}};
+        const auto error = [&](const CoarseDirections::Bits& bits) {
+            return double{directions.difference({middles.normals[i], &bits}, both, 0.5f)};
+        };
+        const double off = error(plain[i]) - error(narrowed[i]);
+        squares += off * off / static_cast<double>(edges.size());
+        largest_error = std::max(largest_error, error(plain[i]));
+    }
+    // Leaves are a few edges wide; their corners hide between the ends of edges.
+    constexpr double Allowed = 0.01; // RefineOptions::error
+    EXPECT_GT(largest_error, 3.0 * Allowed);
+    EXPECT_LT(std::sqrt(squares), 0.4 * Allowed);
 }
 
 TEST(Refine, ABoxOnTwoTrianglesGetsItsShadow) {
@@ -271,17 +354,23 @@ TEST(Refine, CurvedVerticesLieOnTheBall) {
 }
 
 TEST(Refine, SameBytesForAnyNumberOfThreads) {
-    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
-    const RefineOptions options{.error = 0.005f, .max_vertices = 3000};
-    mesh::TriangleMesh one;
-    {
-        const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
-        one = refined(mesh, options);
-    }
-    const mesh::TriangleMesh many = refined(mesh, options);
-    EXPECT_EQ(one.positions, many.positions);
-    EXPECT_EQ(one.normals, many.normals);
-    EXPECT_EQ(one.triangles, many.triangles);
+    const auto expect_same = [](const mesh::TriangleMesh& mesh, const RefineOptions& options) {
+        mesh::TriangleMesh one;
+        {
+            const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+            one = refined(mesh, options);
+        }
+        const mesh::TriangleMesh many = refined(mesh, options);
+        EXPECT_GT(many.num_vertices(), mesh.num_vertices() + 500);
+        EXPECT_EQ(one.positions, many.positions);
+        EXPECT_EQ(one.normals, many.normals);
+        EXPECT_EQ(one.triangles, many.triangles);
+    };
+    expect_same(scenes::sphere_and_box_on_floor(), {.error = 0.005f, .max_vertices = 3000});
+    // The ball's edges are fine in its scene.
+    expect_same(scenes::joined(scenes::icosphere(4, 0.3f, {0.0f, 0.32f, 0.0f}),
+                               scenes::floor_grid(2, 8.0f)),
+                {.error = 0.0f, .min_edge = 0.0f, .max_vertices = 4500});
 }
 
 TEST(Refine, OptionsOutOfRangeAreRefused) {
