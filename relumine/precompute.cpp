@@ -4,14 +4,12 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
-#include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/shared_work.h"
 #include "prt/parts/team_checkpoint.h"
@@ -23,72 +21,11 @@
 #include "relight/bounces/probe_lights.h"
 #include "relight/pictures/framing.h"
 #include "relumine/memory_limit.h"
+#include "relumine/part_work.h"
 
 namespace relumine {
 
 namespace {
-
-/// The share of one process, while it lasts.
-class Work {
-public:
-    explicit Work(const prt::Team* team) : team_(team), waiting_before_(waiting()) {}
-
-    [[nodiscard]] ProcessFigures figures(const prt::PrecomputeStatistics& clusters) const {
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
-        return {.num_rays = clusters.num_own_rays,
-                .seconds = seconds.count(),
-                .seconds_waiting = waiting() - waiting_before_,
-                .seconds_of_processors =
-                    static_cast<double>(std::clock() - processors_before_) / CLOCKS_PER_SEC};
-    }
-
-private:
-    [[nodiscard]] double waiting() const {
-        return team_ != nullptr ? team_->seconds_waiting() : 0.0;
-    }
-
-    const prt::Team* team_;
-    double waiting_before_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    std::clock_t processors_before_ = std::clock();
-};
-
-/// The bounces of a part's receivers. `transfer` has their counts.
-prt::BounceSamples bounce_samples(const mesh::TriangleMesh& mesh, const prt::Receivers& receivers,
-                                  prt::Transfer& transfer, const prt::RayScene& rays,
-                                  const prt::BounceOptions& options,
-                                  const prt::PlannedBounces* plan = nullptr) {
-    // The part's receivers by themselves.
-    const std::vector<std::uint32_t> places =
-        prt::places_of(options.reduction->part(), transfer.num_receivers());
-    prt::Transfer own{.quadtree = transfer.quadtree, .order = {}, .normals = {}, .counts = {}};
-    own.counts = std::move(transfer.counts);
-    for (const std::uint32_t place : places) {
-        own.order.push_back(static_cast<std::uint32_t>(own.order.size()));
-        own.normals.push_back(transfer.normals[place]);
-    }
-    std::vector<prt::ProbeRadiance> own_probes;
-    if (!places.empty())
-        own_probes = relight::probe_radiance(own);
-    transfer.counts = std::move(own.counts);
-
-    std::vector<float> open_parts;
-    for (const prt::ProbeRadiance& probe : own_probes)
-        open_parts.push_back(probe[0]);
-    if (plan != nullptr) {
-        const std::vector<std::uint32_t> index = prt::sampled_receivers(transfer);
-        return prt::sample_bounces(
-            mesh, receivers, transfer,
-            {.open_parts = open_parts, .values = plan->probes, .index = index}, rays, options);
-    }
-    std::vector<prt::ProbeRadiance> probes(transfer.num_receivers());
-    for (std::size_t i = 0; i < places.size(); ++i)
-        probes[places[i]] = own_probes[i];
-    prt::share_by_place(*options.reduction, std::span(probes));
-    return prt::sample_bounces(mesh, receivers, transfer,
-                               {.open_parts = open_parts, .values = probes, .index = {}}, rays,
-                               options);
-}
 
 /// One precompute, step by step.
 class Precompute {
@@ -177,7 +114,7 @@ private:
         if (has_highlights)
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
         hand_out(has_highlights);
-        const Work work(options_.team);
+        const ProcessWork work(options_.team);
         try {
             cluster(rays, sizes);
         } catch (const std::invalid_argument& error) {
@@ -631,50 +568,6 @@ Scene precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* 
     return Precompute(std::move(mesh), options, facts).run();
 }
 
-void assist(prt::Team& team, const std::stop_token& stop) {
-    prt::SharedWork shared = prt::unpacked_work(team.broadcast({}));
-    const Work work(&team);
-    const mesh::TriangleMesh& blocking = shared.blockers ? *shared.blockers : shared.mesh;
-    const prt::RayScene rays(blocking);
-    std::optional<prt::BeamScene> beams;
-    if (shared.has_beams)
-        beams.emplace(blocking, rays);
-    prt::TeamCheckpoint checkpoint(team, nullptr);
-    shared.clusters.checkpoint = shared.has_checkpoint ? &checkpoint : nullptr;
-    shared.clusters.reduction = &team;
-    shared.clusters.stop = stop;
-    prt::PrecomputeStatistics statistics;
-    prt::Transfer transfer =
-        prt::precompute(shared.receivers, beams ? static_cast<const prt::Blockers&>(*beams) : rays,
-                        shared.clusters, &statistics);
-    beams.reset();
-    prt::PartLight light;
-    if (shared.highlights) {
-        shared.highlights->checkpoint = shared.clusters.checkpoint;
-        shared.highlights->reduction = &team;
-        shared.highlights->stop = stop;
-        light.glossy =
-            prt::part_highlights(shared.receivers, transfer, rays, *shared.highlights, team.part());
-    }
-    if (shared.bounces) {
-        std::optional<prt::RayScene> of_mesh;
-        if (shared.blockers)
-            of_mesh.emplace(shared.mesh);
-        shared.bounces->checkpoint = shared.clusters.checkpoint;
-        shared.bounces->reduction = &team;
-        shared.bounces->stop = stop;
-        light.bounces = bounce_samples(shared.mesh, shared.receivers, transfer,
-                                       of_mesh ? *of_mesh : rays, *shared.bounces);
-    }
-    light.counts = std::move(transfer.counts);
-    const ProcessFigures figures = work.figures(statistics);
-    std::vector<std::byte> packed = prt::packed_light(light);
-    light = {};
-    static_cast<void>(team.gather(std::move(packed)));
-    const auto bytes = std::as_bytes(std::span(&figures, 1));
-    static_cast<void>(team.gather({bytes.begin(), bytes.end()}));
-}
-
 void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
     PrecomputeReport local;
     PrecomputeReport& facts = report != nullptr ? *report : local;
@@ -682,60 +575,6 @@ void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report)
     if (options.output.empty())
         throw std::invalid_argument("expected a file for the plan, got none");
     Precompute(std::move(mesh), options, facts).run_plan();
-}
-
-void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics) {
-    prt::Plan plan = prt::load_plan(options.plan);
-    const prt::Scene& scene = plan.scene;
-    const mesh::TriangleMesh& triangles = scene.blockers ? *scene.blockers : scene.mesh;
-    const prt::RayScene rays(triangles);
-    std::optional<prt::BeamScene> beams;
-    if (options.engine == Engine::Beams)
-        beams.emplace(triangles, rays);
-    const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-    prt::VisibleCounts counts = prt::part_counts(scene.receivers, scene.transfer, blockers,
-                                                 {.min_level = scene.settings.min_level,
-                                                  .face_resolution = scene.settings.face_resolution,
-                                                  .bias = scene.settings.bias,
-                                                  .stop = options.stop,
-                                                  .on_progress = options.on_progress},
-                                                 options.part, statistics);
-    beams.reset();
-    prt::PartLight light;
-    if (scene.settings.glossy_tolerance) {
-        plan.scene.transfer.counts = std::move(counts);
-        light.glossy = prt::part_highlights(scene.receivers, scene.transfer, rays,
-                                            {.tolerance = *scene.settings.glossy_tolerance,
-                                             .face_resolution = scene.settings.face_resolution,
-                                             .bias = scene.settings.bias,
-                                             .stop = options.stop},
-                                            options.part);
-        counts = std::exchange(plan.scene.transfer.counts, {});
-    }
-    if (plan.bounces) {
-        std::optional<prt::RayScene> of_mesh;
-        if (scene.blockers)
-            of_mesh.emplace(scene.mesh);
-        prt::NoReduction alone(options.part);
-        plan.scene.transfer.counts = std::move(counts);
-        light.bounces = bounce_samples(scene.mesh, scene.receivers, plan.scene.transfer,
-                                       of_mesh ? *of_mesh : rays,
-                                       {.tolerance = plan.bounces->tolerance,
-                                        .two_sided = scene.settings.two_sided_bounces,
-                                        .bias = scene.settings.bias,
-                                        .reduction = &alone,
-                                        .is_planned = true,
-                                        .stop = options.stop},
-                                       &*plan.bounces);
-        counts = std::exchange(plan.scene.transfer.counts, {});
-    }
-    light.counts = std::move(counts);
-    prt::save_part(options.output, plan, options.part, light);
-}
-
-std::uint64_t join(std::span<const std::filesystem::path> parts,
-                   const std::filesystem::path& output) {
-    return prt::save_scene(output, prt::join_parts(parts));
 }
 
 prt::SurfaceOverride everywhere(const prt::Surface& surface) {

@@ -19,12 +19,24 @@ namespace relumine {
 namespace {
 
 template<typename Element>
-std::vector<std::byte> copy_of(std::span<const Element> elements) {
+std::vector<std::byte> copy_of(std::span<Element> elements) {
     const auto bytes = std::as_bytes(elements);
     return {bytes.begin(), bytes.end()};
 }
 
 } // namespace
+
+void require_same(prt::Team& team, const std::filesystem::path& path,
+                  const cubemap::CubeMap* environment) {
+    const std::uint64_t own = environment == nullptr
+                                  ? prt::file_hash(path)
+                                  : prt::bytes_hash(std::as_bytes(std::span(environment->texels)));
+    const std::vector<std::byte> bytes = copy_of(std::span(&own, 1));
+    if (team.broadcast(bytes) != bytes)
+        throw std::runtime_error(fmt::format(
+            "{}: expected the scene and the environment of the first process, got others",
+            path.string()));
+}
 
 struct SharedLight::Impl {
     Impl(prt::Team& of_all, const std::filesystem::path& of_scene, prt::ScenePart&& part,
@@ -32,7 +44,7 @@ struct SharedLight::Impl {
         : team(of_all), path(of_scene), lit(std::move(part.scene), options),
           transfer(std::move(part.transfer)), positions(std::move(part.positions)),
           rows(std::move(part.bounces)), clusters_only(options.clusters_only) {
-        require_same(fmt::format("{:016x}", prt::file_hash(path)));
+        require_same(team, path);
         places = prt::places_of(team.part(), lit.scene().transfer.num_receivers());
         const std::vector<prt::Surface>& surfaces = lit.scene().receivers.surfaces;
         transfer.surfaces.clear();
@@ -53,18 +65,6 @@ struct SharedLight::Impl {
             rays.positions = positions;
         }
         relighter.emplace(transfer, rays);
-    }
-
-    void require_same(const std::string& own) {
-        const std::vector<std::byte> bytes = copy_of(std::span<const char>(own));
-        if (team.broadcast(bytes) != bytes)
-            throw std::runtime_error(fmt::format(
-                "{}: expected the scene and the environment of the first process, got others",
-                path.string()));
-    }
-    void require_same(const cubemap::CubeMap& environment) {
-        require_same(
-            fmt::format("{:016x}", prt::bytes_hash(std::as_bytes(std::span(environment.texels)))));
     }
 
     /// The part's values by the receivers' order, in the first process.
@@ -180,14 +180,14 @@ prt::Team& SharedLight::team() const {
 }
 
 RelightTimes SharedLight::light(cubemap::CubeMap environment) {
-    impl_->require_same(environment);
+    require_same(impl_->team, impl_->path, &environment);
     impl_->bounced.clear();
     return impl_->relighter ? impl_->relighter->set_environment(std::move(environment))
                             : RelightTimes();
 }
 
 UpdateReport SharedLight::set_frame(BinnedEnvironment frame, double bound) {
-    impl_->require_same(frame.map);
+    require_same(impl_->team, impl_->path, &frame.map);
     impl_->bounced.clear();
     return impl_->relighter ? impl_->relighter->set_frame(std::move(frame), bound) : UpdateReport();
 }

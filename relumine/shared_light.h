@@ -17,6 +17,13 @@
 
 namespace relumine {
 
+/// Throws where processes light another scene, or by another environment, than the first. Without
+/// an environment it looks at the scene alone. `path` is the scene's.
+///
+/// Throws:  std::runtime_error "path: expected X, got Y".
+void require_same(prt::Team& team, const std::filesystem::path& path,
+                  const cubemap::CubeMap* environment = nullptr);
+
 /// Lights a scene as a Relighter of all of it does, bit by bit, for any number of processes.
 ///
 /// All processes call the same functions in the same order, from one thread each.

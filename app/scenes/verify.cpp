@@ -46,6 +46,10 @@ Report surface_report(const mesh::TriangleMesh& mesh, const Verification::Surfac
 void run(const VerifyArguments& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
     lit.light(load_environment(options.environment, session));
+    if (session.team != nullptr) {
+        require_same(*session.team, options.scene.path);
+        require_same(*session.team, options.scene.path, &lit.environment());
+    }
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
 

@@ -118,10 +118,9 @@ Plan load_plan(const std::filesystem::path& path) {
         throw std::runtime_error(
             fmt::format("{}: expected a plan, got {}", path.string(),
                         sections.contains("part") ? "a part of a scene" : "a scene"));
-    Sections own;
-    for (const char* name : {"plan", "plan_probes"})
-        if (const auto found = sections.find(name); found != sections.end())
-            own.insert(sections.extract(found));
+    Sections own = {{"plan", sections["plan"]}};
+    if (const auto probes = sections.find("plan_probes"); probes != sections.end())
+        own.insert(sections.extract(probes));
     const SectionReader reader(path, std::move(own));
     std::optional<PlannedBounces> bounces = planned_bounces(reader);
     Plan plan{.scene = plan_of(path, std::move(sections)),

@@ -182,6 +182,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     if (sections.contains("g_specular_b"))
         refuse("a scene without highlights for a part of the receivers", "one with");
     const SectionReader of_bounces(path, taken_bounces(sections));
+    sections["plan"] = {}; // bounces and counts come later
     ScenePart result{.scene = plan_of(path, std::move(sections))};
     const Scene& whole = result.scene;
     const std::size_t num_receivers = whole.receivers.size();

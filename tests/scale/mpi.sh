@@ -169,6 +169,16 @@ refuses "lights of a list" 2 "--lights" start 2 relight vertices.prt sun_sky.exr
 refuses "bounces of a scene without" 1 "vertices.prt: expected a scene made with" \
     start 2 relight vertices.prt sun_sky.exr --bounces 3 -o out.npy
 refuses "frames that are not there" 1 "nothing" start 2 animate vertices.prt 'nothing.####.exr' -o 'out.####.png'
+# The same arguments name other files on another host.
+mkdir other
+cp texels.prt other/vertices.prt
+cp sun_sky.exr other
+for command in "relight vertices.prt sun_sky.exr -o out.npy" "verify vertices.prt sun_sky.exr --samples 10"; do
+    # shellcheck disable=SC2086 # several words
+    refuses "another scene (${command%% *})" 1 "process 1: vertices.prt: expected the scene and the environment" \
+        mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader \
+        --wdir "$folder" -n 1 "$relumine_mpi" $command -q : --wdir "$folder/other" -n 1 "$relumine_mpi" $command -q
+done
 refuses "shared highlights" 1 "glossy.prt: expected a scene without highlights" \
     start 2 relight glossy.prt sun_sky.exr -o out.npy -q
 refuses "parts" 2 "expected a mesh" start 2 precompute --plan knot.plan --part 1/2 -o out.prt
