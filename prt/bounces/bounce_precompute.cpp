@@ -357,7 +357,7 @@ private:
                          static_cast<double>(end - begin);
             blocks_[block].squared_errors = 0.0;
             for (std::size_t place = begin; place < end; ++place) {
-                constexpr std::size_t LeastShared = 4;
+                constexpr std::size_t LeastShared = 8;
                 const std::size_t num_shared = averaged[place].size();
                 const double shared = error / static_cast<double>(num_shared);
                 const std::size_t least = samples_[place].num_hits() == 0 ? 1 : LeastShared;
