@@ -211,7 +211,7 @@ private:
                          static_cast<double>(end - begin);
             blocks_[block].squared_errors = 0.0;
             for (std::size_t i = begin; i < end; ++i) {
-                constexpr std::size_t LeastShared = 4;
+                constexpr std::size_t LeastShared = 8;
                 const std::size_t num_shared = averaged[i].size();
                 const double shared = error / static_cast<double>(num_shared);
                 const std::size_t least = hits_[i].num_hits() == 0 ? 1 : LeastShared;

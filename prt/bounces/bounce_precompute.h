@@ -40,9 +40,9 @@ struct BounceOptions {
     float tolerance = 0.01f;
     /// Directions that each receiver looks into at first. They are doubled as often as the
     /// tolerance asks for.
-    std::uint32_t min_directions = 64;
+    std::uint32_t min_directions = 48;
     /// A power of two times min_directions at which the doubling ends.
-    std::uint32_t max_directions = 4096;
+    std::uint32_t max_directions = 3072;
     /// Backs send the light that their fronts do; otherwise they are black.
     bool two_sided = false;
     /// Lift of the rays' origins, as in PrecomputeOptions.

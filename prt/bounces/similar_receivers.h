@@ -18,7 +18,7 @@ struct SimilarityLimits {
     /// Solution for Diffuse Interreflection"].
     float max_error = 0.2f;
     /// Members of a list, the receiver itself among them: the nearest.
-    std::size_t max_size = 16;
+    std::size_t max_size = 32;
 };
 
 /// Returns for each receiver those that are similar to it, itself among them. The relation is
