@@ -174,8 +174,10 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         throw std::runtime_error(
             fmt::format("{}: expected {}, got {}", path.string(), expected, got));
     };
-    if (version != SceneFileVersion)
-        refuse(fmt::format(".prt version {} for a part of the receivers", SceneFileVersion),
+    // Before that the counts have another meaning.
+    constexpr std::uint32_t FirstVersion = 3;
+    if (version < FirstVersion)
+        refuse(fmt::format(".prt version {} or later for a part of the receivers", FirstVersion),
                fmt::format("version {}", version));
     if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
         refuse("a scene", "a plan or a part");

@@ -37,7 +37,7 @@ struct ScenePart {
     std::optional<SharedBounces> bounces = {};
 };
 
-/// Reads the part's tiles of a scene of the present version, and checks them.
+/// Reads the part's tiles of a scene of version 3 or later, and checks them.
 ///
 /// Memory:  the mesh, all receivers, the counts and rows of the part, and the file as it is on
 /// disk. Throws:  as load_scene(); std::runtime_error "path: expected X, got Y" for a scene with
