@@ -346,7 +346,7 @@ private:
 
     /// How many times the directions of the first pass each receiver needs: the variance falls as
     /// the number of directions and of those who share them grows. Where surfaces meet, few share;
-    /// their noise would stand as a line beside even walls.
+    /// their noise would stand as a line beside even walls, the more the less sky they see.
     void choose_factors(const PlaceLists& averaged, std::vector<std::uint32_t>& factors) {
         const double allowed = static_cast<double>(options_.tolerance * options_.tolerance);
         tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
@@ -357,10 +357,12 @@ private:
                          static_cast<double>(end - begin);
             blocks_[block].squared_errors = 0.0;
             for (std::size_t place = begin; place < end; ++place) {
-                constexpr std::size_t LeastShared = 8;
-                const std::size_t num_shared = averaged[place].size();
-                const double shared = error / static_cast<double>(num_shared);
-                const std::size_t least = samples_[place].num_hits() == 0 ? 1 : LeastShared;
+                constexpr double LeastShared = 8.0;
+                const auto num_shared = static_cast<double>(averaged[place].size());
+                const double shared = error / num_shared;
+                const double least = samples_[place].num_hits() == 0
+                                         ? 1.0
+                                         : LeastShared * sampler_.closure_of(place);
                 factors[place] = 1;
                 while ((shared > factors[place] * allowed || factors[place] * num_shared < least) &&
                        2 * factors[place] * options_.min_directions <= options_.max_directions)
