@@ -1,7 +1,13 @@
 #include "app/program.h"
 
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
 #include "app/command_line/documentation.h"
 #include "app/commands.h"
+#include "prt/precompute.h"
 
 namespace relumine::app {
 
@@ -24,6 +30,24 @@ void add_commands(CommandLine& line, Session& session) {
     add_help(line);
     add_completion(line);
     add_man(line);
+}
+
+int exit_code_of(const CommandLine& line, const std::function<void()>& work,
+                 const std::function<void(const std::string&)>& complain) {
+    try {
+        work();
+        return 0;
+    } catch (const UsageError& error) {
+        complain(fmt::format("{} (see {} --help)", error.what(), line.command_name()));
+        return 2;
+    } catch (const prt::Cancelled&) {
+        complain("cancelled; nothing was written");
+    } catch (const std::bad_alloc&) {
+        complain("out of memory");
+    } catch (const std::exception& error) {
+        complain(error.what());
+    }
+    return 1;
 }
 
 } // namespace relumine::app

@@ -75,6 +75,7 @@ function(relumine_library name)
             FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/relumine COMPONENT development)
     endif()
     relumine_compile_together(relumine_${name})
+    relumine_use_precompiled(relumine_${name} relumine_headers)
 endfunction()
 
 # Release compiles with -O2. Kernels, the inner loops over all receivers or rays, gain from -O3; code that parses, calls

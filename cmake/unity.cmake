@@ -46,3 +46,43 @@ function(relumine_compile_together target)
         endforeach()
     endforeach()
 endfunction()
+
+# What most sources include is parsed once for all libraries and the program (g++; CMAKE_DISABLE_PRECOMPILE_HEADERS
+# turns it off). Sources still include all they use: `./dev lint` reads headers alone, without these.
+set(relumine_common_headers
+    <algorithm> <array> <cmath> <cstdint> <filesystem> <functional> <memory> <optional> <span> <stdexcept> <string>
+    <utility> <vector> <fmt/format.h> <glm/geometric.hpp> <glm/mat3x3.hpp> <glm/vec2.hpp> <glm/vec3.hpp>
+    <tbb/blocked_range.h> <tbb/parallel_for.h>)
+
+# relumine_precompile(NAME HEADERS ...): makes a target whose precompiled headers others take.
+function(relumine_precompile name)
+    set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+    file(CONFIGURE OUTPUT ${source} CONTENT "// Something to compile besides the headers.\n")
+    add_library(${name} OBJECT EXCLUDE_FROM_ALL ${source})
+    target_compile_features(${name} PRIVATE cxx_std_20)
+    target_link_libraries(${name} PRIVATE fmt::fmt glm::glm TBB::tbb)
+    target_precompile_headers(${name} PRIVATE ${relumine_common_headers} ${ARGN})
+endfunction()
+
+# relumine_use_precompiled(TARGET NAME): every target links what NAME links, because libraries define macros.
+function(relumine_use_precompiled target name)
+    if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+        return()
+    endif()
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt> $<BUILD_INTERFACE:TBB::tbb>)
+    target_precompile_headers(${target} REUSE_FROM ${name})
+    # Kernels read headers between pragmas that choose an instruction set. Precompiled, inline functions would be made
+    # for another one, and round otherwise.
+    get_target_property(sources ${target} SOURCES)
+    list(FILTER sources INCLUDE REGEX "\\.cpp$")
+    foreach(source ${sources})
+        get_filename_component(path ${source} ABSOLUTE)
+        file(STRINGS ${path} is_kernel REGEX "hwy/(foreach_target|highway).h" LIMIT_COUNT 1)
+        if(is_kernel)
+            set_source_files_properties(${source} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+        endif()
+    endforeach()
+endfunction()
+
+relumine_precompile(relumine_headers)
+set_target_properties(relumine_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)

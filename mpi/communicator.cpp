@@ -166,12 +166,37 @@ std::vector<std::byte> Communicator::broadcast(std::vector<std::byte> bytes) {
         largest(part_.index == 0 ? static_cast<std::int64_t>(bytes.size()) : 0));
     bytes.resize(size);
     meet(); // all have the memory
-    for (std::size_t begin = 0; begin < size; begin += MostBytes)
-        run([&](MPI_Request& request) {
-            MPI_Ibcast(bytes.data() + begin, static_cast<int>(std::min(MostBytes, size - begin)),
-                       MPI_BYTE, 0, MPI_COMM_WORLD, &request);
-        });
+    broadcast_from(0, bytes);
     return bytes;
+}
+
+void Communicator::broadcast_from(std::uint32_t process, std::span<std::byte> bytes) {
+    for (std::size_t begin = 0; begin < bytes.size(); begin += MostBytes)
+        run([&](MPI_Request& request) {
+            MPI_Ibcast(bytes.data() + begin,
+                       static_cast<int>(std::min(MostBytes, bytes.size() - begin)), MPI_BYTE,
+                       number(process), MPI_COMM_WORLD, &request);
+        });
+}
+
+std::vector<std::vector<std::byte>> Communicator::all_gather(std::vector<std::byte> bytes) {
+    meet();
+    const std::uint64_t own_size = bytes.size();
+    std::vector<std::uint64_t> sizes(part_.count);
+    run([&](MPI_Request& request) {
+        MPI_Iallgather(&own_size, 1, MPI_UINT64_T, sizes.data(), 1, MPI_UINT64_T, MPI_COMM_WORLD,
+                       &request);
+    });
+    std::vector<std::vector<std::byte>> of_all(part_.count);
+    for (std::size_t i = 0; i < of_all.size(); ++i)
+        if (i != part_.index)
+            of_all[i].resize(static_cast<std::size_t>(sizes[i]));
+    of_all[part_.index] = std::move(bytes);
+    meet(); // all have the memory
+    // MPI_Iallgatherv counts the bytes of all processes together with int; these do not.
+    for (std::uint32_t i = 0; i < part_.count; ++i)
+        broadcast_from(i, of_all[i]);
+    return of_all;
 }
 
 void Communicator::send(std::span<const std::byte> bytes, std::uint32_t to) {

@@ -38,6 +38,8 @@ public:
     [[nodiscard]] bool has_others() const override { return part_.count > 1; }
     void sum(std::span<std::int64_t> values) override;
     void max(std::span<std::int64_t> values) override;
+    [[nodiscard]] std::vector<std::vector<std::byte>>
+    all_gather(std::vector<std::byte> bytes) override;
     [[nodiscard]] std::vector<std::byte> broadcast(std::vector<std::byte> bytes) override;
     [[nodiscard]] std::vector<std::vector<std::byte>> gather(std::vector<std::byte> bytes) override;
     [[nodiscard]] std::vector<std::byte>
@@ -54,6 +56,7 @@ private:
     template<typename Start>
     void run(const Start& start);
     [[noreturn]] void give_up();
+    void broadcast_from(std::uint32_t process, std::span<std::byte> bytes);
     void send(std::span<const std::byte> bytes, std::uint32_t to);
     void receive(std::span<std::byte> bytes, std::uint32_t from);
 

@@ -1,25 +1,30 @@
 // The program `relumine-mpi`: commands of `relumine` whose work the processes of mpirun or srun
 // share.
+#include <algorithm>
+#include <array>
 #include <cstdio>
-#include <exception>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include "app/command_line/command_line.h"
 #include "app/commands.h"
+#include "app/program.h"
 #include "app/session.h"
 #include "mpi/communicator.h"
 #include "mpi/greeting.h"
-#include "prt/precompute.h"
 
 namespace relumine::mpi {
 
 namespace {
+
+constexpr std::array<const char*, 4> Commands = {"precompute", "relight", "animate", "verify"};
 
 int run(const std::vector<std::string>& arguments, app::Session& session, Communicator& team) {
     const bool is_first = team.part().index == 0;
@@ -30,11 +35,6 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
                        .c_str(),
                    stderr);
     };
-    const auto fail = [&](const std::string& message) {
-        if (team.fail())
-            complain(message);
-        return 1;
-    };
     app::CommandLine program("relumine-mpi",
                              "Shares the work of one command out to the processes that mpirun or "
                              "srun starts. `relumine` has the other commands. Exit code 0: done, "
@@ -44,7 +44,9 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
     app::Command root = program.root();
     app::add_precompute(root, session);
     app::add_relight(root, session);
-    for (const char* name : {"precompute", "relight"})
+    app::add_animate(root, session);
+    app::add_verify(root, session);
+    for (const char* name : Commands)
         root.command(name)
             .add_option("--timeout", timeout,
                         "end all processes when one has not answered for so many seconds; 0: wait")
@@ -62,35 +64,38 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
         session.team = &team;
         team.set_timeout(timeout, complain);
     });
-    try {
+    const auto work = [&] {
         const Greeting own = greeting(arguments);
         const std::string differs = difference(unpacked(team.broadcast(packed(own))), own);
         if (!differs.empty())
             throw std::runtime_error(differs);
         team.meet();
         if (!arguments.empty() && !arguments[0].empty() && arguments[0][0] != '-' &&
-            arguments[0] != "precompute" && arguments[0] != "relight")
+            std::find(Commands.begin(), Commands.end(), arguments[0]) == Commands.end())
             throw app::UsageError(arguments[0],
-                                  "expected precompute or relight: the other commands are those "
-                                  "of `relumine`, without mpirun");
+                                  fmt::format("expected {}: the other commands are those of "
+                                              "`relumine`, without mpirun",
+                                              fmt::join(Commands, ", ")));
         const std::string text = program.run(arguments);
         if (is_first)
             std::fputs(text.c_str(), stdout);
         team.meet();
-        return 0;
-    } catch (const OtherFailed&) {
-        return 1;
-    } catch (const app::UsageError& error) {
-        if (team.fail())
-            complain(fmt::format("{} (see {} --help)", error.what(), program.command_name()));
-        return 2;
-    } catch (const prt::Cancelled&) {
-        return fail("cancelled; nothing was written");
-    } catch (const std::bad_alloc&) {
-        return fail("out of memory");
-    } catch (const std::exception& error) {
-        return fail(error.what());
-    }
+    };
+    bool has_other_failed = false;
+    const int code = app::exit_code_of(
+        program,
+        [&] {
+            try {
+                work();
+            } catch (const OtherFailed&) {
+                has_other_failed = true;
+            }
+        },
+        [&](const std::string& message) {
+            if (team.fail())
+                complain(message);
+        });
+    return has_other_failed ? 1 : code;
 }
 
 } // namespace

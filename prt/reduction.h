@@ -1,8 +1,11 @@
 // What processes that share one precompute agree upon. Knows nothing of how they talk.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
+#include <vector>
 
 namespace relumine::prt {
 
@@ -41,6 +44,9 @@ public:
     virtual void sum(std::span<std::int64_t> values) = 0;
     /// Replaces each value by the largest of all processes. Throws as sum() does.
     virtual void max(std::span<std::int64_t> values) = 0;
+    /// Returns the bytes of all processes, by index, in each process. Throws as sum() does.
+    [[nodiscard]] virtual std::vector<std::vector<std::byte>>
+    all_gather(std::vector<std::byte> bytes) = 0;
 };
 
 /// A process that asks no other: it does all of the work, or a part whose clusters are given.
@@ -51,6 +57,10 @@ public:
     [[nodiscard]] bool has_others() const override { return false; }
     void sum(std::span<std::int64_t>) override {}
     void max(std::span<std::int64_t>) override {}
+    [[nodiscard]] std::vector<std::vector<std::byte>>
+    all_gather(std::vector<std::byte> bytes) override {
+        return {std::move(bytes)};
+    }
 
 private:
     Part part_;

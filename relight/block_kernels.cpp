@@ -305,8 +305,7 @@ void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLi
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                 BlockLight* light, std::uint64_t chosen) {
     const std::size_t begin = scene.counts.tile_begin(tile);
-    chosen &= ~std::uint64_t{0} >>
-              (prt::VisibleCounts::TileBlocks - (scene.counts.tile_begin(tile + 1) - begin));
+    chosen &= scene.counts.tile_blocks(tile);
     for_blocks(chosen, [&](std::size_t block) { light[begin + block] = {}; });
     add_visible(scene, tile, lights, chosen, light + begin);
     add_per_receiver(scene, tile, lights, chosen, light + begin);
@@ -476,13 +475,9 @@ void ClusterLights::set(std::size_t cluster, const VectorIrradiance& irradiance)
         for (int axis = 0; axis < 3; ++axis)
             *vector++ = channel[axis];
 
-    // Directions are rounded to 2^-16, the last bit of this number, so that most clusters keep
-    // theirs when their light changes.
-    constexpr float Rounder = 3 << 6;
     const glm::dvec3 luminance = irradiance.luminance();
     const double length = glm::length(luminance);
-    const glm::vec3 direction =
-        length > 0.0 ? (glm::vec3(luminance / length) + Rounder) - Rounder : glm::vec3(0.0f);
+    const glm::vec3 direction = length > 0.0 ? glm::vec3(luminance / length) : glm::vec3(0.0f);
     const double per_square =
         length > 0.0 ? 1.0 / glm::dot(glm::dvec3(direction), glm::dvec3(direction)) : 0.0;
     double off = 0.0, all = 0.0;

@@ -85,9 +85,8 @@ public:
     void limit_history(std::size_t bytes) { max_history_bytes_ = bytes; }
     /// Forgets all marks. The present state becomes the only mark.
     void forget_history();
-    /// Goes back to the mark before, or forward again. The radiance is that at the mark, bitwise
-    /// but for the last bit of a float here and there. Returns an empty report where there is no
-    /// such mark.
+    /// Goes back to the mark before, or forward again. The radiance is that at the mark, bit by
+    /// bit. Returns an empty report where there is no such mark.
     UpdateReport undo();
     UpdateReport redo();
     [[nodiscard]] bool can_undo() const { return at_ > 0; }

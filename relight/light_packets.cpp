@@ -38,33 +38,32 @@ void LightPackets::add(const glm::dvec3& direction, const VectorIrradiance& irra
     for (std::size_t k = lane; k < (lane == 0 ? prt::PacketSize : lane + 1); ++k)
         packet.directions.set(k, direction);
     packet.irradiance[lane] = irradiance;
-    packet.strength[lane] = {glm::length(irradiance.red), glm::length(irradiance.green),
-                             glm::length(irradiance.blue)};
 }
 
-/// Returns the lanes whose light reaches the receiver.
-std::uint32_t LightPackets::visible_of(const Packet& packet, const glm::vec3& position,
-                                       const glm::vec3& normal, const ShadowRays& rays) {
-    const std::uint32_t used = (1u << packet.directions.num_directions) - 1;
+std::uint32_t LightPackets::visible(std::size_t packet, const glm::vec3& position,
+                                    const glm::vec3& normal, const ShadowRays& rays) const {
+    const prt::DirectionPacket& directions = packets_[packet].directions;
+    const std::uint32_t used = (1u << directions.num_directions) - 1;
     return prt::lit_lanes(*rays.blockers, prt::ray_origin(position, normal, rays.bias), normal,
-                          packet.directions, used);
+                          directions, used);
 }
 
 glm::dvec3 LightPackets::radiance(const glm::vec3& position, const glm::vec3& normal,
                                   const ShadowRays& rays) const {
     glm::dvec3 irradiance(0.0);
-    for (const Packet& packet : packets_)
-        for (std::uint32_t lights = visible_of(packet, position, normal, rays); lights != 0;
+    for (std::size_t p = 0; p < packets_.size(); ++p)
+        for (std::uint32_t lights = visible(p, position, normal, rays); lights != 0;
              lights &= lights - 1)
             irradiance +=
-                packet.irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(normal);
+                packets_[p].irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(
+                    normal);
     return irradiance / std::numbers::pi;
 }
 
 void LightPackets::visible(const glm::vec3& position, const glm::vec3& normal,
                            const ShadowRays& rays, std::span<std::uint16_t> lanes) const {
     for (std::size_t p = 0; p < packets_.size(); ++p)
-        lanes[p] = static_cast<std::uint16_t>(visible_of(packets_[p], position, normal, rays));
+        lanes[p] = static_cast<std::uint16_t>(visible(p, position, normal, rays));
 }
 
 glm::dvec3 LightPackets::radiance(const glm::vec3& normal,
@@ -76,17 +75,6 @@ glm::dvec3 LightPackets::radiance(const glm::vec3& normal,
                 packets_[p].irradiance[static_cast<std::size_t>(std::countr_zero(lights))].on(
                     normal);
     return irradiance / std::numbers::pi;
-}
-
-void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
-                               std::span<const glm::vec3> positions,
-                               std::span<const glm::vec3> normals, const ShadowRays& rays,
-                               std::span<prt::Lobes<glm::dvec3>> sums) const {
-    std::vector<std::uint16_t> lanes(sums.size() * packets_.size());
-    for (std::size_t i = 0; i < sums.size(); ++i)
-        visible(positions[i], normals[i], rays,
-                std::span(lanes).subspan(i * packets_.size(), packets_.size()));
-    light_block(surfaces, normals, lanes, sums);
 }
 
 void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
@@ -102,23 +90,29 @@ void LightPackets::light_block(const prt::BlockSurfaces& surfaces,
             for (std::uint32_t lights = lanes[i * packets_.size() + p]; lights != 0;
                  lights &= lights - 1)
                 reached[static_cast<std::size_t>(std::countr_zero(lights))] |= 1u << i;
-        for (std::size_t light = 0; light < packet.directions.num_directions; ++light) {
-            if (reached[light] == 0)
-                continue;
-            const prt::DirectionPacket& d = packet.directions;
-            std::array<prt::BlockSurfaces::Floats, prt::NumGlossyLobes> lobes;
-            prt::evaluate_lobes(surfaces, {d.x[light], d.y[light], d.z[light]}, lobes);
-            const glm::dvec3& strength = packet.strength[light];
-            for (std::uint32_t receivers = reached[light]; receivers != 0;
-                 receivers &= receivers - 1) {
-                const auto i = static_cast<std::size_t>(std::countr_zero(receivers));
-                prt::Lobes<glm::dvec3>& sum = sums[i];
-                sum.diffuse += packet.irradiance[light].on(normals[i]) / std::numbers::pi;
-                sum.specular += strength * static_cast<double>(lobes[0][i]);
-                sum.specular_grazing += strength * static_cast<double>(lobes[1][i]);
-                sum.diffuse_grazing += strength * static_cast<double>(lobes[2][i]);
-            }
-        }
+        const prt::DirectionPacket& d = packet.directions;
+        for (std::size_t light = 0; light < d.num_directions; ++light)
+            add_light(surfaces, normals, {d.x[light], d.y[light], d.z[light]},
+                      packet.irradiance[light], reached[light], sums);
+    }
+}
+
+void add_light(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> normals,
+               const glm::vec3& direction, const VectorIrradiance& irradiance,
+               std::uint32_t reached, std::span<prt::Lobes<glm::dvec3>> sums) {
+    if (reached == 0)
+        return;
+    std::array<prt::BlockSurfaces::Floats, prt::NumGlossyLobes> lobes;
+    prt::evaluate_lobes(surfaces, direction, lobes);
+    const glm::dvec3 strength(glm::length(irradiance.red), glm::length(irradiance.green),
+                              glm::length(irradiance.blue));
+    for (; reached != 0; reached &= reached - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(reached));
+        prt::Lobes<glm::dvec3>& sum = sums[i];
+        sum.diffuse += irradiance.on(normals[i]) / std::numbers::pi;
+        sum.specular += strength * static_cast<double>(lobes[0][i]);
+        sum.specular_grazing += strength * static_cast<double>(lobes[1][i]);
+        sum.diffuse_grazing += strength * static_cast<double>(lobes[2][i]);
     }
 }
 

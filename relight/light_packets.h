@@ -31,7 +31,11 @@ public:
 
     [[nodiscard]] std::size_t num_packets() const { return packets_.size(); }
 
-    /// Finds the lights that reach a point: bit i of lanes[p] is set for light 16 p + i.
+    /// Finds the lights of a packet that reach a point: bit i is set for light 16 packet + i.
+    [[nodiscard]] std::uint32_t visible(std::size_t packet, const glm::vec3& position,
+                                        const glm::vec3& normal, const ShadowRays& rays) const;
+
+    /// Finds all lights that reach a point: lanes[p] are those of packet p.
     ///
     /// Shape:   lanes is [num_packets()].
     void visible(const glm::vec3& position, const glm::vec3& normal, const ShadowRays& rays,
@@ -44,14 +48,9 @@ public:
     /// Computes the radiance through each lobe, without colours, of a block of up to 16 receivers
     /// with highlights. A light is a point.
     ///
-    /// Shape:   positions, normals and sums have one element per receiver.
-    void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> positions,
-                     std::span<const glm::vec3> normals, const ShadowRays& rays,
-                     std::span<prt::Lobes<glm::dvec3>> sums) const;
-
-    /// The same for lights that are known to reach the receivers.
-    ///
-    /// Shape:   lanes is [receivers x num_packets()], as visible() gives them.
+    /// Shape:   lanes is [receivers x num_packets()], as visible() gives them; normals and sums
+    /// have
+    ///          one element per receiver.
     void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> normals,
                      std::span<const std::uint16_t> lanes,
                      std::span<prt::Lobes<glm::dvec3>> sums) const;
@@ -62,13 +61,17 @@ private:
     struct Packet {
         prt::DirectionPacket directions;
         std::array<VectorIrradiance, prt::PacketSize> irradiance{};
-        /// Length of each channel's vector.
-        std::array<glm::dvec3, prt::PacketSize> strength{};
     };
-    static std::uint32_t visible_of(const Packet& packet, const glm::vec3& position,
-                                    const glm::vec3& normal, const ShadowRays& rays);
     std::vector<Packet> packets_;
 };
+
+/// Adds the radiance through each lobe that a light gives to some receivers of a block: bit i of
+/// `reached` stands for receiver i.
+///
+/// Shape:   normals and sums have one element per receiver.
+void add_light(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> normals,
+               const glm::vec3& direction, const VectorIrradiance& irradiance,
+               std::uint32_t reached, std::span<prt::Lobes<glm::dvec3>> sums);
 
 /// Returns a distant light's irradiance as a vector.
 [[nodiscard]] VectorIrradiance vector_irradiance(const lights::DistantLight& light);

@@ -111,8 +111,7 @@ private:
     void check(const TexelRectangle& rectangle) const;
     [[nodiscard]] VectorIrradiance light_of(std::size_t cluster) const;
     void take(BinnedEnvironment binned);
-    bool update_sharp_lights();
-    bool replace_sharp_lights(std::vector<SharpLight> lights);
+    std::optional<std::size_t> replace_sharp_lights(std::vector<SharpLight> lights);
     std::size_t update_changed(bool sharp_changed);
     void set_pyramid();
     void light_glossy(std::size_t block);
@@ -193,7 +192,7 @@ RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
     RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
     take(std::move(binned));
-    traced_.trace(sharp_lights_);
+    static_cast<void>(traced_.trace(sharp_lights_));
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace += seconds_since(start);
 
@@ -230,15 +229,9 @@ UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
             changed_.push_back(cluster);
 
     const auto trace_start = std::chrono::steady_clock::now();
-    bool sharp_changed = is_first;
-    if (is_first) {
-        sharp_lights_ = std::move(frame.sharp_lights);
-        traced_.trace(sharp_lights_);
-    } else {
-        sharp_changed = replace_sharp_lights(std::move(frame.sharp_lights));
-    }
+    const std::optional<std::size_t> traced = replace_sharp_lights(std::move(frame.sharp_lights));
     report.seconds_trace = seconds_since(trace_start);
-    report.num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0;
+    report.num_sharp_lights = traced.value_or(0);
     report.num_clusters = changed_.size();
 
     for (const std::uint32_t cluster : changed_) {
@@ -253,7 +246,7 @@ UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
         report.resummed = true;
         report.num_receivers = radiance_.size();
     } else {
-        report.num_receivers = update_changed(sharp_changed);
+        report.num_receivers = update_changed(traced.has_value());
     }
     report.seconds = seconds_since(start);
     return report;
@@ -294,7 +287,7 @@ RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> l
     times.seconds_bin = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    traced_.trace(sharp_lights_);
+    static_cast<void>(traced_.trace(sharp_lights_));
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace = seconds_since(start);
 
@@ -453,12 +446,17 @@ UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rec
         sums_[cluster] = binning_->sum(environment_, transfer_.quadtree.leaves()[cluster]);
         powers_[cluster] = sums_[cluster].power();
     });
-    const bool sharp_changed = rays_.blockers != nullptr && update_sharp_lights();
+    // Which lights are sharp depends on the whole map.
+    std::optional<std::size_t> traced;
+    if (rays_.blockers != nullptr)
+        traced = replace_sharp_lights(
+            find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_,
+                              rays_.tolerance, transfer_.glossy.has_value()));
     set_pyramid();
-    const std::size_t num_receivers = update_changed(sharp_changed);
+    const std::size_t num_receivers = update_changed(traced.has_value());
     return {.num_clusters = num_changed,
             .num_receivers = num_receivers,
-            .num_sharp_lights = sharp_changed ? sharp_lights_.size() : 0,
+            .num_sharp_lights = traced.value_or(0),
             .seconds = seconds_since(start)};
 }
 
@@ -509,10 +507,8 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
     tbb::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
         if (dimmed_[tile] != 0)
             light_tile(scene, tile, lights_, light_, dimmed_[tile]);
-        const std::size_t size =
-            transfer_.counts.tile_begin(tile + 1) - transfer_.counts.tile_begin(tile);
         if (sharp_changed || transfer_.glossy)
-            touched_[tile] = ~std::uint64_t{0} >> (prt::VisibleCounts::TileBlocks - size);
+            touched_[tile] = transfer_.counts.tile_blocks(tile);
         for_blocks(tile, touched_[tile], [&](std::size_t block) {
             light_glossy(block);
             write_radiance(block);
@@ -523,25 +519,17 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
 
-/// Finds the sharp lights again: which lights are sharp depends on the whole map.
-bool Relighter::Impl::update_sharp_lights() {
-    return replace_sharp_lights(find_sharp_lights(environment_, *binning_,
-                                                  transfer_.quadtree.leaves(), powers_,
-                                                  rays_.tolerance, transfer_.glossy.has_value()));
-}
-
-/// Replaces the sharp lights and traces them where any came or went. Adds their clusters to
-/// `changed_`. Returns whether there were any.
-bool Relighter::Impl::replace_sharp_lights(std::vector<SharpLight> lights) {
+/// Replaces the sharp lights where any came or went, and adds their clusters to `changed_`. Returns
+/// how many directions were traced; nothing where all lights are as they were.
+std::optional<std::size_t> Relighter::Impl::replace_sharp_lights(std::vector<SharpLight> lights) {
     if (lights == sharp_lights_)
-        return false;
+        return std::nullopt;
     for (const std::vector<SharpLight>* set : {&lights, &sharp_lights_})
         for (const SharpLight& light : *set)
             changed_.push_back(light.cluster);
     sort_unique(changed_);
     sharp_lights_ = std::move(lights);
-    traced_.trace(sharp_lights_);
-    return true;
+    return traced_.trace(sharp_lights_);
 }
 
 void Relighter::Impl::set_pyramid() {

@@ -40,7 +40,7 @@ struct UpdateReport {
     std::size_t num_clusters = 0;
     /// Receivers that see any of these clusters, counted in whole blocks of 16.
     std::size_t num_receivers = 0;
-    /// Sharp lights that were traced anew; 0 where the edit changed none.
+    /// Sharp lights that were traced: those where none stood before.
     std::size_t num_sharp_lights = 0;
     double seconds = 0.0;
     /// The part of `seconds` for tracing sharp lights.

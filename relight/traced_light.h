@@ -3,6 +3,9 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -25,8 +28,12 @@ public:
     /// Throws:  std::invalid_argument unless there is a position per receiver, or no blockers.
     TracedLight(const prt::Transfer& transfer, const ShadowRays& rays);
 
-    /// Traces all lights anew: a shadow ray per light and receiver that faces it; parallel.
-    void trace(std::span<const SharpLight> lights);
+    /// Takes new lights in place of all before; parallel. Returns how many directions were traced.
+    ///
+    /// Cost:    a shadow ray for each receiver that faces a light. Lights that stand where a light
+    ///          stood before need none, however bright they are now.
+    /// Memory:  a bit for each receiver and light.
+    std::size_t trace(std::span<const SharpLight> lights);
 
     /// Returns a block's radiance for albedo 1, or null where nothing is traced.
     [[nodiscard]] const TracedRadiance* diffuse(std::size_t block) const {
@@ -38,11 +45,22 @@ public:
     }
 
 private:
-    void trace_block(const LightPackets& packets, std::size_t block);
-    void trace_glossy_block(const LightPackets& packets, std::size_t block);
+    /// [num_blocks] bit i is set where a light reaches the block's receiver i.
+    using Reached = std::vector<std::uint16_t>;
+    /// By direction: x, y, z.
+    using ReachedBlocks = std::map<std::array<float, 3>, std::unique_ptr<Reached>>;
+
+    void find_reached(const LightPackets& packets, std::size_t block,
+                      std::span<Reached* const> of_fresh) const;
+    void light_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
+                     std::size_t block);
+    void light_glossy_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
+                            std::size_t block);
 
     const prt::Transfer& transfer_;
     ShadowRays rays_;
+    /// Of the present lights.
+    ReachedBlocks reached_;
     /// [num_blocks]; empty where nothing is traced.
     std::vector<TracedRadiance> diffuse_;
     /// [num_receivers] by place; empty without traced highlights.

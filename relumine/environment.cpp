@@ -121,18 +121,18 @@ relight::Backdrop backdrop_of(std::shared_ptr<const cubemap::EnvironmentImage> i
     return relight::image_backdrop(std::move(image), turn);
 }
 
-Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                            const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     const cubemap::CubeMap resampled = unturned_cube_map_of(*image, options);
     const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    Environment result = environment_of(std::move(image), resampled, options);
+    Environment result = environment_of(image, resampled, options);
     result.seconds_resample += seconds;
     return result;
 }
 
-Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
+Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
                            const cubemap::CubeMap& resampled, const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();

@@ -92,13 +92,14 @@ load_environment_image(const std::filesystem::path& path, const EnvironmentOptio
                                                       double light_from_below);
 
 /// Resamples and turns an image. Only load_environment() fills `seconds_load`.
-[[nodiscard]] Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
-                                         const EnvironmentOptions& options = {});
+[[nodiscard]] Environment
+environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
+               const EnvironmentOptions& options = {});
 
 /// The same for a picture that turns: `resampled` is the image as a cube map that was not turned.
-[[nodiscard]] Environment environment_of(std::shared_ptr<const cubemap::EnvironmentImage> image,
-                                         const cubemap::CubeMap& resampled,
-                                         const EnvironmentOptions& options = {});
+[[nodiscard]] Environment
+environment_of(const std::shared_ptr<const cubemap::EnvironmentImage>& image,
+               const cubemap::CubeMap& resampled, const EnvironmentOptions& options = {});
 
 /// Reads an .exr or .hdr file, or six of them where the path holds `{face}`, resamples and turns.
 ///

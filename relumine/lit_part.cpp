@@ -1,7 +1,6 @@
 #include "relumine/lit_part.h"
 
 #include <cstdint>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -20,8 +19,14 @@ namespace {
 prt::LitPart lit(const LitPartOptions& options, cubemap::CubeMap environment,
                  relight::RelightTimes& times) {
     prt::ScenePart part = prt::load_scene_part(options.scene, options.part);
+    if (part.bounces)
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene without bounces for parts that know nothing of each other, got "
+            "one with",
+            options.scene.string()));
+    const std::size_t num_receivers = part.scene.receivers.size();
     prt::LitPart lit{.part = options.part,
-                     .num_receivers = static_cast<std::uint32_t>(part.num_receivers),
+                     .num_receivers = static_cast<std::uint32_t>(num_receivers),
                      .light =
                          fmt::format("{:016x} {:016x} {}", prt::file_hash(options.scene),
                                      prt::bytes_hash(std::as_bytes(std::span(environment.texels))),
@@ -33,11 +38,11 @@ prt::LitPart lit(const LitPartOptions& options, cubemap::CubeMap environment,
         relight::ShadowRays shadow_rays;
         if (!options.clusters_only)
             shadow_rays = {.blockers = &rays,
-                           .positions = scene.receivers.positions,
+                           .positions = part.positions,
                            .bias = settings.bias,
                            .tolerance = prt::rms_tolerance(settings.tolerance, settings.epsilon,
-                                                           part.num_receivers)};
-        relight::Relighter relighter(scene.transfer, shadow_rays);
+                                                           num_receivers)};
+        relight::Relighter relighter(part.transfer, shadow_rays);
         times = relighter.set_environment(std::move(environment));
         lit.radiance.assign(relighter.radiance().begin(), relighter.radiance().end());
     }
@@ -55,37 +60,6 @@ relight::RelightTimes light_part(const LitPartOptions& options, cubemap::CubeMap
         *num_receivers = part.receivers.size();
     prt::save_lit_part(options.output, part);
     return times;
-}
-
-std::size_t light_shared(prt::Team& team, const LitPartOptions& options,
-                         cubemap::CubeMap environment) {
-    LitPartOptions of_process = options;
-    of_process.part = team.part();
-    relight::RelightTimes times;
-    const prt::LitPart own = lit(of_process, std::move(environment), times);
-    const auto bytes_of = [](const auto& elements) {
-        const auto bytes = std::as_bytes(std::span(elements));
-        return std::vector<std::byte>(bytes.begin(), bytes.end());
-    };
-    const std::vector<std::byte> light = bytes_of(own.light);
-    if (team.broadcast(light) != light)
-        throw std::runtime_error(fmt::format(
-            "{}: expected the scene and the environment of the first process, got others",
-            options.scene.string()));
-    const std::vector<std::vector<std::byte>> receivers = team.gather(bytes_of(own.receivers));
-    const std::vector<std::vector<std::byte>> radiance = team.gather(bytes_of(own.radiance));
-    std::vector<glm::vec3> of_all(receivers.empty() ? 0 : own.num_receivers);
-    for (std::size_t process = 0; process < receivers.size(); ++process)
-        for (std::size_t i = 0; i < receivers[process].size() / sizeof(std::uint32_t); ++i) {
-            std::uint32_t receiver = 0;
-            std::memcpy(&receiver, receivers[process].data() + i * sizeof receiver,
-                        sizeof receiver);
-            std::memcpy(&of_all.at(receiver), radiance[process].data() + i * sizeof(glm::vec3),
-                        sizeof(glm::vec3));
-        }
-    if (team.part().index == 0)
-        relight::save_npy(options.output, of_all);
-    return own.num_receivers;
 }
 
 std::size_t join_light(std::span<const std::filesystem::path> parts,

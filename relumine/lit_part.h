@@ -7,7 +7,6 @@
 #include <span>
 
 #include "cubemap/cube_map.h"
-#include "prt/parts/team.h"
 #include "prt/reduction.h"
 #include "relight/relighter.h"
 
@@ -32,16 +31,6 @@ struct LitPartOptions {
 ///          LitScene::light().
 relight::RelightTimes light_part(const LitPartOptions& options, cubemap::CubeMap environment,
                                  std::size_t* num_receivers = nullptr);
-
-/// Lights a scene with all processes of a team, each its own part, and writes the light of all as
-/// join_light() does; the first process has the output. `part` and `output` of the others do not
-/// count. Returns the number of receivers.
-///
-/// Memory:  as light_part(); the first process also has the radiance of all.
-/// Throws:  as light_part(); std::runtime_error where processes have other scenes or environments
-///          than the first.
-std::size_t light_shared(prt::Team& team, const LitPartOptions& options,
-                         cubemap::CubeMap environment);
 
 /// Puts the light of all parts together, in any order, and writes it as LitScene::save() writes an
 /// .npy file: the same bytes for any number of parts. Returns the number of receivers.

@@ -15,6 +15,7 @@
 #include "relight/bounces/path_tracer.h"
 #include "relight/contribution.h"
 #include "relight/shadow_rays.h"
+#include "relumine/shared_slices.h"
 
 namespace relumine {
 
@@ -140,16 +141,19 @@ struct LitScene::Impl {
     /// sum, relative to it, L2 over the receivers.
     double add_traced(std::span<const std::uint32_t> receivers, const VerifyOptions& options,
                       std::vector<glm::dvec3>& exact) const {
-        const std::vector<relight::TracedBounces> traced = relight::trace_bounces(
-            scene.mesh,
-            prt::vertex_values(scene.mesh, scene.receivers, lit_relighter().bounces().albedo),
-            scene.receivers, receivers, rays, lit_relighter().environment(),
-            {.num_paths = options.num_paths,
-             .seed = options.seed,
-             .two_sided = scene.settings.two_sided_bounces,
-             .bias = scene.settings.bias,
-             .stop = options.stop,
-             .on_progress = options.on_progress});
+        const std::vector<glm::vec3> albedo_of_vertices =
+            prt::vertex_values(scene.mesh, scene.receivers, lit_relighter().bounces().albedo);
+        const auto traced = in_slices<relight::TracedBounces>(
+            options.reduction, receivers, [&](std::span<const std::uint32_t> slice) {
+                return relight::trace_bounces(scene.mesh, albedo_of_vertices, scene.receivers,
+                                              slice, rays, lit_relighter().environment(),
+                                              {.num_paths = options.num_paths,
+                                               .seed = options.seed,
+                                               .two_sided = scene.settings.two_sided_bounces,
+                                               .bias = scene.settings.bias,
+                                               .stop = options.stop,
+                                               .on_progress = options.on_progress});
+            });
         double errors = 0.0, all = 0.0;
         for (std::size_t i = 0; i < exact.size(); ++i) {
             const glm::dvec3 albedo =
@@ -184,11 +188,15 @@ struct LitScene::Impl {
         }
         const relight::ExactOptions exact_options{.bias = scene.settings.bias,
                                                   .stop = options.stop};
-        const std::vector<glm::dvec3> exact =
-            file.image != nullptr
-                ? relight::exact_radiance(receivers, indices, blockers(), file, exact_options)
-                : relight::exact_radiance(receivers, indices, blockers(),
-                                          lit_relighter().environment(), exact_options);
+        const auto exact = in_slices<glm::dvec3>(
+            options.reduction, std::span<const std::uint32_t>(indices),
+            [&](std::span<const std::uint32_t> slice) {
+                return file.image != nullptr
+                           ? relight::exact_radiance(receivers, slice, blockers(), file,
+                                                     exact_options)
+                           : relight::exact_radiance(receivers, slice, blockers(),
+                                                     lit_relighter().environment(), exact_options);
+            });
         result.error = relight::compare(indices, exact, interpolated);
         return result;
     }
@@ -397,8 +405,12 @@ Verification LitScene::verify(const VerifyOptions& options) const {
                                               .stop = options.stop,
                                               .on_progress = options.on_progress};
     const auto exact_under = [&](const auto& light) {
-        return relight::exact_radiance(impl_->scene.receivers, result.receivers, impl_->blockers(),
-                                       light, exact_options);
+        return in_slices<glm::dvec3>(
+            options.reduction, std::span<const std::uint32_t>(result.receivers),
+            [&](std::span<const std::uint32_t> slice) {
+                return relight::exact_radiance(impl_->scene.receivers, slice, impl_->blockers(),
+                                               light, exact_options);
+            });
     };
     result.of_file = impl_->file.image != nullptr;
     std::vector<glm::dvec3> exact =

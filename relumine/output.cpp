@@ -370,7 +370,8 @@ double Painter::choose_exposure_ev(const Lighting& lighting) {
 }
 
 void Painter::set_exposure_ev(double ev) {
-    impl_->options.exposure_ev = ev;
+    // Chosen for what is shown: numbers stay as they are.
+    impl_->chosen_ev = ev;
 }
 
 bool Painter::needs_light_for(const std::filesystem::path& path) const {

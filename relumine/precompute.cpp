@@ -4,7 +4,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <memory>
 #include <utility>
 
@@ -22,35 +21,11 @@
 #include "relight/bounces/probe_lights.h"
 #include "relight/pictures/framing.h"
 #include "relumine/memory_limit.h"
+#include "relumine/part_work.h"
 
 namespace relumine {
 
 namespace {
-
-/// The share of one process, while it lasts.
-class Work {
-public:
-    explicit Work(const prt::Team* team) : team_(team), waiting_before_(waiting()) {}
-
-    [[nodiscard]] ProcessFigures figures(const prt::PrecomputeStatistics& clusters) const {
-        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start_;
-        return {.num_rays = clusters.num_own_rays,
-                .seconds = seconds.count(),
-                .seconds_waiting = waiting() - waiting_before_,
-                .seconds_of_processors =
-                    static_cast<double>(std::clock() - processors_before_) / CLOCKS_PER_SEC};
-    }
-
-private:
-    [[nodiscard]] double waiting() const {
-        return team_ != nullptr ? team_->seconds_waiting() : 0.0;
-    }
-
-    const prt::Team* team_;
-    double waiting_before_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-    std::clock_t processors_before_ = std::clock();
-};
 
 /// One precompute, step by step.
 class Precompute {
@@ -79,7 +54,7 @@ public:
         is_plan_ = true;
         check_options();
         compute();
-        report_.file_bytes = prt::save_plan(options_.output, scene_);
+        report_.file_bytes = prt::save_plan(options_.output, scene_, planned_bounces_);
     }
 
     Scene run() {
@@ -107,8 +82,6 @@ private:
         if (!options_.output.empty() && options_.output.extension() != extension)
             throw std::invalid_argument(fmt::format("{}: expected a name that ends in {}",
                                                     options_.output.string(), extension));
-        if (is_plan_ && options_.bounce_tolerance)
-            throw std::invalid_argument("expected a plan without bounces, which have no parts yet");
         if (options_.output.empty() && options_.resume)
             throw std::invalid_argument("expected an output to resume the work of, got none");
         if (options_.team != nullptr && options_.max_memory)
@@ -141,7 +114,7 @@ private:
         if (has_highlights)
             scene_.settings.glossy_tolerance = options_.glossy_tolerance;
         hand_out(has_highlights);
-        const Work work(options_.team);
+        const ProcessWork work(options_.team);
         try {
             cluster(rays, sizes);
         } catch (const std::invalid_argument& error) {
@@ -149,11 +122,11 @@ private:
         }
         if (has_highlights && !is_plan_)
             add_highlights(rays, sizes);
+        if (options_.bounce_tolerance && !is_plan_)
+            add_bounces(rays, sizes);
         if (options_.team != nullptr)
             take_in(work.figures(report_.clusters));
         prt::set_surfaces(scene_.transfer, scene_.receivers);
-        if (options_.bounce_tolerance)
-            add_bounces(rays, sizes);
     }
 
     [[nodiscard]] const mesh::TriangleMesh& blocking_mesh() const {
@@ -173,7 +146,10 @@ private:
         // An RMS below this allows no cluster that a few receivers see differently: cells stop at
         // single texels. The work that is let through takes minutes.
         constexpr double FinestTolerance = 1e-4; // 1/sr
-        constexpr double MostPairs = 0x1p32;
+        // A plan is made from a sample, and processes share the receivers.
+        const double most_pairs = 0x1p32 * (is_plan_                   ? 16.0
+                                            : options_.team != nullptr ? options_.team->part().count
+                                                                       : 1.0);
         if (options_.max_memory)
             return;
         const auto num_receivers = static_cast<double>(scene_.receivers.size());
@@ -185,16 +161,16 @@ private:
         const bool is_fine = tolerance < FinestTolerance;
         const double clusters = is_fine ? all : least;
         const double pairs = clusters * num_receivers;
-        if (pairs <= MostPairs)
+        if (pairs <= most_pairs)
             return;
         // A block of 16 receivers that see a cluster differently takes ten bytes.
         throw TooMuchWork(
-            is_fine && least * num_receivers <= MostPairs ? TooMuchWork::Cause::Tolerance
-                                                          : TooMuchWork::Cause::MinLevel,
+            is_fine && least * num_receivers <= most_pairs ? TooMuchWork::Cause::Tolerance
+                                                           : TooMuchWork::Cause::MinLevel,
             fmt::format("expected {} for {} receivers and a face resolution of {}: up to {:.3g} "
                         "clusters, {:.2g} rays and {:.2g} GB; fewer receivers, a lower face "
                         "resolution or a limit of memory let it through",
-                        is_fine && least * num_receivers <= MostPairs
+                        is_fine && least * num_receivers <= most_pairs
                             ? fmt::format("{} or more", FinestTolerance)
                             : "a smaller depth",
                         scene_.receivers.size(), clustering_.face_resolution, clusters, 4.0 * pairs,
@@ -377,8 +353,23 @@ private:
                              .clusters = clustering_,
                              .has_beams = options_.engine == Engine::Beams,
                              .has_checkpoint = clustering_.checkpoint != nullptr};
-        work.blockers.positions = blocking_mesh().positions;
-        work.blockers.triangles = blocking_mesh().triangles;
+        const auto shape_of = [](const mesh::TriangleMesh& mesh) {
+            mesh::TriangleMesh shape;
+            shape.positions = mesh.positions;
+            shape.triangles = mesh.triangles;
+            return shape;
+        };
+        if (options_.bounce_tolerance) {
+            work.bounces = {.tolerance = *options_.bounce_tolerance,
+                            .two_sided = options_.two_sided_bounces};
+            work.mesh = shape_of(scene_.mesh);
+            work.mesh.normals = scene_.mesh.normals;
+            if (scene_.blockers)
+                work.blockers = shape_of(*scene_.blockers);
+        } else {
+            work.mesh = shape_of(blocking_mesh());
+            work.receivers.points.clear();
+        }
         if (has_highlights)
             work.highlights = {.tolerance = options_.glossy_tolerance};
         static_cast<void>(options_.team->broadcast(prt::packed_work(work)));
@@ -390,15 +381,23 @@ private:
         std::vector<prt::PartLight> light(1);
         light[0].counts = std::exchange(transfer.counts, {});
         light[0].glossy = std::exchange(transfer.glossy, {});
+        light[0].bounces = std::exchange(own_bounces_, {});
         report_.processes = {own_figures};
-        for (const std::vector<std::byte>& bytes : options_.team->gather({}))
+        for (std::vector<std::byte>& bytes : options_.team->gather({})) {
             if (!bytes.empty())
                 light.push_back(prt::unpacked_light(bytes));
+            bytes = {}; // as much as the light
+        }
         for (const std::vector<std::byte>& bytes : options_.team->gather({}))
             if (!bytes.empty())
                 std::memcpy(&report_.processes.emplace_back(), bytes.data(),
                             sizeof(ProcessFigures));
         prt::join_light(transfer, light);
+        if (!options_.bounce_tolerance)
+            return;
+        scene_.bounces =
+            prt::join_bounces_of(scene_.receivers, transfer, light, &report_.bounces.emplace());
+        report_.bounces->seconds = seconds_bounces_;
     }
 
     /// What the scene remembers of how it was made.
@@ -421,13 +420,29 @@ private:
             note(fmt::format("memory: about {} for about {} clusters",
                              megabytes(report_.memory->peak_bytes), report_.memory->num_clusters));
         try {
-            scene_.transfer =
-                is_plan_
-                    ? prt::plan_clusters(scene_.receivers, blockers, clustering_, &report_.clusters)
-                    : prt::precompute(scene_.receivers, blockers, clustering_, &report_.clusters);
+            if (is_plan_)
+                plan(blockers);
+            else
+                scene_.transfer =
+                    prt::precompute(scene_.receivers, blockers, clustering_, &report_.clusters);
         } catch (const prt::TooManyClusters& error) {
             throw limit_.stopped(error);
         }
+    }
+
+    void plan(const prt::Blockers& blockers) {
+        prt::Transfer sampled;
+        scene_.transfer = prt::plan_clusters(scene_.receivers, blockers, clustering_,
+                                             &report_.clusters, &sampled);
+        if (!options_.bounce_tolerance)
+            return;
+        scene_.settings.two_sided_bounces = options_.two_sided_bounces;
+        prt::PlannedBounces& bounces = planned_bounces_.emplace();
+        bounces.tolerance = *options_.bounce_tolerance;
+        bounces.probes.resize(sampled.num_receivers());
+        const std::vector<prt::ProbeRadiance> probes = relight::probe_radiance(sampled);
+        for (std::size_t place = 0; place < probes.size(); ++place)
+            bounces.probes[sampled.order[place]] = probes[place];
     }
 
     void add_highlights(const prt::RayScene& rays, const prt::SceneSizes& sizes) {
@@ -481,11 +496,22 @@ private:
         prt::BounceOptions bounces{.tolerance = *options_.bounce_tolerance,
                                    .two_sided = options_.two_sided_bounces,
                                    .bias = clustering_.bias,
-                                   .checkpoint = checkpoint_.get(),
+                                   .reduction = options_.team,
+                                   .checkpoint = clustering_.checkpoint,
                                    .stop = options_.stop,
                                    .on_progress = progress(Stage::Bounces)};
         if (const auto bytes = limit_.max_bounce_bytes(sizes, report_.clusters.column_bytes))
             bounces.max_bytes = *bytes;
+        scene_.settings.two_sided_bounces = options_.two_sided_bounces;
+        if (options_.team != nullptr) {
+            const auto start = std::chrono::steady_clock::now();
+            own_bounces_ = bounce_samples(scene_.mesh, scene_.receivers, scene_.transfer,
+                                          of_mesh ? *of_mesh : rays, bounces);
+            seconds_bounces_ =
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+            return;
+        }
+        prt::set_surfaces(scene_.transfer, scene_.receivers);
         prt::BounceStatistics statistics;
         try {
             scene_.bounces =
@@ -495,7 +521,6 @@ private:
         } catch (const prt::TooManyHits& error) {
             throw limit_.too_many_hits(bounces.max_bytes, error.num_hits);
         }
-        scene_.settings.two_sided_bounces = options_.two_sided_bounces;
         report_.bounces = statistics;
     }
 
@@ -528,6 +553,10 @@ private:
     prt::PrecomputeOptions clustering_;
     std::unique_ptr<prt::CheckpointFile> checkpoint_;
     std::optional<prt::TeamCheckpoint> team_checkpoint_;
+    /// Of this process, where others have theirs.
+    std::optional<prt::BounceSamples> own_bounces_;
+    double seconds_bounces_ = 0.0;
+    std::optional<prt::PlannedBounces> planned_bounces_;
 };
 
 } // namespace
@@ -539,37 +568,6 @@ Scene precompute(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* 
     return Precompute(std::move(mesh), options, facts).run();
 }
 
-void assist(prt::Team& team, const std::stop_token& stop) {
-    prt::SharedWork shared = prt::unpacked_work(team.broadcast({}));
-    const Work work(&team);
-    const prt::RayScene rays(shared.blockers);
-    std::optional<prt::BeamScene> beams;
-    if (shared.has_beams)
-        beams.emplace(shared.blockers, rays);
-    prt::TeamCheckpoint checkpoint(team, nullptr);
-    shared.clusters.checkpoint = shared.has_checkpoint ? &checkpoint : nullptr;
-    shared.clusters.reduction = &team;
-    shared.clusters.stop = stop;
-    prt::PrecomputeStatistics statistics;
-    prt::Transfer transfer =
-        prt::precompute(shared.receivers, beams ? static_cast<const prt::Blockers&>(*beams) : rays,
-                        shared.clusters, &statistics);
-    beams.reset();
-    prt::PartLight light;
-    if (shared.highlights) {
-        shared.highlights->checkpoint = shared.clusters.checkpoint;
-        shared.highlights->reduction = &team;
-        shared.highlights->stop = stop;
-        light.glossy =
-            prt::part_highlights(shared.receivers, transfer, rays, *shared.highlights, team.part());
-    }
-    light.counts = std::move(transfer.counts);
-    const ProcessFigures figures = work.figures(statistics);
-    static_cast<void>(team.gather(prt::packed_light(light)));
-    const auto bytes = std::as_bytes(std::span(&figures, 1));
-    static_cast<void>(team.gather({bytes.begin(), bytes.end()}));
-}
-
 void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report) {
     PrecomputeReport local;
     PrecomputeReport& facts = report != nullptr ? *report : local;
@@ -577,43 +575,6 @@ void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report)
     if (options.output.empty())
         throw std::invalid_argument("expected a file for the plan, got none");
     Precompute(std::move(mesh), options, facts).run_plan();
-}
-
-void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics) {
-    prt::Plan plan = prt::load_plan(options.plan);
-    const prt::Scene& scene = plan.scene;
-    const mesh::TriangleMesh& triangles = scene.blockers ? *scene.blockers : scene.mesh;
-    const prt::RayScene rays(triangles);
-    std::optional<prt::BeamScene> beams;
-    if (options.engine == Engine::Beams)
-        beams.emplace(triangles, rays);
-    const prt::Blockers& blockers = beams ? static_cast<const prt::Blockers&>(*beams) : rays;
-    prt::VisibleCounts counts = prt::part_counts(scene.receivers, scene.transfer, blockers,
-                                                 {.min_level = scene.settings.min_level,
-                                                  .face_resolution = scene.settings.face_resolution,
-                                                  .bias = scene.settings.bias,
-                                                  .stop = options.stop,
-                                                  .on_progress = options.on_progress},
-                                                 options.part, statistics);
-    beams.reset();
-    prt::PartLight light;
-    if (scene.settings.glossy_tolerance) {
-        plan.scene.transfer.counts = std::move(counts);
-        light.glossy = prt::part_highlights(scene.receivers, scene.transfer, rays,
-                                            {.tolerance = *scene.settings.glossy_tolerance,
-                                             .face_resolution = scene.settings.face_resolution,
-                                             .bias = scene.settings.bias,
-                                             .stop = options.stop},
-                                            options.part);
-        counts = std::exchange(plan.scene.transfer.counts, {});
-    }
-    light.counts = std::move(counts);
-    prt::save_part(options.output, plan, options.part, light);
-}
-
-std::uint64_t join(std::span<const std::filesystem::path> parts,
-                   const std::filesystem::path& output) {
-    return prt::save_scene(output, prt::join_parts(parts));
 }
 
 prt::SurfaceOverride everywhere(const prt::Surface& surface) {

@@ -132,8 +132,7 @@ struct PrecomputeOptions {
     bool resume = false;
 
     /// Processes that share the work; null: this one does it all. precompute() runs in the first
-    /// process, assist() in the others. Bounces are the first one's alone. There must be no limit
-    /// of memory.
+    /// process, assist() in the others. There must be no limit of memory.
     prt::Team* team = nullptr;
 
     /// Polled a few times a second. A stop request makes precompute() throw Cancelled.
@@ -251,7 +250,7 @@ void assist(prt::Team& team, const std::stop_token& stop = {});
 /// .plan, to options.output. There are no checkpoints.
 ///
 /// Cost:    a sixteenth of a precompute where receivers are many; see prt::plan_clusters().
-/// Throws:  as precompute() does; std::invalid_argument for bounces, which have no parts.
+/// Throws:  as precompute() does.
 void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report = nullptr);
 
 /// One part of a plan.

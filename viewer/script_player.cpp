@@ -78,12 +78,12 @@ cubemap::LightLayer new_layer(const ScriptCommand& command) {
                 .region = cubemap::Rectangle{.direction = vector_of(command),
                                              .width_degrees = n[3],
                                              .height_degrees = n[4]}};
-    cubemap::LightLayer layer{
-        .name = command.text,
-        .region = cubemap::Disc{.direction = vector_of(command), .radius_degrees = n[3]}};
+    const cubemap::Disc disc{.direction = vector_of(command), .radius_degrees = n[3]};
     if (command.action == Action::AddGain)
-        layer.effect = cubemap::Gain{.factor = static_cast<float>(n[4])};
-    return layer;
+        return {.name = command.text,
+                .region = disc,
+                .effect = cubemap::Gain{.factor = static_cast<float>(n[4])}};
+    return {.name = command.text, .region = disc};
 }
 
 void set_gain(const ScriptCommand& command, ViewState& state) {

@@ -31,10 +31,6 @@ bool reported(ViewState& state, Work work) {
     return !state.message_is_error;
 }
 
-bool is_picture(const std::filesystem::path& path) {
-    return path.extension() == ".exr" || path.extension() == ".hdr";
-}
-
 /// Sets the environment; this is not a step of undo yet.
 void set_environment(ViewState& state, const std::filesystem::path& path) {
     set_base(state, state.load_environment(path), path);
@@ -124,7 +120,7 @@ bool open(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&]() -> std::string {
         if (path.extension() == ".json")
             return open_layers(state, path);
-        if (!is_picture(path))
+        if (!cubemap::is_environment_name(path))
             throw std::runtime_error(fmt::format("{}: expected .exr, .hdr or .json, got '{}'",
                                                  path.string(), path.extension().string()));
         set_environment(state, path);
@@ -135,7 +131,7 @@ bool open(ViewState& state, const std::filesystem::path& path) {
 }
 
 bool drop(ViewState& state, const std::filesystem::path& path) {
-    if (!is_picture(path))
+    if (!cubemap::is_environment_name(path))
         return open(state, path);
     state.dropped = path;
     return true;
@@ -143,7 +139,7 @@ bool drop(ViewState& state, const std::filesystem::path& path) {
 
 bool add_image(ViewState& state, const std::filesystem::path& path) {
     return reported(state, [&] {
-        if (!is_picture(path)) {
+        if (!cubemap::is_environment_name(path)) {
             state.wants_path = true;
             throw std::runtime_error(
                 path.empty() ? std::string("Which picture? Type its path (.exr, .hdr) below, or "

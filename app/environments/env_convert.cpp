@@ -96,11 +96,12 @@ cubemap::Layout target_layout(const ConvertArguments& options,
     if (!options.to_layout.empty())
         layout = parse_layout(options.to_layout);
     if (!to.reads(layout))
-        throw UsageError("--to-layout", fmt::format("expected {} with --to {}, got {}",
-                                                    layouts_of(to), to.name, option_name(layout)));
-    if (six_files && layout != cubemap::Layout::Cube)
         throw UsageError("--to-layout",
-                         fmt::format("expected cube for six files, got {}", option_name(layout)));
+                         fmt::format("expected {} with --to {}, got {}", layouts_of(to), to.name,
+                                     cubemap::option_name(layout)));
+    if (six_files && layout != cubemap::Layout::Cube)
+        throw UsageError("--to-layout", fmt::format("expected cube for six files, got {}",
+                                                    cubemap::option_name(layout)));
     return layout;
 }
 

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/movies/frame_light.h"
 #include "app/movies/frame_record.h"
 #include "app/movies/movie.h"
 #include "app/options/animate_options.h"
@@ -22,6 +23,7 @@
 #include "lights/frame_samples.h"
 #include "lights/light_clusters.h"
 #include "lights/place_lights.h"
+#include "prt/parts/team.h"
 #include "prt/precompute.h"
 #include "relight/flicker.h"
 #include "relight/pictures/array_file.h"
@@ -54,18 +56,15 @@ public:
     Animation(const AnimateOptions& options, const cubemap::FrameSequence& sequence,
               Session& session)
         : options_(options), sequence_(sequence), session_(session),
-          pattern_(options.output_pattern()), lit_(lit_scene(options.scene)),
-          relighter_(lit_.scene().transfer, lit_.shadow_rays()),
-          binner_(lit_.scene().transfer, relighter_.shadow_rays().blockers != nullptr
-                                             ? relighter_.shadow_rays().tolerance
-                                             : 0.0f),
-          writer_(lit_, options.output.for_scene(lit_.scene())) {
-        set_bounces(relighter_);
+          pattern_(options.output_pattern()), light_(options.scene, session.team),
+          binner_(scene().transfer, light_.sharp_tolerance()),
+          writer_(light_.lit(), options.output.for_scene(scene())) {
+        light_.set_bounces(options.bounces, options.output.for_scene(scene()), options.scene.path);
     }
 
     void run() {
         if (pattern_)
-            options_.output.check_fits(lit_.scene());
+            options_.output.check_fits(scene());
         seconds_load_scene_ = watch_.lap();
         session_.poll();
         choose_frames();
@@ -73,8 +72,8 @@ public:
             cluster_frames();
         meter_frames();
         std::optional<relight::NpyFrames> vertices;
-        if (!options_.vertices.empty())
-            vertices.emplace(options_.vertices, sequence_.size(), lit_.scene().receivers.num_own());
+        if (!options_.vertices.empty() && light_.is_first())
+            vertices.emplace(options_.vertices, sequence_.size(), scene().receivers.num_own());
         const auto progress = session_.progress("frames");
         cubemap::ReadAhead<PreparedFrame> ahead(
             todo_.size(), [this](std::size_t i) { return prepare(todo_[i]); });
@@ -85,13 +84,15 @@ public:
             totals_.seconds_wait += watch.lap();
             const relight::Backdrop sharp = std::move(frame.sharp);
             const cubemap::CubeMap background = light(std::move(frame));
-            bounce(relighter_);
+            light_.bounce();
             const double seconds_relight = watch.lap();
             totals_.seconds_relight += seconds_relight;
             seconds_relight_frames_.push_back(seconds_relight);
-            write(todo_[i], background, sharp);
+            Lighting lighting = light_.lighting(is_drawn(todo_[i]));
             if (vertices)
-                vertices->append(writer_.values(relighter_.radiance()));
+                vertices->append(writer_.values(lighting.radiance));
+            if (light_.is_first())
+                write(todo_[i], std::move(lighting), background, sharp);
             totals_.seconds_write += watch.lap();
             ++totals_.num_lit;
             if (!options_.output.path.empty())
@@ -102,6 +103,8 @@ public:
         session_.end_progress();
         if (vertices)
             vertices->commit();
+        if (!light_.is_first())
+            return;
         if (!options_.reference.empty())
             measure();
         seconds_frames_ = watch_.lap();
@@ -128,18 +131,14 @@ private:
         return paths;
     }
 
-    void set_bounces(relight::Relighter& relighter) const {
-        options_.bounces.set(relighter, lit_.scene(), options_.output.for_scene(lit_.scene()),
-                             options_.scene.path);
-    }
-    static void bounce(relight::Relighter& relighter) {
-        if (relighter.bounces().matrix != nullptr)
-            relighter.bounce();
-    }
+    [[nodiscard]] const Scene& scene() const { return light_.lit().scene(); }
+
+    /// Whether the frame is to be a picture.
+    [[nodiscard]] bool is_drawn(std::size_t frame) const { return pattern_ && !is_there_[frame]; }
 
     /// Those that are not there yet; all of them where one file holds all.
     void choose_frames() {
-        if (pattern_)
+        if (pattern_ && light_.is_first())
             record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")),
                             options_.settings(sequence_), options_.resume);
         for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
@@ -147,6 +146,10 @@ private:
                 record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
                                             output_path(frame));
             is_there_.push_back(is_there);
+        }
+        is_there_ = light_.agreed(std::move(is_there_));
+        for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
+            const bool is_there = is_there_[frame];
             num_kept_ += static_cast<std::size_t>(is_there);
             if (!is_there || !options_.vertices.empty())
                 todo_.push_back(frame);
@@ -161,27 +164,32 @@ private:
     void meter_frames() {
         if (!pattern_ || todo_.empty() || !writer_.needs_light_for(options_.output.path))
             return;
-        if (const std::optional<double> before = record_->exposure_ev()) {
+        const std::optional<double> before =
+            record_ ? record_->exposure_ev() : std::optional<double>();
+        if (before)
             writer_.set_exposure_ev(*before);
+        if (light_.agreed({before.has_value()})[0])
             return;
-        }
         constexpr std::size_t MostFrames = 9;
         const std::size_t last = sequence_.size() - 1;
         const std::size_t num_gaps = std::min(MostFrames - 1, last);
-        // A light of its own: the frames' differences must not depend on the exposure.
-        relight::Relighter relighter(lit_.scene().transfer, lit_.shadow_rays());
-        set_bounces(relighter);
         for (std::size_t i = 0; i <= num_gaps; ++i) {
             session_.poll();
             PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
             if (options_.method == "prt")
-                relighter.set_frame(std::move(frame.binned));
+                light_.set_frame(std::move(frame.binned));
             else
-                relighter.set_lights(frame.lights);
-            bounce(relighter);
-            writer_.meter(lighting_of(relighter));
+                light_.set_lights(frame.lights);
+            light_.bounce();
+            const Lighting lighting = light_.lighting(true);
+            if (!light_.is_first())
+                continue;
+            writer_.meter(lighting);
+            if (i == num_gaps)
+                record_->set_exposure_ev(writer_.choose_exposure_ev(lighting));
         }
-        record_->set_exposure_ev(writer_.choose_exposure_ev(lighting_of(relighter)));
+        // The frames' differences must not depend on the exposure.
+        light_.restart();
     }
 
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
@@ -291,23 +299,22 @@ private:
         totals_.seconds_resample += frame.seconds_resample;
         totals_.seconds_bin += frame.seconds_bin;
         if (options_.method != "prt") {
-            totals_.seconds_trace += relighter_.set_lights(frame.lights).seconds_trace;
+            totals_.seconds_trace += light_.set_lights(frame.lights).seconds_trace;
             return std::move(frame.background);
         }
         const relight::UpdateReport update =
-            relighter_.set_frame(std::move(frame.binned), options_.bound);
+            light_.set_frame(std::move(frame.binned), options_.bound);
         totals_.seconds_trace += update.seconds_trace;
         totals_.num_clusters += update.num_clusters;
         totals_.num_resummed += static_cast<std::size_t>(update.resummed);
         return {};
     }
 
-    void write(std::size_t frame, const cubemap::CubeMap& background,
+    void write(std::size_t frame, Lighting lighting, const cubemap::CubeMap& background,
                const relight::Backdrop& sharp) {
-        if (!pattern_ || is_there_[frame])
+        if (!is_drawn(frame))
             return;
         const std::string path = output_path(frame);
-        Lighting lighting = lighting_of(relighter_);
         if (background.resolution != 0)
             lighting.environment = &background;
         lighting.sharp = sharp;
@@ -338,9 +345,9 @@ private:
                          {"frames_lit", totals_.num_lit},
                          {"frames_kept", num_kept_},
                          {"frames_resummed", totals_.num_resummed},
-                         {"clusters", lit_.scene().transfer.num_clusters()},
+                         {"clusters", scene().transfer.num_clusters()},
                          {"clusters_changed", totals_.num_clusters},
-                         {"receivers", lit_.scene().transfer.num_receivers()},
+                         {"receivers", scene().transfer.num_receivers()},
                          {"method", options_.method},
                          {"seconds_load_scene", seconds_load_scene_},
                          {"seconds_load", totals_.seconds_load},
@@ -361,8 +368,7 @@ private:
     Session& session_;
     Stopwatch watch_;
     std::optional<cubemap::FramePattern> pattern_;
-    LitScene lit_;
-    relight::Relighter relighter_;
+    FrameLight light_;
     relight::EnvironmentBinner binner_;
     Painter writer_;
     std::optional<FrameRecord> record_;
@@ -396,7 +402,9 @@ void run(const AnimateOptions& options, Session& session) {
                                               environment.path = path.string();
                                               return load_image(environment, session);
                                           });
-    options.check(sequence);
+    // The first of several processes writes.
+    if (session.team == nullptr || session.team->part().index == 0)
+        options.check(sequence);
     Animation animation(options, sequence, session);
     try {
         animation.run();

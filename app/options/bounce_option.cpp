@@ -63,6 +63,24 @@ std::optional<BounceReport> BounceOption::bounce(LitScene& lit,
                   [&] { return lit.bounce(bounce_albedo(lit.scene(), output), limits_, more); });
 }
 
+std::optional<BounceReport> BounceOption::bounce(SharedLight& light,
+                                                 const relumine::OutputOptions& output,
+                                                 const std::string& path) const {
+    if (!set(light, output, path))
+        return std::nullopt;
+    return light.bounce();
+}
+
+bool BounceOption::set(SharedLight& light, const relumine::OutputOptions& output,
+                       const std::string& path) const {
+    const Scene& scene = light.lit().scene();
+    if (!applies_to(scene, path))
+        return false;
+    naming(path,
+           [&] { light.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_)); });
+    return true;
+}
+
 void BounceOption::set(relight::Relighter& relighter, const Scene& scene,
                        const relumine::OutputOptions& output, const std::string& path) const {
     if (applies_to(scene, path))

@@ -7,6 +7,7 @@
 
 #include "app/command_line/command_line.h"
 #include "relumine/relumine.h"
+#include "relumine/shared_light.h"
 
 namespace relumine::app {
 
@@ -25,6 +26,12 @@ public:
     std::optional<BounceReport> bounce(LitScene& lit, const relumine::OutputOptions& output,
                                        const std::string& path,
                                        std::span<const glm::vec3> more = {}) const;
+    /// The same for light that processes share.
+    std::optional<BounceReport> bounce(SharedLight& light, const relumine::OutputOptions& output,
+                                       const std::string& path) const;
+    /// Sets the bounces of light that processes share, where there is something to do.
+    bool set(SharedLight& light, const relumine::OutputOptions& output,
+             const std::string& path) const;
     /// Lets the light of a Relighter of its own bounce.
     ///
     /// Throws:  std::runtime_error for an albedo under which light grows for ever.

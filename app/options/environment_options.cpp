@@ -1,6 +1,5 @@
 #include "app/options/environment_options.h"
 
-#include <array>
 #include <iterator>
 #include <memory>
 #include <stdexcept>
@@ -12,21 +11,6 @@
 namespace relumine::app {
 
 namespace {
-
-struct NamedLayout {
-    const char* name;
-    cubemap::Layout layout;
-};
-constexpr std::array<NamedLayout, cubemap::AllLayouts.size()> Layouts = {{
-    {"latlong", cubemap::Layout::LatLong},
-    {"cube", cubemap::Layout::Cube},
-    {"strip", cubemap::Layout::HorizontalStrip},
-    {"cross", cubemap::Layout::VerticalCross},
-    {"hcross", cubemap::Layout::HorizontalCross},
-    {"angular", cubemap::Layout::AngularMap},
-    {"mirrorball", cubemap::Layout::MirrorBall},
-    {"octahedral", cubemap::Layout::Octahedral},
-}};
 
 void tell(const EnvironmentOptions& options, const std::string& assumptions,
           std::size_t num_fixed_pixels, const Session& session) {
@@ -156,32 +140,24 @@ Environment load_environment(const EnvironmentOptions& options, Session& session
 const std::vector<std::string>& layout_names() {
     static const std::vector<std::string> Names = [] {
         std::vector<std::string> names;
-        names.reserve(std::size(Layouts));
-        for (const NamedLayout& each : Layouts)
-            names.emplace_back(each.name);
+        names.reserve(cubemap::AllLayouts.size());
+        for (const cubemap::Layout layout : cubemap::AllLayouts)
+            names.emplace_back(cubemap::option_name(layout));
         return names;
     }();
     return Names;
 }
 
-std::string option_name(cubemap::Layout layout) {
-    for (const NamedLayout& each : Layouts)
-        if (each.layout == layout)
-            return each.name;
-    return {};
-}
-
 std::string layouts_of(const cubemap::Convention& convention) {
-    std::vector<std::string> names;
+    std::vector<std::string_view> names;
     for (const cubemap::Layout layout : convention.layouts)
-        names.push_back(option_name(layout));
+        names.push_back(cubemap::option_name(layout));
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
 cubemap::Layout parse_layout(const std::string& name) {
-    for (const NamedLayout& each : Layouts)
-        if (name == each.name)
-            return each.layout;
+    if (const auto layout = cubemap::layout_named(name))
+        return *layout;
     throw std::invalid_argument(
         fmt::format("layout: expected one of {}, got {}", fmt::join(layout_names(), ", "), name));
 }

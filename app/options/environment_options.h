@@ -68,9 +68,6 @@ bool warn_about(const EnvironmentOptions& options, const cubemap::EnvironmentIma
 /// The names that --layout takes.
 [[nodiscard]] const std::vector<std::string>& layout_names();
 
-/// The name that --layout takes for it.
-[[nodiscard]] std::string option_name(cubemap::Layout layout);
-
 /// The layouts' names on the command line, in words.
 [[nodiscard]] std::string layouts_of(const cubemap::Convention& convention);
 

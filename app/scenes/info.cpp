@@ -14,6 +14,7 @@
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
+#include "cubemap/image/environment.h"
 #include "files/output_file.h"
 #include "prt/scene/scene_file.h"
 
@@ -97,7 +98,6 @@ void run(const InfoArguments& options, const Session& session) {
     for (const std::filesystem::path& file : cubemap::environment_files(options.path))
         static_cast<void>(files::size(file)); // a name that is not there says so first
     const std::string extension = extension_of(options.path);
-    const bool is_environment = extension == ".exr" || extension == ".hdr";
     if (!options.picture.empty() && extension == ".prt")
         throw UsageError(
             "--picture",
@@ -106,7 +106,7 @@ void run(const InfoArguments& options, const Session& session) {
         throw UsageError("--check", fmt::format("expected a scene (.prt), got '{}'", options.path));
     if (extension == ".prt")
         describe_scene(options, session);
-    else if (is_environment)
+    else if (cubemap::is_environment_name(options.path))
         describe_environment({options.path, options.layout, options.picture}, session);
     else
         describe_mesh({options.path, options.picture}, session);

@@ -53,18 +53,33 @@ void recolour(Scene& scene, const SceneOptions& options) {
     set_colors(scene, colors);
 }
 
+/// Errors about the mesh do not know its name.
+template<typename Make>
+auto naming_scene(const std::string& path, const Make& make) {
+    try {
+        return make();
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
 } // namespace
 
 LitScene lit_scene(const SceneOptions& options) {
     Scene scene = load(options);
     recolour(scene, options);
-    try {
+    return naming_scene(options.path, [&] {
         return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
-    } catch (const std::runtime_error& error) { // about the mesh, whose name it does not know
-        throw std::runtime_error(fmt::format("{}: {}", options.path, error.what()));
-    } catch (const std::invalid_argument& error) {
-        throw std::runtime_error(fmt::format("{}: {}", options.path, error.what()));
-    }
+    });
+}
+
+SharedLight shared_light(const SceneOptions& options, prt::Team& team) {
+    prt::ScenePart part = prt::load_scene_part(options.path, team.part());
+    recolour(part.scene, options);
+    return SharedLight(team, options.path, std::move(part),
+                       {.clusters_only = options.clusters_only});
 }
 
 } // namespace relumine::app

@@ -498,6 +498,7 @@ void add_plan(Command& program, Session& session) {
         .file()
         .required();
     add_work_options(command, options);
+    add_bounce_options(command, options);
     session.add_common_options(command);
     command.on_run([options, command, &session] { run(*options, command, session); });
 }

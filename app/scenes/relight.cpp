@@ -38,17 +38,20 @@ struct RelightArguments {
     prt::Part part = {.index = 0, .count = 0};
 };
 
+void keep_bounces(Lighting& lighting, std::span<const glm::vec3> bounced, const std::string& path) {
+    if (bounced.empty())
+        throw std::runtime_error(
+            fmt::format("{}: expected bounces for --only-bounces, got none", path));
+    lighting.radiance = bounced;
+    lighting.soft.clear();
+    lighting.lights.clear();
+}
+
 /// What surfaces add to the light alone, if that is asked for.
 Lighting chosen_lighting(const RelightArguments& options, const LitScene& lit) {
     Lighting lighting = lit.lighting();
-    if (options.only_bounces) {
-        if (lit.bounced().empty())
-            throw std::runtime_error(fmt::format(
-                "{}: expected bounces for --only-bounces, got none", options.scene.path));
-        lighting.radiance = lit.bounced();
-        lighting.soft.clear();
-        lighting.lights.clear();
-    }
+    if (options.only_bounces)
+        keep_bounces(lighting, lit.bounced(), options.scene.path);
     return lighting;
 }
 
@@ -175,47 +178,61 @@ void light_with_list(const RelightArguments& options, Session& session) {
 }
 
 /// Parts are numbers alone: what shapes a picture does not suit them.
-void require_numbers(const RelightArguments& options, const Command& command,
-                     const std::string& why) {
-    constexpr std::array<std::string_view, 17> Fitting = {
-        "SCENE",     "ENV",      "--output",  "--part",  "--clusters-only",
-        "--layout",  "--from",   "--fix-env", "--flip",  "--face-resolution",
-        "--tilt",    "--rotate", "--json",    "--quiet", "--verbose",
-        "--threads", "--timeout"};
+void require_numbers(const RelightArguments& options, const Command& command) {
+    constexpr std::array<std::string_view, 16> Fitting = {
+        "SCENE",    "ENV",      "--output",  "--part",  "--clusters-only",
+        "--layout", "--from",   "--fix-env", "--flip",  "--face-resolution",
+        "--tilt",   "--rotate", "--json",    "--quiet", "--verbose",
+        "--threads"};
     for (const std::string& name : command.given_options())
         if (std::find(Fitting.begin(), Fitting.end(), name) == Fitting.end())
-            throw UsageError(name, fmt::format("expected no such option {}", why));
+            throw UsageError(name, "expected no such option with --part");
     if (options.environment.path.empty())
-        throw UsageError("ENV", fmt::format("expected an environment {}", why));
+        throw UsageError("ENV", "expected an environment with --part");
 }
 
-/// Lights the receivers with all processes of the team.
-void light_with_team(const RelightArguments& options, const Command& command, Session& session) {
-    require_numbers(options, command, "where processes share the work");
-    require_extension("--output", options.output.path, {".npy"});
-    const bool is_first = session.team->part().index == 0;
-    if (is_first)
-        check_output(options.output.path, {options.scene.path, options.environment.path});
+/// Lights the receivers with all processes of the team; the first one writes the output.
+void light_with_team(const RelightArguments& options, Session& session) {
+    if (!options.lights.empty())
+        throw UsageError("--lights", "expected an environment where processes share the work");
+    if (options.environment.path.empty())
+        throw UsageError("ENV", "expected an environment where processes share the work");
+    if (session.team->part().index == 0)
+        options.output.check({options.scene.path, options.environment.path});
     Stopwatch watch;
+    SharedLight light = shared_light(options.scene, *session.team);
+    const Scene& scene = light.lit().scene();
+    options.output.check_fits(scene);
     Environment environment = load_environment(options.environment, session);
-    const std::size_t num_receivers = light_shared(*session.team,
-                                                   {.scene = options.scene.path,
-                                                    .output = options.output.path,
-                                                    .clusters_only = options.scene.clusters_only},
-                                                   std::move(environment.map));
+    const RelightTimes times = light.light(std::move(environment.map));
+    const std::optional<BounceReport> bounces =
+        options.bounces.bounce(light, options.output.for_scene(scene), options.scene.path);
+    Lighting lighting = light.lighting();
+    if (!light.is_first())
+        return;
+    if (options.only_bounces)
+        keep_bounces(lighting, light.bounced(), options.scene.path);
+    if (environment.file.image != nullptr)
+        lighting.sharp = relight::backdrop_of(environment.file);
+    Painter painter(light.lit(), options.output.for_scene(scene));
+    painter.save(options.output.path, lighting);
     const double seconds = watch.total();
-    session.say(fmt::format("{}: {} receivers under {} in {:.2f} s by {} processes",
-                            options.output.path, num_receivers, options.environment.path, seconds,
-                            session.team->part().count));
-    session.report({{"receivers", num_receivers},
+    session.say(fmt::format("{}: {} receivers under {} in {:.2f} s by {} processes{}{}",
+                            options.output.path, scene.receivers.num_own(),
+                            options.environment.path, seconds, session.team->part().count,
+                            text_of(bounces), options.output.exposure_text(painter)));
+    session.report({{"receivers", scene.receivers.num_own()},
                     {"processes", session.team->part().count},
+                    {"bounces", bounces ? bounces->num_bounces : 0},
+                    {"sharp_lights", times.num_sharp_lights},
+                    {"exposure", painter.exposure_ev(options.output.path)},
                     {"peak_bytes", peak_bytes()},
                     {"seconds", seconds}});
 }
 
 /// Lights a part of the receivers.
 void light_one_part(const RelightArguments& options, const Command& command, Session& session) {
-    require_numbers(options, command, "with --part");
+    require_numbers(options, command);
     check_output(options.output.path, {options.scene.path, options.environment.path});
     Stopwatch watch;
     Environment environment = load_environment(options.environment, session);
@@ -242,7 +259,7 @@ void run(const RelightArguments& options, const Command& command, Session& sessi
     if (session.team != nullptr && options.part.count != 0)
         throw UsageError("--part", "expected none where processes share the work");
     if (session.team != nullptr)
-        return light_with_team(options, command, session);
+        return light_with_team(options, session);
     if (options.part.count != 0)
         return light_one_part(options, command, session);
     const bool has_environment = !options.environment.path.empty();

@@ -7,6 +7,7 @@
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/scenes/lit_scene.h"
+#include "prt/parts/team.h"
 
 namespace relumine::app {
 
@@ -45,6 +46,10 @@ Report surface_report(const mesh::TriangleMesh& mesh, const Verification::Surfac
 void run(const VerifyArguments& options, Session& session) {
     LitScene lit = lit_scene(options.scene);
     lit.light(load_environment(options.environment, session));
+    if (session.team != nullptr) {
+        require_same(*session.team, options.scene.path);
+        require_same(*session.team, options.scene.path, &lit.environment());
+    }
     const std::optional<BounceReport> bounces =
         options.bounces.bounce(lit, {.albedo = glm::vec3(options.albedo)}, options.scene.path);
 
@@ -53,6 +58,7 @@ void run(const VerifyArguments& options, Session& session) {
                                            .seed = options.seed,
                                            .num_surface_points = options.num_surface_points,
                                            .num_paths = options.num_paths,
+                                           .reduction = session.team,
                                            .stop = session.stop(),
                                            .on_progress = session.progress("exact integration")});
     session.end_progress();

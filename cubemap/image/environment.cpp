@@ -309,11 +309,16 @@ ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
     return {width, width};
 }
 
-void check_environment_name(const std::filesystem::path& path) {
+bool is_environment_name(const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
-    if (extension != ".exr" && extension != ".hdr")
-        throw std::invalid_argument(fmt::format(
-            "{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(), extension));
+    return extension == ".exr" || extension == ".hdr";
+}
+
+void check_environment_name(const std::filesystem::path& path) {
+    if (!is_environment_name(path))
+        throw std::invalid_argument(
+            fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(),
+                        extension_of(path)));
 }
 
 void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {

@@ -39,11 +39,17 @@ enum class Layout {
 };
 
 inline constexpr std::array<Layout, 8> AllLayouts = {
-    Layout::LatLong,         Layout::Cube,       Layout::VerticalCross, Layout::HorizontalStrip,
-    Layout::HorizontalCross, Layout::AngularMap, Layout::MirrorBall,    Layout::Octahedral};
+    Layout::LatLong,         Layout::Cube,       Layout::HorizontalStrip, Layout::VerticalCross,
+    Layout::HorizontalCross, Layout::AngularMap, Layout::MirrorBall,      Layout::Octahedral};
 
-/// Returns the layout's name on the command line and in messages.
+/// Returns the layout's name in sentences.
 [[nodiscard]] std::string_view name(Layout layout);
+
+/// Returns the layout's name as an option's value: one word.
+[[nodiscard]] std::string_view option_name(Layout layout);
+
+/// Returns the layout of an option's value; nothing for another word.
+[[nodiscard]] std::optional<Layout> layout_named(std::string_view option_name);
 
 /// Returns true for layouts made of six cube faces.
 [[nodiscard]] bool has_faces(Layout layout);
@@ -153,6 +159,9 @@ struct ImageSize {
 };
 /// Returns the size of an image in a layout whose natural resolution is `face_resolution`.
 [[nodiscard]] ImageSize natural_size(Layout layout, std::uint32_t face_resolution);
+
+/// Whether a name ends as an environment's does: .exr or .hdr, in capitals or not.
+[[nodiscard]] bool is_environment_name(const std::filesystem::path& path);
 
 /// Checks that a path ends in .exr or .hdr, in small letters or capitals.
 /// Throws:  std::invalid_argument "path: ..." for any other name.

@@ -1,5 +1,6 @@
 #include "cubemap/image/image_layout.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -40,6 +41,35 @@ std::string_view name(Layout layout) {
         break;
     }
     return "octahedral map";
+}
+
+std::string_view option_name(Layout layout) {
+    switch (layout) {
+    case Layout::LatLong:
+        return "latlong";
+    case Layout::Cube:
+        return "cube";
+    case Layout::VerticalCross:
+        return "cross";
+    case Layout::HorizontalStrip:
+        return "strip";
+    case Layout::HorizontalCross:
+        return "hcross";
+    case Layout::AngularMap:
+        return "angular";
+    case Layout::MirrorBall:
+        return "mirrorball";
+    case Layout::Octahedral:
+        break;
+    }
+    return "octahedral";
+}
+
+std::optional<Layout> layout_named(std::string_view option) {
+    const auto* const found =
+        std::find_if(AllLayouts.begin(), AllLayouts.end(),
+                     [&](Layout layout) { return option_name(layout) == option; });
+    return found == AllLayouts.end() ? std::nullopt : std::optional(*found);
 }
 
 bool has_faces(Layout layout) {

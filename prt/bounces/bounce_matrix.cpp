@@ -37,12 +37,20 @@ void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers) {
         throw std::invalid_argument(fmt::format("expected bounces of {} receivers, got {}",
                                                 num_receivers, matrix.num_rows()));
     require_lists(matrix.emitters, num_receivers);
+    std::vector<std::uint32_t> num_emitters;
+    for (std::size_t place = 0; place < num_receivers; ++place)
+        num_emitters.push_back(static_cast<std::uint32_t>(matrix.emitters[place].size()));
+    require_rows(matrix, num_emitters);
+}
+
+void require_rows(const BounceMatrix& matrix, std::span<const std::uint32_t> num_emitters) {
+    const std::size_t num_receivers = matrix.num_rows();
     require_lists(matrix.averaged, num_receivers);
     for (std::size_t place = 0; place < num_receivers; ++place) {
-        double num_emitters = 0.0;
+        double sum_of_emitters = 0.0;
         for (const std::uint32_t other : matrix.averaged[place])
-            num_emitters += static_cast<double>(matrix.emitters[other].size());
-        const double sum = static_cast<double>(matrix.weights[place]) * num_emitters;
+            sum_of_emitters += static_cast<double>(num_emitters[other]);
+        const double sum = static_cast<double>(matrix.weights[place]) * sum_of_emitters;
         if (!(matrix.weights[place] >= 0.0f && sum <= LargestRowSum))
             throw std::invalid_argument(fmt::format(
                 "expected bounces that keep at most all of the light, got a factor of {}", sum));
@@ -56,19 +64,22 @@ std::size_t first_emitter(const BounceMatrix& matrix) {
     const std::vector<std::uint32_t>& emitters = matrix.emitters.places;
     if (emitters.empty())
         return 0;
-    std::size_t first = *std::min_element(emitters.begin(), emitters.end());
+    return first_emitter(*std::min_element(emitters.begin(), emitters.end()), matrix.averaged);
+}
+
+std::size_t first_emitter(std::size_t lowest_place, const PlaceLists& averaged) {
+    std::size_t first = lowest_place;
     // Those that share samples with rows from there on belong to them.
-    for (std::size_t end = matrix.num_rows(); first < end;) {
+    for (std::size_t end = averaged.size(); first < end;) {
         std::size_t lowest = first;
         for (std::size_t row = first; row < end; ++row)
-            for (const std::uint32_t place : matrix.averaged[row])
+            for (const std::uint32_t place : averaged[row])
                 lowest = std::min(lowest, std::size_t{place});
         end = std::exchange(first, lowest);
     }
-    const auto end = static_cast<std::ptrdiff_t>(matrix.averaged.begin[first]);
-    const bool are_apart =
-        std::all_of(matrix.averaged.places.begin(), matrix.averaged.places.begin() + end,
-                    [first](std::uint32_t place) { return place < first; });
+    const auto end = static_cast<std::ptrdiff_t>(averaged.begin[first]);
+    const bool are_apart = std::all_of(averaged.places.begin(), averaged.places.begin() + end,
+                                       [first](std::uint32_t place) { return place < first; });
     return are_apart ? first : 0;
 }
 

@@ -6,6 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "prt/reduction.h"
+
 namespace relumine::prt {
 
 /// A list of places for each receiver.
@@ -53,9 +55,27 @@ struct BounceMatrix {
 ///          receivers, a weight is negative or not finite, or a row's sum is above 1.
 void require_bounces(const BounceMatrix& matrix, std::size_t num_receivers);
 
+/// Checks what require_bounces() does of all but the emitters, of which it takes the numbers.
+///
+/// Shape:   `num_emitters` is [num_rows].
+/// Throws:  as require_bounces().
+void require_rows(const BounceMatrix& matrix, std::span<const std::uint32_t> num_emitters);
+
 /// Returns a place before which no receiver sends light to another, and from which on receivers get
 /// light from each other only: where added vertices begin, or 0.
 [[nodiscard]] std::size_t first_emitter(const BounceMatrix& matrix);
+
+/// The same, from the lowest place that any row has, and the lists of those who share samples.
+[[nodiscard]] std::size_t first_emitter(std::size_t lowest_place, const PlaceLists& averaged);
+
+/// Processes that share the rows of a matrix have so many neighbouring ones in turn.
+inline constexpr std::size_t RowsPerRun = 1024;
+
+/// Returns true where a process has a row. Runs are counted from row 0 to `first`, which is
+/// first_emitter(), and from there on.
+[[nodiscard]] inline bool has_row(const Part& part, std::size_t row, std::size_t first) {
+    return (row < first ? row : row - first) / RowsPerRun % part.count == part.index;
+}
 
 /// Returns the largest eigenvalue of a square matrix of bounces, from below, by power iteration.
 ///

@@ -1,7 +1,6 @@
 // Which surfaces a receiver sees where it does not see the sky.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -12,21 +11,28 @@
 
 #include "mesh/triangle_mesh.h"
 #include "prt/bounces/bounce_matrix.h"
+#include "prt/bounces/bounce_samples.h"
 #include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
+#include "prt/reduction.h"
 #include "prt/transfer.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
 
-/// Lights that decide how many rays a receiver needs: a white sky, then suns along +X, -X, +Y, -Y,
-/// +Z and -Z.
-inline constexpr std::size_t NumProbeLights = 7;
+/// What probe lights say of receivers.
+struct BounceProbes {
+    /// [receivers of the part] ProbeRadiance[0] of each.
+    std::span<const float> open_parts;
+    /// Of all receivers by place, or of a sample of them.
+    std::span<const ProbeRadiance> values;
+    /// [num_receivers] by place: which of `values` stands for each receiver. Empty: all are there.
+    std::span<const std::uint32_t> index;
 
-/// Direct radiance of a receiver of albedo 1 under each probe light. The sky has radiance 1, so the
-/// first value is the open part of the hemisphere. A sun has irradiance pi on a surface that faces
-/// it.
-using ProbeRadiance = std::array<float, NumProbeLights>;
+    [[nodiscard]] const ProbeRadiance& at(std::uint32_t place) const {
+        return values[index.empty() ? place : index[place]];
+    }
+};
 
 struct BounceOptions {
     /// The limit of the standard error of one bounce under any probe light, as a radiance, for
@@ -43,6 +49,12 @@ struct BounceOptions {
     float bias = 0.0f;
     /// Rows that take more are refused, as soon as a first look tells.
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
+    /// Where processes share the work: each has its part of the receivers. Null: this process does
+    /// it all. max_bytes is for each.
+    Reduction* reduction = nullptr;
+    /// Parts of a plan know nothing of each other: how many rays a receiver needs follows from the
+    /// receivers in its own tile.
+    bool is_planned = false;
     /// Gets the finished blocks now and then, and gives back those of an earlier run. May be null.
     Checkpoint* checkpoint = nullptr;
     /// Polled a few times a second or more often.
@@ -59,20 +71,6 @@ inline constexpr std::uint64_t BytesPerHit = 12;
 struct TooManyHits : std::runtime_error {
     explicit TooManyHits(std::uint64_t hits);
     std::uint64_t num_hits;
-};
-
-struct BounceStatistics {
-    std::uint64_t num_rays = 0;
-    std::uint64_t num_hits = 0;
-    /// Hits on surfaces that face the ray.
-    std::uint64_t num_emitters = 0;
-    /// Mean number of receivers that share their samples.
-    double mean_averaged = 0.0;
-    /// Of all receivers: the part of the hemisphere that surfaces close.
-    double mean_closure = 0.0;
-    /// Estimated standard error of one bounce, RMS over all receivers, worst of the probe lights.
-    double rms_error = 0.0;
-    double seconds = 0.0;
 };
 
 /// Finds the emitters of each receiver, a vertex, or a pixel or texel before added vertices:
@@ -93,5 +91,16 @@ struct BounceStatistics {
                                               std::span<const ProbeRadiance> probes,
                                               const RayScene& rays, const BounceOptions& options,
                                               BounceStatistics* statistics = nullptr);
+
+/// Traces the rays of a part's receivers, those of options.reduction. join_bounces() makes the
+/// matrix of all parts.
+///
+/// transfer: has the counts of the part's receivers; order and normals are those of all.
+/// Result:   the same for any number of processes. With is_planned the same for any number of
+/// parts. Throws:   as precompute_bounces().
+[[nodiscard]] BounceSamples sample_bounces(const mesh::TriangleMesh& mesh,
+                                           const Receivers& receivers, const Transfer& transfer,
+                                           const BounceProbes& probes, const RayScene& rays,
+                                           const BounceOptions& options);
 
 } // namespace relumine::prt

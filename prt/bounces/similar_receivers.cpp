@@ -86,11 +86,12 @@ private:
 
 PlaceLists similar_receivers(std::span<const glm::vec3> positions,
                              std::span<const glm::vec3> normals, std::span<const float> distances,
-                             const SimilarityLimits& limits) {
-    const std::size_t n = positions.size();
+                             const SimilarityLimits& limits,
+                             std::span<const std::uint32_t> wanted) {
     const PointTree tree(positions);
-    std::vector<std::vector<std::uint32_t>> lists(n);
-    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t place) {
+    std::vector<std::vector<std::uint32_t>> lists(wanted.size());
+    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+        const std::size_t place = wanted[i];
         // The nearest so far, the farthest of them first; equal distances by place.
         std::vector<std::pair<float, std::uint32_t>> nearest;
         const float radius = limits.max_error * distances[place];
@@ -114,7 +115,7 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
         };
         if (radius > 0.0f && limits.max_size > 1)
             tree.visit_near(positions[place], squared_radius, consider);
-        std::vector<std::uint32_t>& list = lists[place];
+        std::vector<std::uint32_t>& list = lists[i];
         list.push_back(static_cast<std::uint32_t>(place));
         for (const auto& [distance, other] : nearest)
             list.push_back(other);
@@ -124,6 +125,14 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
     for (const std::vector<std::uint32_t>& list : lists)
         result.append(list);
     return result;
+}
+
+PlaceLists similar_receivers(std::span<const glm::vec3> positions,
+                             std::span<const glm::vec3> normals, std::span<const float> distances,
+                             const SimilarityLimits& limits) {
+    std::vector<std::uint32_t> all(positions.size());
+    std::iota(all.begin(), all.end(), 0u);
+    return similar_receivers(positions, normals, distances, limits, all);
 }
 
 } // namespace relumine::prt

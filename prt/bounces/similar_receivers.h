@@ -27,8 +27,15 @@ struct SimilarityLimits {
 ///
 /// Shape:   all arrays are [num_receivers] by place; `distances` are the harmonic means of the
 ///          distances of surfaces over the hemisphere, infinite where there are none and 0 where
-///          a receiver is to stay alone.
+///          a receiver is to stay alone; `wanted` are the places whose lists are returned.
 /// Cost:    O(n log n). Parallel (TBB), the same lists on any number of threads.
+[[nodiscard]] PlaceLists similar_receivers(std::span<const glm::vec3> positions,
+                                           std::span<const glm::vec3> normals,
+                                           std::span<const float> distances,
+                                           const SimilarityLimits& limits,
+                                           std::span<const std::uint32_t> wanted);
+
+/// Returns the lists of all receivers.
 [[nodiscard]] PlaceLists similar_receivers(std::span<const glm::vec3> positions,
                                            std::span<const glm::vec3> normals,
                                            std::span<const float> distances,

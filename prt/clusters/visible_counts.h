@@ -67,6 +67,11 @@ struct VisibleCounts {
     [[nodiscard]] std::size_t tile_begin(std::size_t tile) const {
         return std::min(tile * TileBlocks, num_blocks());
     }
+    /// Returns the blocks of a tile: bit b stands for its block b.
+    [[nodiscard]] std::uint64_t tile_blocks(std::size_t tile) const {
+        const std::size_t size = tile_begin(tile + 1) - tile_begin(tile);
+        return size == TileBlocks ? ~std::uint64_t{0} : (std::uint64_t{1} << size) - 1;
+    }
     /// Returns where the word with leaves 64 w .. 64 w + 63 of a block lies.
     [[nodiscard]] std::size_t word(std::size_t block, std::size_t w) const {
         const std::size_t begin = tile_begin(block / TileBlocks);

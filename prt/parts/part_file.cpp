@@ -1,5 +1,6 @@
 #include "prt/parts/part_file.h"
 
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -11,6 +12,7 @@
 
 #include "files/json.h"
 #include "prt/parts/part_list.h"
+#include "prt/scene/bounce_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
@@ -52,7 +54,28 @@ StoredPart read_part(const std::filesystem::path& path) {
     return stored;
 }
 
-PartLight light_of(const StoredPart& stored, std::size_t num_leaves) {
+/// Of a plan: the JSON has the tolerance.
+std::optional<PlannedBounces> planned_bounces(const SectionReader& reader) {
+    const files::Json json = reader.json("plan");
+    if (!json.contains("bounce_tolerance"))
+        return std::nullopt;
+    PlannedBounces bounces;
+    try {
+        bounces.tolerance = real(json.at("bounce_tolerance"));
+    } catch (const std::exception&) {
+        reader.fail("plan", "JSON with a plan");
+    }
+    bounces.probes = reader.elements<ProbeRadiance>("plan_probes");
+    if (!(bounces.tolerance > 0.0f))
+        reader.fail("plan", "a tolerance of bounces above 0");
+    for (const ProbeRadiance& probe : bounces.probes)
+        for (const float value : probe)
+            if (!(value >= 0.0f && std::isfinite(value)))
+                reader.fail("plan_probes", "light that is not negative");
+    return bounces;
+}
+
+PartLight light_of(const StoredPart& stored, std::size_t num_leaves, std::size_t num_receivers) {
     const SectionReader& reader = stored.reader;
     PartLight light;
     VisibleCounts& counts = light.counts;
@@ -68,17 +91,24 @@ PartLight light_of(const StoredPart& stored, std::size_t num_leaves) {
     }
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
+    light.bounces = read_bounce_samples(reader, counts.num_receivers, num_receivers);
     return light;
 }
 
 } // namespace
 
-std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene) {
+std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene,
+                        const std::optional<PlannedBounces>& bounces) {
     if (scene.transfer.glossy || scene.bounces)
         throw std::invalid_argument(
             fmt::format("{}: expected a scene without light", path.string()));
     Sections sections = sections_without_light(path, scene);
-    sections["plan"] = text_section({{"clusters", scene.transfer.num_clusters()}});
+    files::Json json = {{"clusters", scene.transfer.num_clusters()}};
+    if (bounces) {
+        json.set("bounce_tolerance", bounces->tolerance);
+        sections["plan_probes"] = bytes_of(bounces->probes);
+    }
+    sections["plan"] = text_section(json);
     return write_sections(path, sections);
 }
 
@@ -88,7 +118,18 @@ Plan load_plan(const std::filesystem::path& path) {
         throw std::runtime_error(
             fmt::format("{}: expected a plan, got {}", path.string(),
                         sections.contains("part") ? "a part of a scene" : "a scene"));
-    return {.scene = plan_of(path, std::move(sections)), .hash = file_hash(path)};
+    Sections own = {{"plan", sections["plan"]}};
+    if (const auto probes = sections.find("plan_probes"); probes != sections.end())
+        own.insert(sections.extract(probes));
+    const SectionReader reader(path, std::move(own));
+    std::optional<PlannedBounces> bounces = planned_bounces(reader);
+    Plan plan{.scene = plan_of(path, std::move(sections)),
+              .bounces = std::move(bounces),
+              .hash = file_hash(path)};
+    if (plan.bounces &&
+        plan.bounces->probes.size() != num_sampled_receivers(plan.scene.transfer.num_receivers()))
+        reader.fail("plan_probes", "the light of a sample of the receivers");
+    return plan;
 }
 
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
@@ -105,6 +146,8 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
     add_counts(sections, light.counts);
     if (light.glossy)
         add_glossy_sections(sections, *light.glossy);
+    if (light.bounces)
+        add_bounce_samples(sections, *light.bounces);
     return write_sections(path, sections);
 }
 
@@ -114,11 +157,13 @@ Scene join_parts(std::span<const std::filesystem::path> paths) {
     Scene scene = plan_of(first, read_sections(first));
     std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
-        light.push_back(light_of(*part, scene.transfer.num_clusters()));
+        light.push_back(
+            light_of(*part, scene.transfer.num_clusters(), scene.transfer.num_receivers()));
         part.reset();
     }
     try {
         join_light(scene.transfer, light);
+        scene.bounces = join_bounces_of(scene.receivers, scene.transfer, light);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", first.string(), error.what()));
     }

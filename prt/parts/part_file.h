@@ -3,17 +3,30 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <vector>
 
+#include "prt/bounces/bounce_samples.h"
 #include "prt/parts/parts.h"
 #include "prt/scene/scene_file.h"
 
 namespace relumine::prt {
 
+/// What parts must know of the bounces.
+struct PlannedBounces {
+    /// BounceOptions::tolerance
+    float tolerance = 0.0f;
+    /// Of the sample: sampled_receivers() says which of them stands for a receiver.
+    std::vector<ProbeRadiance> probes = {};
+};
+
 /// A scene whose clusters are chosen and whose counts are missing.
 struct Plan {
     /// Without counts, highlights and bounces.
     Scene scene;
+    /// Only where light bounces
+    std::optional<PlannedBounces> bounces = {};
     /// Tells plans apart: xxHash64 of the file's bytes.
     std::uint64_t hash = 0;
 };
@@ -21,7 +34,8 @@ struct Plan {
 /// Writes a plan, whole or not at all. Returns the file's size in bytes.
 ///
 /// Throws:  as save_scene() does; std::invalid_argument for a scene that has light already.
-std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene);
+std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene,
+                        const std::optional<PlannedBounces>& bounces = {});
 
 /// Reads a plan and checks it as load_scene() checks a scene.
 ///
@@ -37,7 +51,7 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
 
 /// Reads all parts of a plan, in any order, and returns the scene.
 ///
-/// Memory:  twice the light of the scene.
+/// Memory:  twice the light of the scene, and twice its bounces.
 /// Throws:  std::runtime_error that names the file that is damaged, no part, of another plan or of
 ///          another number of parts, given twice or missing.
 [[nodiscard]] Scene join_parts(std::span<const std::filesystem::path> paths);

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
+#include <tbb/parallel_for.h>
 
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/precompute_context.h"
@@ -22,19 +25,42 @@ constexpr std::size_t LeastSampledBlocks = 1024;
 /// traced again. The limit must not depend on the number of parts.
 constexpr std::uint64_t LeastPlanes = 2048;
 
-/// Takes every n-th block of neighbours.
+/// Every n-th block of neighbours.
+class Sample {
+public:
+    explicit Sample(std::size_t num_receivers)
+        : num_receivers_(num_receivers), num_all_((num_receivers + BlockSize - 1) / BlockSize),
+          step_(std::clamp<std::size_t>(num_all_ / LeastSampledBlocks, 1, MostBlocksForOne)) {}
+
+    [[nodiscard]] std::size_t num_blocks() const {
+        return (num_all_ - step_ / 2 + step_ - 1) / step_;
+    }
+    /// The place of the first receiver of a block of the sample.
+    [[nodiscard]] std::size_t begin(std::size_t block) const {
+        return (step_ / 2 + block * step_) * BlockSize;
+    }
+    [[nodiscard]] std::size_t end(std::size_t block) const {
+        return std::min(begin(block) + BlockSize, num_receivers_);
+    }
+    /// The block of the sample for a place among all receivers.
+    [[nodiscard]] std::size_t block_for(std::size_t place) const {
+        return std::min(place / BlockSize / step_, num_blocks() - 1);
+    }
+
+private:
+    std::size_t num_receivers_;
+    std::size_t num_all_;
+    std::size_t step_;
+};
+
 Receivers sample_of(const Receivers& receivers, std::span<const std::uint32_t> order) {
-    const std::size_t num_blocks = (order.size() + BlockSize - 1) / BlockSize;
-    const std::size_t step =
-        std::clamp<std::size_t>(num_blocks / LeastSampledBlocks, 1, MostBlocksForOne);
+    const Sample blocks(order.size());
     Receivers sample;
-    for (std::size_t block = step / 2; block < num_blocks; block += step) {
-        const std::size_t end = std::min((block + 1) * BlockSize, order.size());
-        for (std::size_t place = block * BlockSize; place < end; ++place) {
+    for (std::size_t block = 0; block < blocks.num_blocks(); ++block)
+        for (std::size_t place = blocks.begin(block); place < blocks.end(block); ++place) {
             sample.positions.push_back(receivers.positions[order[place]]);
             sample.normals.push_back(receivers.normals[order[place]]);
         }
-    }
     return sample;
 }
 
@@ -102,18 +128,48 @@ LobeCuts joined_cuts(const VisibleCounts& whole, std::span<const PartLight> part
 } // namespace
 
 Transfer plan_clusters(const Receivers& receivers, const Blockers& blockers,
-                       const PrecomputeOptions& options, PrecomputeStatistics* statistics) {
+                       const PrecomputeOptions& options, PrecomputeStatistics* statistics,
+                       Transfer* of_sample) {
     Transfer plan;
     plan.order = spatial_order(receivers);
-    PrecomputeOptions of_sample = options;
+    PrecomputeOptions for_sample = options;
     // The same RMS for fewer receivers.
-    of_sample.epsilon = {};
-    of_sample.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
-    plan.quadtree =
-        precompute(sample_of(receivers, plan.order), blockers, of_sample, statistics).quadtree;
+    for_sample.epsilon = {};
+    for_sample.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
+    Transfer sampled =
+        precompute(sample_of(receivers, plan.order), blockers, for_sample, statistics);
+    plan.quadtree = sampled.quadtree;
     for (const std::uint32_t receiver : plan.order)
         plan.normals.push_back(receivers.normals[receiver]);
+    if (of_sample != nullptr)
+        *of_sample = std::move(sampled);
     return plan;
+}
+
+std::size_t num_sampled_receivers(std::size_t num_receivers) {
+    const Sample blocks(num_receivers);
+    const std::size_t last = blocks.num_blocks() - 1;
+    return last * BlockSize + blocks.end(last) - blocks.begin(last);
+}
+
+std::vector<std::uint32_t> sampled_receivers(const Transfer& plan) {
+    const Sample blocks(plan.num_receivers());
+    std::vector<std::uint32_t> result(plan.num_receivers());
+    tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t place) {
+        const std::size_t block = blocks.block_for(place);
+        const std::size_t begin = blocks.begin(block);
+        const auto alike = [&](std::size_t sampled) {
+            return glm::dot(plan.normals[place], plan.normals[sampled]);
+        };
+        const bool is_sampled = place >= begin && place < blocks.end(block);
+        std::size_t best = is_sampled ? place : begin;
+        for (std::size_t sampled = begin; sampled < blocks.end(block) && !is_sampled; ++sampled)
+            if (alike(sampled) > alike(best))
+                best = sampled;
+        // Blocks of the sample are full but for the last.
+        result[place] = static_cast<std::uint32_t>(block * BlockSize + best - begin);
+    });
+    return result;
 }
 
 VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
@@ -162,6 +218,20 @@ void join_light(Transfer& plan, std::span<const PartLight> parts) {
     plan.glossy.emplace();
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
         plan.glossy->lobes[lobe] = joined_cuts(plan.counts, parts, lobe);
+}
+
+std::optional<BounceMatrix> join_bounces_of(const Receivers& receivers, const Transfer& plan,
+                                            std::span<PartLight> parts,
+                                            BounceStatistics* statistics) {
+    std::vector<BounceSamples> samples;
+    for (PartLight& part : parts)
+        if (part.bounces)
+            samples.push_back(std::exchange(part.bounces, {}).value());
+    if (samples.empty())
+        return std::nullopt;
+    if (samples.size() != parts.size())
+        throw std::invalid_argument("expected bounces in all parts or in none");
+    return join_bounces(receivers, plan, std::move(samples), statistics);
 }
 
 } // namespace relumine::prt

@@ -8,12 +8,14 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 #include <xxhash.h>
 
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
+#include "prt/scene/bounce_sections.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
@@ -117,6 +119,17 @@ VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCou
     return counts;
 }
 
+/// Takes the sections of the bounces out of those of a scene.
+Sections taken_bounces(Sections& sections) {
+    Sections taken;
+    for (auto section = sections.begin(); section != sections.end();) {
+        const auto here = section++;
+        if (here->first.starts_with("bounce_"))
+            taken.insert(sections.extract(here));
+    }
+    return taken;
+}
+
 /// A part as its file has it.
 struct StoredLight {
     Part part;
@@ -154,9 +167,9 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     if (part.index >= part.count || part.count > MaxParts)
         throw std::invalid_argument(
             fmt::format("{}: expected a part of 1 to {}", path.string(), MaxParts));
-    const std::array<std::string, 3> Counts = {"visible", "mixed", "counts"};
+    const std::array<std::string, 4> Streamed = {"visible", "mixed", "counts", EmitterSection};
     std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version, Counts);
+    Sections sections = read_sections(path, &version, Streamed);
     const auto refuse = [&](const std::string& expected, const std::string& got) {
         throw std::runtime_error(
             fmt::format("{}: expected {}, got {}", path.string(), expected, got));
@@ -166,32 +179,36 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
                fmt::format("version {}", version));
     if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
         refuse("a scene", "a plan or a part");
-    if (sections.contains("g_specular_b") || sections.contains("bounce_weights"))
-        refuse("a scene without highlights and bounces for a part of the receivers", "one with");
-    Scene whole = plan_of(path, std::move(sections));
-    ScenePart result;
-    result.num_receivers = whole.receivers.size();
-    const std::vector<std::uint32_t> places = places_of(part, result.num_receivers);
-    Receivers own;
-    Transfer transfer;
-    transfer.quadtree = std::move(whole.transfer.quadtree);
-    for (const std::uint32_t place : places) {
+    if (sections.contains("g_specular_b"))
+        refuse("a scene without highlights for a part of the receivers", "one with");
+    const SectionReader of_bounces(path, taken_bounces(sections));
+    sections["plan"] = {}; // bounces and counts come later
+    ScenePart result{.scene = plan_of(path, std::move(sections))};
+    const Scene& whole = result.scene;
+    const std::size_t num_receivers = whole.receivers.size();
+    if (has_bounces(of_bounces)) {
+        BounceRows rows = read_bounce_rows(of_bounces, num_receivers, part);
+        if (!std::holds_alternative<VertexLayout>(whole.layout))
+            for (const std::uint32_t place : rows.matrix.emitters.places)
+                if (whole.transfer.order[place] < whole.receivers.num_own())
+                    refuse("light that comes from vertices", "other light");
+        result.scene.bounces = std::move(rows.matrix);
+        result.bounces = {.first = rows.first, .num_emitters = std::move(rows.num_emitters)};
+    }
+    Transfer& transfer = result.transfer;
+    transfer.quadtree = whole.transfer.quadtree;
+    for (const std::uint32_t place : places_of(part, num_receivers)) {
         const std::uint32_t receiver = whole.transfer.order[place];
         result.receivers.push_back(receiver);
+        result.positions.push_back(whole.receivers.positions[receiver]);
         transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));
-        own.positions.push_back(whole.receivers.positions[receiver]);
-        own.normals.push_back(whole.receivers.normals[receiver]);
+        transfer.normals.push_back(whole.transfer.normals[place]);
         if (!whole.receivers.surfaces.empty())
-            own.surfaces.push_back(whole.receivers.surfaces[receiver]);
+            transfer.surfaces.push_back(whole.receivers.surfaces[receiver]);
     }
-    transfer.normals = own.normals;
     transfer.counts = counts_of_part(
-        path, {.num_receivers = result.num_receivers, .num_leaves = transfer.quadtree.num_leaves()},
-        part, places.size());
-    set_surfaces(transfer, own);
-    whole.receivers = std::move(own);
-    whole.transfer = std::move(transfer);
-    result.scene = std::move(whole);
+        path, {.num_receivers = num_receivers, .num_leaves = transfer.quadtree.num_leaves()}, part,
+        result.receivers.size());
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,22 +16,32 @@
 
 namespace relumine::prt {
 
+/// What a process must know of the rows of bounces that others have.
+struct SharedBounces {
+    /// first_emitter() of all rows
+    std::size_t first = 0;
+    /// [num_receivers] emitters of all rows
+    std::vector<std::uint32_t> num_emitters = {};
+};
+
 struct ScenePart {
-    /// The scene with receivers and transfer of the part alone: positions, normals and surfaces, in
-    /// spatial order.
+    /// The whole scene without its counts. Its bounces have the rows of the part alone (has_row()).
     Scene scene;
+    /// Of the part's receivers by themselves, in spatial order.
+    Transfer transfer = {};
+    /// [receivers of the part]
+    std::vector<glm::vec3> positions = {};
     /// [receivers of the part] their indices in the whole scene.
-    std::vector<std::uint32_t> receivers;
-    /// Of the whole scene
-    std::size_t num_receivers = 0;
+    std::vector<std::uint32_t> receivers = {};
+    /// Only where light bounces
+    std::optional<SharedBounces> bounces = {};
 };
 
 /// Reads the part's tiles of a scene of the present version, and checks them.
 ///
-/// Memory:  the mesh, all receivers, the counts of the part, and the file as it is on disk.
-/// Throws:  as load_scene(); std::runtime_error "path: expected X, got Y" for a scene with
-/// highlights
-///          or bounces.
+/// Memory:  the mesh, all receivers, the counts and rows of the part, and the file as it is on
+/// disk. Throws:  as load_scene(); std::runtime_error "path: expected X, got Y" for a scene with
+///          highlights.
 [[nodiscard]] ScenePart load_scene_part(const std::filesystem::path& path, const Part& part);
 
 /// The light of a part's receivers.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/triangle_mesh.h"
+#include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/parts.h"
 #include "prt/precompute.h"
@@ -16,14 +17,19 @@ namespace relumine::prt {
 
 /// All that a process must know to do its part.
 struct SharedWork {
-    /// Positions and triangles alone
-    mesh::TriangleMesh blockers = {};
-    /// Without their points on the mesh
+    /// What light bounces from, with normals; without bounces what blocks light, positions and
+    /// triangles alone.
+    mesh::TriangleMesh mesh = {};
+    /// What blocks light, where that is not the mesh; positions and triangles alone
+    std::optional<mesh::TriangleMesh> blockers = {};
+    /// Without their points on the mesh, unless light bounces
     Receivers receivers = {};
     /// Numbers alone
     PrecomputeOptions clusters = {};
     /// Numbers alone; only where there are highlights
     std::optional<GlossyOptions> highlights = {};
+    /// Numbers alone; only where light bounces
+    std::optional<BounceOptions> bounces = {};
     /// Whether beams are traced, or single rays
     bool has_beams = true;
     /// Whether there are checkpoints

@@ -1,15 +1,25 @@
 #include "prt/scene/bounce_sections.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
+
+#include <fmt/format.h>
 
 namespace relumine::prt {
 
 namespace {
 
 const std::string Radius = "bounce_radius", Weights = "bounce_weights",
-                  EmitterSizes = "bounce_hits_size", Emitters = "bounce_hits",
-                  AveragedSizes = "bounce_near_size", Averaged = "bounce_near";
+                  EmitterSizes = "bounce_hits_size", Emitters = EmitterSection,
+                  AveragedSizes = "bounce_near_size", Averaged = "bounce_near",
+                  OpenParts = "bounce_open", Distances = "bounce_distance",
+                  HitCounts = "bounce_rays_hit";
 
 /// Numbers below 2^7 take a byte, below 2^14 two, and so on: seven bits a byte, the lowest first,
 /// the eighth set where more follow.
@@ -64,11 +74,11 @@ void add_lists(Sections& sections, const std::string& size_name, const std::stri
 }
 
 PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
-                      const std::string& name, std::size_t num_receivers) {
+                      const std::string& name, std::size_t num_lists, std::size_t num_receivers) {
     PlaceLists lists;
-    const auto sizes = reader.elements<std::uint32_t>(size_name, num_receivers);
+    const auto sizes = reader.elements<std::uint32_t>(size_name, num_lists);
     Numbers numbers(reader, name);
-    lists.begin.reserve(num_receivers + 1);
+    lists.begin.reserve(num_lists + 1);
     std::uint64_t num_places = 0;
     for (const std::uint32_t size : sizes)
         num_places += size;
@@ -92,6 +102,44 @@ PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
     return lists;
 }
 
+/// Reads lists of places that come piece by piece, as add_lists() writes them, and calls
+/// on_place(list, place) for each.
+template<typename OnPlace>
+void stream_lists(const SectionReader& reader, std::span<const std::uint32_t> sizes,
+                  std::size_t num_receivers, const OnPlace& on_place) {
+    std::size_t list = 0;
+    std::uint32_t num_left = sizes.empty() ? 0 : sizes[0];
+    std::uint64_t place = 0, number = 0;
+    std::uint32_t shift = 0;
+    const auto skip_empty = [&] {
+        while (list < sizes.size() && num_left == 0) {
+            place = 0;
+            if (++list < sizes.size())
+                num_left = sizes[list];
+        }
+    };
+    stream_section(reader.path(), Emitters, std::nullopt, [&](std::span<const std::byte> piece) {
+        for (const std::byte byte : piece) {
+            const auto bits = std::to_integer<std::uint64_t>(byte);
+            number |= (bits & 0x7fu) << shift;
+            shift += 7;
+            if (bits >= 0x80u && shift < 35)
+                continue;
+            skip_empty();
+            place += number;
+            if (bits >= 0x80u || list == sizes.size() || place >= num_receivers)
+                reader.fail(Emitters, "lists of receivers");
+            on_place(list, static_cast<std::uint32_t>(place));
+            --num_left;
+            number = 0;
+            shift = 0;
+        }
+    });
+    skip_empty();
+    if (list != sizes.size() || shift != 0)
+        reader.fail(Emitters, "an end after the last list");
+}
+
 } // namespace
 
 void add_bounce_sections(Sections& sections, const BounceMatrix& matrix) {
@@ -111,9 +159,65 @@ std::optional<BounceMatrix> read_bounces(const SectionReader& reader, std::size_
     BounceMatrix matrix;
     matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
     matrix.weights = reader.elements<float>(Weights, num_receivers);
-    matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers);
-    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers);
+    matrix.emitters = read_lists(reader, EmitterSizes, Emitters, num_receivers, num_receivers);
+    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
     return matrix;
+}
+
+BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receivers,
+                            const Part& part) {
+    BounceRows rows;
+    BounceMatrix& matrix = rows.matrix;
+    matrix.spectral_radius = reader.elements<float>(Radius, 1).front();
+    matrix.weights = reader.elements<float>(Weights, num_receivers);
+    matrix.averaged = read_lists(reader, AveragedSizes, Averaged, num_receivers, num_receivers);
+    rows.num_emitters = reader.elements<std::uint32_t>(EmitterSizes, num_receivers);
+    try {
+        require_rows(matrix, rows.num_emitters);
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", reader.path().string(), error.what()));
+    }
+    // Which rows are the process's depends on the lowest place.
+    std::size_t lowest = num_receivers;
+    stream_lists(reader, rows.num_emitters, num_receivers, [&](std::size_t, std::uint32_t place) {
+        lowest = std::min(lowest, std::size_t{place});
+    });
+    rows.first = lowest == num_receivers ? 0 : first_emitter(lowest, matrix.averaged);
+    std::uint64_t num_places = 0;
+    for (std::size_t row = 0; row < num_receivers; ++row) {
+        num_places += has_row(part, row, rows.first) ? rows.num_emitters[row] : 0;
+        matrix.emitters.begin.push_back(num_places);
+    }
+    matrix.emitters.places.reserve(static_cast<std::size_t>(num_places));
+    stream_lists(reader, rows.num_emitters, num_receivers,
+                 [&](std::size_t row, std::uint32_t place) {
+                     if (has_row(part, row, rows.first))
+                         matrix.emitters.places.push_back(place);
+                 });
+    return rows;
+}
+
+void add_bounce_samples(Sections& sections, const BounceSamples& samples) {
+    sections[OpenParts] = bytes_of(samples.open_parts);
+    sections[Distances] = bytes_of(samples.distances);
+    sections[HitCounts] = bytes_of(samples.num_hits);
+    add_lists(sections, EmitterSizes, Emitters, samples.emitters);
+}
+
+std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, std::size_t num_own,
+                                                 std::size_t num_receivers) {
+    if (!reader.has(OpenParts))
+        return std::nullopt;
+    BounceSamples samples;
+    samples.open_parts = reader.elements<float>(OpenParts, num_own);
+    samples.distances = reader.elements<float>(Distances, num_own);
+    samples.num_hits = reader.elements<std::uint32_t>(HitCounts, num_own);
+    samples.emitters = read_lists(reader, EmitterSizes, Emitters, num_own, num_receivers);
+    for (std::size_t i = 0; i < num_own; ++i)
+        if (!(samples.distances[i] >= 0.0f && std::isfinite(samples.open_parts[i])) ||
+            samples.emitters[i].size() > samples.num_hits[i])
+            reader.fail(HitCounts, "samples that fit each other");
+    return samples;
 }
 
 } // namespace relumine::prt

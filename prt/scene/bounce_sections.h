@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "prt/bounces/bounce_matrix.h"
+#include "prt/bounces/bounce_samples.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
 
@@ -19,5 +20,34 @@ void add_bounce_sections(Sections& sections, const BounceMatrix& matrix);
 /// Throws:  as SectionReader.
 [[nodiscard]] std::optional<BounceMatrix> read_bounces(const SectionReader& reader,
                                                        std::size_t num_receivers);
+
+/// The rows of one of several processes that relight a scene.
+struct BounceRows {
+    /// Whole but for the emitters: those of rows of other processes (has_row()) are left out.
+    BounceMatrix matrix;
+    /// first_emitter() of all rows
+    std::size_t first = 0;
+    /// [num_receivers] emitters of all rows
+    std::vector<std::uint32_t> num_emitters = {};
+};
+
+/// The section with the emitters, which is long.
+inline constexpr const char* EmitterSection = "bounce_hits";
+
+/// Reads the rows of a process from a scene file. `reader` has the sections of the bounces but for
+/// the emitters, which are read from the file piece by piece.
+///
+/// Throws:  as SectionReader, also where check_scene() would.
+[[nodiscard]] BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receivers,
+                                          const Part& part);
+
+/// Adds the samples of a part of a plan.
+void add_bounce_samples(Sections& sections, const BounceSamples& samples);
+
+/// Reads the samples of a part with `num_own` of the receivers. Empty where the file has none.
+///
+/// Throws:  as SectionReader.
+[[nodiscard]] std::optional<BounceSamples>
+read_bounce_samples(const SectionReader& reader, std::size_t num_own, std::size_t num_receivers);
 
 } // namespace relumine::prt

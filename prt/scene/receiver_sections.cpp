@@ -232,7 +232,9 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
                                                       : std::get<TexelLayout>(layout).texels.size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
-        const std::size_t most_added = has_bounces(reader) ? mesh.num_vertices() : 0;
+        // A plan has no bounces yet.
+        const bool may_bounce = has_bounces(reader) || reader.has("plan");
+        const std::size_t most_added = may_bounce ? mesh.num_vertices() : 0;
         if (count < num_own || count - num_own > most_added)
             reader.fail("r_positions",
                         "the layout's receivers, and no more vertices than there are");

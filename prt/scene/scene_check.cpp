@@ -187,7 +187,8 @@ void check_glossy(const Check& check, const GlossyTransfer& glossy) {
 
 void check_bounces(const Scene& scene, const std::filesystem::path& path) {
     const Check check(path);
-    check.that(scene.bounces || scene.receivers.num_added == 0,
+    const bool is_plan = scene.transfer.counts.num_receivers == 0;
+    check.that(scene.bounces || scene.receivers.num_added == 0 || is_plan,
                "bounces that come from the added vertices", "none");
     if (!scene.bounces)
         return;

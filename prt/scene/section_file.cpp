@@ -32,6 +32,10 @@ constexpr std::uint32_t MaxSections = 64;
 // saves 6 % more and takes five seconds.
 constexpr int CompressionLevel = 6;
 
+// A section is cut into frames of this many bytes, the last one shorter, so that all processors
+// pack and unpack. The counts of the Stanford bunny are 0.5 % larger for it.
+constexpr std::size_t FrameSize = std::size_t{1} << 21;
+
 struct Header {
     std::array<char, 8> magic;
     std::uint32_t byte_order_mark;
@@ -87,14 +91,17 @@ public:
         return result;
     }
 
-    void stream(const std::string& wanted, std::uint64_t size,
+    void stream(const std::string& wanted, std::optional<std::uint64_t> wanted_size,
                 const std::function<void(std::span<const std::byte>)>& on_piece) {
         const std::vector<SectionEntry> table = checked_table(checked_header());
         const auto entry = std::find_if(table.begin(), table.end(), [&](const SectionEntry& other) {
             return name(other) == wanted;
         });
-        if (entry == table.end() || entry->size != size)
-            fail(fmt::format("a section '{}' of {} bytes", wanted, size), "another");
+        if (entry == table.end())
+            fail(fmt::format("a section '{}'", wanted), "none");
+        const std::uint64_t size = entry->size;
+        if (wanted_size && size != *wanted_size)
+            fail(fmt::format("a section '{}' of {} bytes", wanted, *wanted_size), "another");
         const std::byte* stored = bytes_.data() + entry->offset;
         if (XXH64(stored, entry->stored_size, 0) != entry->checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", wanted));
@@ -188,22 +195,57 @@ private:
                            [](char c) { return c == '\0'; });
     }
 
+    [[noreturn]] void fail_unpacking(const SectionEntry& entry) const {
+        fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+    }
+
     std::vector<std::byte> content(const SectionEntry& entry) const {
         const std::byte* stored = bytes_.data() + entry.offset;
         if (XXH64(stored, entry.stored_size, 0) != entry.checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
-        if (ZSTD_getFrameContentSize(stored, entry.stored_size) != entry.size)
-            fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+        const std::vector<Frame> frames = frames_of(entry);
         // An unlikely size is allocated as the data comes, so that a lie costs nothing.
         constexpr std::uint64_t Cheap = std::uint64_t{1} << 26, BelievableRatio = 256;
         if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
             return content_piecewise(entry, Cheap);
         std::vector<std::byte> result(entry.size);
-        const std::size_t size =
-            ZSTD_decompress(result.data(), result.size(), stored, entry.stored_size);
-        if (ZSTD_isError(size) != 0 || size != entry.size)
-            fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+        tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+            const Frame& frame = frames[i];
+            const std::size_t size = ZSTD_decompress(result.data() + frame.begin, frame.size,
+                                                     frame.stored.data(), frame.stored.size());
+            if (ZSTD_isError(size) != 0 || size != frame.size)
+                fail_unpacking(entry);
+        });
         return result;
+    }
+
+    /// A zstd frame of a section, and where its content begins and how many bytes it says it has.
+    struct Frame {
+        std::span<const std::byte> stored;
+        std::uint64_t begin;
+        std::uint64_t size;
+    };
+
+    /// Finds a section's frames, whose sizes add up to the section's.
+    std::vector<Frame> frames_of(const SectionEntry& entry) const {
+        std::span<const std::byte> rest(bytes_.data() + entry.offset, entry.stored_size);
+        std::vector<Frame> frames;
+        std::uint64_t size = 0;
+        do {
+            const std::size_t stored = ZSTD_findFrameCompressedSize(rest.data(), rest.size());
+            if (ZSTD_isError(stored) != 0)
+                fail_unpacking(entry);
+            const unsigned long long own = ZSTD_getFrameContentSize(rest.data(), stored);
+            // The two errors are larger than any size.
+            if (own > entry.size - size)
+                fail_unpacking(entry);
+            frames.push_back({.stored = rest.first(stored), .begin = size, .size = own});
+            size += own;
+            rest = rest.subspan(stored);
+        } while (!rest.empty());
+        if (size != entry.size)
+            fail_unpacking(entry);
+        return frames;
     }
 
     std::vector<std::byte> content_piecewise(const SectionEntry& entry,
@@ -221,8 +263,8 @@ private:
             if (state == 0 && out.pos == entry.size && in.pos == in.size)
                 return result;
             const bool has_progress = out.pos > done || in.pos > consumed;
-            if (ZSTD_isError(state) != 0 || state == 0 || !has_progress)
-                fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
+            if (ZSTD_isError(state) != 0 || !has_progress)
+                fail_unpacking(entry);
             done = out.pos;
             if (done == result.size() && done < entry.size)
                 result.resize(std::min(2 * result.size(), entry.size));
@@ -232,6 +274,21 @@ private:
     const std::filesystem::path& path_;
     std::vector<std::byte> bytes_;
 };
+
+/// Returns the frames of a section, one behind the other.
+std::vector<std::byte> compressed(std::span<const std::byte> section) {
+    std::vector<std::vector<std::byte>> frames(
+        std::max<std::size_t>((section.size() + FrameSize - 1) / FrameSize, 1));
+    tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+        const std::span<const std::byte> rest = section.subspan(i * FrameSize);
+        frames[i] =
+            files::compressed(rest.first(std::min(FrameSize, rest.size())), CompressionLevel);
+    });
+    std::vector<std::byte> result = std::move(frames.front());
+    for (std::size_t i = 1; i < frames.size(); ++i)
+        result.insert(result.end(), frames[i].begin(), frames[i].end());
+    return result;
+}
 
 } // namespace
 
@@ -244,9 +301,8 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
     for (const auto& section : sections)
         in_order.push_back(&section);
     std::vector<std::vector<std::byte>> stored(in_order.size());
-    tbb::parallel_for(std::size_t{0}, stored.size(), [&](std::size_t i) {
-        stored[i] = files::compressed(in_order[i]->second, CompressionLevel);
-    });
+    tbb::parallel_for(std::size_t{0}, stored.size(),
+                      [&](std::size_t i) { stored[i] = compressed(in_order[i]->second); });
 
     Header header{.magic = Magic,
                   .byte_order_mark = ByteOrderMark,
@@ -288,7 +344,8 @@ Sections read_sections(const std::filesystem::path& path, std::uint32_t* version
     return Reader(path).sections(version, left_out);
 }
 
-void stream_section(const std::filesystem::path& path, const std::string& name, std::uint64_t size,
+void stream_section(const std::filesystem::path& path, const std::string& name,
+                    std::optional<std::uint64_t> size,
                     const std::function<void(std::span<const std::byte>)>& on_piece) {
     Reader(path).stream(name, size, on_piece);
 }

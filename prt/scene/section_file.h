@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@
 namespace relumine::prt {
 
 /// The version that is written. All versions up to this one are read.
-inline constexpr std::uint32_t SceneFileVersion = 3;
+inline constexpr std::uint32_t SceneFileVersion = 4;
 
 /// Sections by name (1 to 16 ASCII letters), each a string of bytes.
 using Sections = std::map<std::string, std::vector<std::byte>>;
@@ -36,11 +37,13 @@ std::uint64_t write_sections(const std::filesystem::path& path, const Sections& 
 /// Bytes of a piece that stream_section() gives; the last one may have fewer.
 inline constexpr std::size_t SectionPiece = std::size_t{1} << 20;
 
-/// Passes the bytes of one section on, piece by piece in their order.
+/// Passes the bytes of one section on, piece by piece in their order. Without a `size` it may have
+/// any.
 ///
 /// Memory:  the file's bytes, compressed as they are, and one piece.
 /// Throws:  as read_sections(), also where the section is missing or not of `size` bytes.
-void stream_section(const std::filesystem::path& path, const std::string& name, std::uint64_t size,
+void stream_section(const std::filesystem::path& path, const std::string& name,
+                    std::optional<std::uint64_t> size,
                     const std::function<void(std::span<const std::byte>)>& on_piece);
 
 } // namespace relumine::prt

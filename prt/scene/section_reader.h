@@ -50,10 +50,11 @@ public:
         const std::vector<std::byte>& stored = bytes(name);
         if (stored.size() % sizeof(Element) != 0)
             fail(name, fmt::format("a multiple of {} bytes", sizeof(Element)));
-        std::vector<Element> result(stored.size() / sizeof(Element));
-        if (!result.empty())
-            std::memcpy(result.data(), stored.data(), stored.size());
-        return result;
+        static_assert(std::is_trivially_copyable_v<Element>);
+        // The bytes come from operator new, aligned for every element. Copied so, the memory is not
+        // filled with zeros first.
+        const auto* begin = reinterpret_cast<const Element*>(stored.data());
+        return {begin, begin + stored.size() / sizeof(Element)};
     }
 
     /// Returns exactly `count` elements, or none where an optional section is absent.

@@ -130,7 +130,7 @@ struct Target {
             layout = layout_named("layout", *asked);
         if (!to->reads(layout) || (six_files && layout != cubemap::Layout::Cube))
             Options::refuse("layout", "a layout that fits the file and " + name,
-                            py::str(layout_name(layout)));
+                            py::str(cubemap::option_name(layout)));
         if (given.has("size")) {
             const auto [width, height] =
                 given.find<std::pair<std::uint32_t, std::uint32_t>>("size").value();
@@ -152,7 +152,8 @@ py::tuple convert_to_array(const EnvironmentHandle& own, const py::dict& given) 
                          cubemap::Sampling::TexelCentres, target.size);
     });
     const Shape outer = {image.height, image.width};
-    return py::make_tuple(owned(std::move(image.pixels), outer), layout_name(image.layout));
+    return py::make_tuple(owned(std::move(image.pixels), outer),
+                          cubemap::option_name(image.layout));
 }
 
 void convert_to_file(const Path& path, const EnvironmentHandle& own, const py::dict& given) {
@@ -333,7 +334,8 @@ void bind_environments(py::module_& module) {
                 return view(own->made.file.image, image.pixels, {image.height, image.width});
             })
         .def_property_readonly(
-            "layout", [](const Handle& own) { return layout_name(own.made.file.image->layout); })
+            "layout",
+            [](const Handle& own) { return cubemap::option_name(own.made.file.image->layout); })
         .def_property_readonly("assumptions",
                                [](const Handle& own) { return own.made.assumptions; })
         .def_property_readonly("warnings", [](const Handle& own) { return own.made.warnings; })

@@ -1,6 +1,5 @@
 #include "options.h"
 
-#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -10,16 +9,6 @@
 namespace relumine::python {
 
 namespace {
-
-constexpr std::array<std::pair<const char*, cubemap::Layout>, cubemap::AllLayouts.size()>
-    LayoutNames = {{{"latlong", cubemap::Layout::LatLong},
-                    {"cube", cubemap::Layout::Cube},
-                    {"strip", cubemap::Layout::HorizontalStrip},
-                    {"cross", cubemap::Layout::VerticalCross},
-                    {"hcross", cubemap::Layout::HorizontalCross},
-                    {"angular", cubemap::Layout::AngularMap},
-                    {"mirrorball", cubemap::Layout::MirrorBall},
-                    {"octahedral", cubemap::Layout::Octahedral}}};
 
 /// Returns the place of a word among others.
 std::size_t one_of(const Options& given, const char* name, const std::vector<std::string>& words) {
@@ -173,20 +162,12 @@ std::optional<glm::vec3> Options::point(const char* name) const {
 }
 
 cubemap::Layout layout_named(const char* option, const std::string& name) {
+    if (const auto layout = cubemap::layout_named(name))
+        return *layout;
     std::string list;
-    for (const auto& [known, layout] : LayoutNames) {
-        if (name == known)
-            return layout;
-        list += (list.empty() ? "" : ", ") + std::string(known);
-    }
+    for (const cubemap::Layout layout : cubemap::AllLayouts)
+        list.append(list.empty() ? "" : ", ").append(cubemap::option_name(layout));
     Options::refuse(option, list, py::str(name));
-}
-
-std::string layout_name(cubemap::Layout layout) {
-    for (const auto& [name, known] : LayoutNames)
-        if (known == layout)
-            return name;
-    return {};
 }
 
 TurnedOptions::TurnedOptions(const Options& given) {

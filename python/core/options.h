@@ -84,7 +84,6 @@ struct TurnedOptions {
 
 /// Throws py::value_error for an unknown word.
 [[nodiscard]] cubemap::Layout layout_named(const char* option, const std::string& name);
-[[nodiscard]] std::string layout_name(cubemap::Layout layout);
 [[nodiscard]] MeshOptions mesh_options(const Options& given);
 [[nodiscard]] RefineOptions refine_options(const Options& given);
 [[nodiscard]] PrecomputeOptions precompute_options(const Options& given);

@@ -192,7 +192,8 @@ void bind_editing(py::class_<Lit, LitPointer>& type) {
                  if (!own.has_environment())
                      throw py::value_error("mark: expected an environment, got none");
                  own.set_kind(true, true);
-                 quickly(own, [](LitScene& lit) {
+                 // A mark sums the light anew, so the last bits of it may change.
+                 change(own, [](LitScene& lit) {
                      lit.editor().mark();
                      return true;
                  });

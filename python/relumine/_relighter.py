@@ -253,7 +253,7 @@ class Relighter:
         self._core.mark()
 
     def undo(self) -> Update:
-        """Goes back to the mark before. The radiance is what it was, but for the last bit here and there."""
+        """Goes back to the mark before. The radiance is what it was, bit by bit."""
         return Update(*self._core.undo())
 
     def redo(self) -> Update:

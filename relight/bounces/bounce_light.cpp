@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <utility>
@@ -26,7 +27,7 @@ constexpr std::size_t AndersonDepth = 2;
 constexpr std::uint32_t MaxBounces = 1000;
 
 /// Rows that one task handles; sums over them are added in order, so that threads do not matter.
-constexpr std::size_t RowsPerTask = 1024;
+constexpr std::size_t RowsPerTask = prt::RowsPerRun;
 
 /// Steps are assumed to shrink by no more than this, whatever the last ones did: light in narrow
 /// gaps is found late. The light that is left is then at least as large as the last step.
@@ -78,9 +79,9 @@ least_squares(std::array<std::array<double, AndersonDepth>, AndersonDepth> matri
 
 class BounceLight::Impl {
 public:
-    Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
-        : matrix_(matrix), transfer_(transfer), size_(transfer.num_receivers()),
-          first_(checked(matrix, size_)), coarse_(matrix, first_),
+    Impl(const prt::BounceMatrix& matrix, const prt::Transfer& transfer, const SharedRows& shared)
+        : matrix_(matrix), transfer_(transfer), shared_(shared), size_(transfer.num_receivers()),
+          first_(checked(matrix, shared, size_)), coarse_(matrix, first_, shared),
           coarse_sent_(coarse_.num_groups()), albedo_(size_), direct_(size_), sent_(size_),
           gathered_(size_), indirect_(size_), next_(size_), published_(size_, glm::vec3(0.0f)) {}
 
@@ -106,7 +107,7 @@ public:
                             "got {}",
                             safe, largest));
         contraction_ = static_cast<double>(largest) * static_cast<double>(matrix_.spectral_radius);
-        sends_ = largest > 0.0f && !matrix_.emitters.places.empty();
+        sends_ = largest > 0.0f && has_emitters();
         for (std::size_t place = 0; place < size_; ++place)
             albedo_[place] = padded(albedo[transfer_.order[place]]);
         coarse_.set_albedo(std::span(albedo_).subspan(first_));
@@ -172,11 +173,19 @@ private:
     /// Sums for each colour.
     using ColorSums = std::array<double, 3>;
 
-    static std::size_t checked(const prt::BounceMatrix& matrix, std::size_t size) {
+    [[nodiscard]] bool has_emitters() const {
+        if (shared_.reduction == nullptr)
+            return !matrix_.emitters.places.empty();
+        return std::any_of(shared_.num_emitters.begin(), shared_.num_emitters.end(),
+                           [](std::uint32_t number) { return number != 0; });
+    }
+
+    static std::size_t checked(const prt::BounceMatrix& matrix, const SharedRows& shared,
+                               std::size_t size) {
         if (matrix.num_rows() != size)
             throw std::invalid_argument(
                 fmt::format("expected bounces of {} receivers, got {}", size, matrix.num_rows()));
-        return prt::first_emitter(matrix);
+        return shared.reduction != nullptr ? shared.first : prt::first_emitter(matrix);
     }
 
     void forget_steps() {
@@ -242,14 +251,49 @@ private:
     /// next_ = A sent_ for some rows.
     void bounce(std::size_t first, std::size_t last) {
         for_rows(first, last, [&](std::size_t begin, std::size_t end) {
-            sum_lists(matrix_.emitters, sent_, begin, end, gathered_);
+            if (is_own(begin))
+                sum_lists(matrix_.emitters, sent_, begin, end, gathered_);
         });
+        share_gathered(first, last);
         for_rows(first, last, [&](std::size_t begin, std::size_t end) {
             sum_lists(matrix_.averaged, gathered_, begin, end, next_);
             for (std::size_t i = begin; i < end; ++i)
                 for (std::size_t c = 0; c < 4; ++c)
                     next_[i].rgb[c] *= matrix_.weights[i];
         });
+    }
+
+    /// Whether this process has the run of rows that begins there.
+    [[nodiscard]] bool is_own(std::size_t begin) const {
+        return shared_.reduction == nullptr ||
+               prt::has_row(shared_.reduction->part(), begin, first_);
+    }
+
+    /// Gives all processes what each has gathered for its rows.
+    void share_gathered(std::size_t first, std::size_t last) {
+        if (shared_.reduction == nullptr)
+            return;
+        const prt::Part part = shared_.reduction->part();
+        const auto for_runs = [&](std::uint32_t process, const auto& visit) {
+            for (std::size_t begin = first; begin < last; begin += RowsPerTask)
+                if (prt::has_row({process, part.count}, begin, first_))
+                    visit(std::span(gathered_).subspan(begin, std::min(RowsPerTask, last - begin)));
+        };
+        std::vector<PaddedRgb> own;
+        for_runs(part.index, [&](std::span<const PaddedRgb> run) {
+            own.insert(own.end(), run.begin(), run.end());
+        });
+        const auto bytes = std::as_bytes(std::span(own));
+        const auto of_all = shared_.reduction->all_gather({bytes.begin(), bytes.end()});
+        for (std::uint32_t process = 0; process < of_all.size(); ++process) {
+            std::size_t at = 0;
+            for_runs(process, [&](std::span<PaddedRgb> run) {
+                if (of_all[process].size() < at + run.size_bytes())
+                    throw std::runtime_error("expected the bounces of all processes");
+                std::memcpy(run.data(), of_all[process].data() + at, run.size_bytes());
+                at += run.size_bytes();
+            });
+        }
     }
 
     /// Returns all bounces of what sent_by(row) gives for each row, as groups of receivers tell.
@@ -438,6 +482,7 @@ private:
 
     const prt::BounceMatrix& matrix_;
     const prt::Transfer& transfer_;
+    SharedRows shared_;
     std::size_t size_;
     /// Receivers before this place send nothing to others.
     std::size_t first_;
@@ -469,7 +514,10 @@ private:
 };
 
 BounceLight::BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer)
-    : impl_(std::make_unique<Impl>(matrix, transfer)) {}
+    : BounceLight(matrix, transfer, SharedRows()) {}
+BounceLight::BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer,
+                         const SharedRows& shared)
+    : impl_(std::make_unique<Impl>(matrix, transfer, shared)) {}
 BounceLight::~BounceLight() = default;
 BounceLight::BounceLight(BounceLight&&) noexcept = default;
 BounceLight& BounceLight::operator=(BounceLight&&) noexcept = default;

@@ -11,6 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/bounces/bounce_matrix.h"
+#include "prt/reduction.h"
 #include "prt/transfer.h"
 
 namespace relumine::relight {
@@ -20,6 +21,17 @@ struct BounceLimits {
     std::optional<std::uint32_t> num_bounces = {};
     /// Relative error of the sum of all bounces, L2 over the receivers.
     double tolerance = 1e-3;
+};
+
+/// The rows of a matrix that processes share. Each has its own in the matrix (prt::has_row()); the
+/// others are empty.
+struct SharedRows {
+    /// Null: this process has all rows.
+    prt::Reduction* reduction = nullptr;
+    /// prt::first_emitter() of all rows
+    std::size_t first = 0;
+    /// [num_rows] emitters of all rows
+    std::span<const std::uint32_t> num_emitters = {};
 };
 
 /// What the light of a scene needs to bounce.
@@ -54,6 +66,10 @@ public:
     /// Memory:  some 100 bytes per receiver.
     /// Throws:  std::invalid_argument for a matrix of other receivers.
     BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer);
+    /// Where processes share the rows, all call the same functions in the same order, with the same
+    /// light of all receivers, and get the same result. They exchange what each product finds.
+    BounceLight(const prt::BounceMatrix& matrix, const prt::Transfer& transfer,
+                const SharedRows& shared);
     ~BounceLight();
     BounceLight(BounceLight&&) noexcept;
     BounceLight& operator=(BounceLight&&) noexcept;

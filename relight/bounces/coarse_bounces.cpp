@@ -7,6 +7,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "files/packed_parts.h"
+
 namespace relumine::relight {
 
 namespace {
@@ -18,7 +20,7 @@ constexpr std::size_t SmallestGroup = 16, LargestGroup = 1024;
 constexpr std::size_t GroupsPerGroup = 4;
 
 /// The first level has fewer entries than the matrix by this factor at least.
-constexpr std::size_t LeastSaving = 3;
+constexpr std::int64_t LeastSaving = 3;
 
 /// Groups that tell how many entries there would be.
 constexpr std::size_t NumTriedGroups = 32;
@@ -59,15 +61,18 @@ private:
 
 } // namespace
 
-/// `add_row` adds the weights of a row of the finer level to RowSums.
-template<typename AddRow>
-CoarseBounces::Level CoarseBounces::make_level(std::size_t num_rows, std::size_t group_size,
-                                               const AddRow& add_row) {
-    Level level{.group_size = group_size};
+/// Sums the rows of the groups for which has_group(group) is true; `add_row` adds the weights of a
+/// row of the finer level to RowSums.
+template<typename HasGroup, typename AddRow>
+CoarseBounces::Rows CoarseBounces::rows_of_groups(std::size_t num_rows, std::size_t group_size,
+                                                  const HasGroup& has_group,
+                                                  const AddRow& add_row) {
     const std::size_t num_groups = (num_rows + group_size - 1) / group_size;
-    std::vector<std::vector<Entry>> rows(num_groups);
+    Rows rows(num_groups);
     tbb::enumerable_thread_specific<RowSums> scratch(num_groups);
     tbb::parallel_for(std::size_t{0}, num_groups, [&](std::size_t group) {
+        if (!has_group(group))
+            return;
         RowSums& sums = scratch.local();
         const std::size_t begin = group * group_size;
         const std::size_t end = std::min(begin + group_size, num_rows);
@@ -78,62 +83,112 @@ CoarseBounces::Level CoarseBounces::make_level(std::size_t num_rows, std::size_t
                 {.group = emitter, .weight = sums.of(emitter) / static_cast<float>(end - begin)});
         sums.clear();
     });
+    return rows;
+}
+
+/// Gives all processes the groups of each. Groups lie within runs of rows, so each is in one
+/// process.
+void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Reduction& reduction) {
+    const prt::Part part = reduction.part();
+    const auto has_group = [&](std::uint32_t process, std::size_t group) {
+        return prt::has_row({process, part.count}, group * group_size, 0);
+    };
+    files::ByteWriter writer;
+    for (std::size_t group = 0; group < rows.size(); ++group)
+        if (has_group(part.index, group)) {
+            writer.add<std::uint64_t>(rows[group].size());
+            writer.add_all(std::span<const Entry>(rows[group]));
+        }
+    const auto of_all = reduction.all_gather(writer.take());
+    for (std::uint32_t process = 0; process < of_all.size(); ++process) {
+        files::ByteReader reader(of_all[process]);
+        for (std::size_t group = 0; group < rows.size(); ++group)
+            if (has_group(process, group)) {
+                const auto size = reader.next<std::uint64_t>();
+                rows[group] = reader.next_all<Entry>(static_cast<std::size_t>(size));
+            }
+    }
+}
+
+CoarseBounces::Level CoarseBounces::level_of(const Rows& rows, std::size_t group_size) {
+    Level level{.group_size = group_size};
     for (const std::vector<Entry>& row : rows) {
         level.entries.insert(level.entries.end(), row.begin(), row.end());
         level.row_begin.push_back(level.entries.size());
     }
     for (std::vector<PaddedRgb>* values :
          {&level.albedo, &level.sent, &level.sum, &level.next, &level.given})
-        values->resize(num_groups);
+        values->resize(rows.size());
     return level;
 }
 
-CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first) {
+CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
+                             const SharedRows& shared) {
     const std::size_t num_rows = matrix.num_rows() - first;
+    const auto emitters_of = [&](std::size_t place) {
+        return static_cast<double>(shared.reduction != nullptr ? shared.num_emitters[place]
+                                                               : matrix.emitters[place].size());
+    };
     // Each receiver's own emitters stand for those of all that it is averaged with.
     const auto own_weight = [&](std::size_t place) {
         double num_emitters = 0.0;
         for (const std::uint32_t other : matrix.averaged[place])
-            num_emitters += static_cast<double>(matrix.emitters[other].size());
-        const auto num_own = static_cast<double>(matrix.emitters[place].size());
+            num_emitters += emitters_of(other);
+        const double num_own = emitters_of(place);
         return num_own > 0.0 ? static_cast<float>(static_cast<double>(matrix.weights[place]) *
                                                   num_emitters / num_own)
                              : 0.0f;
     };
     // The smallest groups that leave a matrix small enough.
     std::size_t group_size = SmallestGroup;
+    const auto has_group = [&](std::size_t group) {
+        return shared.reduction == nullptr ||
+               prt::has_row(shared.reduction->part(), group * group_size, 0);
+    };
+    static_assert(prt::RowsPerRun % LargestGroup == 0);
     for (; group_size < LargestGroup; group_size *= GroupsPerGroup) {
         const std::size_t num_groups = (num_rows + group_size - 1) / group_size;
         const std::size_t step = std::max<std::size_t>(num_groups / NumTriedGroups, 1);
         RowSums sums(num_groups);
-        std::size_t num_entries = 0, num_emitters = 0;
+        std::array<std::int64_t, 2> entries_and_emitters{};
         for (std::size_t group = 0; group < num_groups; group += step) {
+            if (!has_group(group))
+                continue;
             const std::size_t end = std::min((group + 1) * group_size, num_rows);
             for (std::size_t row = group * group_size; row < end; ++row)
                 for (const std::uint32_t emitter : matrix.emitters[first + row]) {
                     sums.add((emitter - first) / group_size, 1.0f);
-                    ++num_emitters;
+                    ++entries_and_emitters[1];
                 }
-            num_entries += sums.groups().size();
+            entries_and_emitters[0] += static_cast<std::int64_t>(sums.groups().size());
             sums.clear();
         }
-        if (LeastSaving * num_entries <= num_emitters)
+        if (shared.reduction != nullptr)
+            shared.reduction->sum(entries_and_emitters);
+        if (LeastSaving * entries_and_emitters[0] <= entries_and_emitters[1])
             break;
     }
-    levels_.push_back(make_level(num_rows, group_size, [&](std::size_t row, RowSums& sums) {
-        const float weight = own_weight(first + row);
-        if (weight > 0.0f)
-            for (const std::uint32_t emitter : matrix.emitters[first + row])
-                sums.add((emitter - first) / group_size, weight);
-    }));
+    Rows rows =
+        rows_of_groups(num_rows, group_size, has_group, [&](std::size_t row, RowSums& sums) {
+            const float weight = own_weight(first + row);
+            if (weight > 0.0f)
+                for (const std::uint32_t emitter : matrix.emitters[first + row])
+                    sums.add((emitter - first) / group_size, weight);
+        });
+    if (shared.reduction != nullptr)
+        share(rows, group_size, *shared.reduction);
+    levels_.push_back(level_of(rows, group_size));
     while (levels_.back().num_groups() > FewGroups) {
         const Level& fine = levels_.back();
-        Level coarse =
-            make_level(fine.num_groups(), GroupsPerGroup, [&](std::size_t row, RowSums& sums) {
-                for (std::uint64_t i = fine.row_begin[row]; i < fine.row_begin[row + 1]; ++i)
-                    sums.add(fine.entries[i].group / GroupsPerGroup, fine.entries[i].weight);
-            });
-        levels_.push_back(std::move(coarse));
+        const auto all = [](std::size_t) {
+            return true;
+        };
+        const auto add_row = [&](std::size_t row, RowSums& sums) {
+            for (std::uint64_t i = fine.row_begin[row]; i < fine.row_begin[row + 1]; ++i)
+                sums.add(fine.entries[i].group / GroupsPerGroup, fine.entries[i].weight);
+        };
+        levels_.push_back(level_of(rows_of_groups(fine.num_groups(), GroupsPerGroup, all, add_row),
+                                   GroupsPerGroup));
     }
 }
 

@@ -8,6 +8,7 @@
 
 #include "prt/bounces/bounce_matrix.h"
 #include "relight/bounces/bounce_kernel.h"
+#include "relight/bounces/bounce_light.h"
 
 namespace relumine::relight {
 
@@ -17,10 +18,12 @@ namespace relumine::relight {
 /// Hackbusch 1985, "Multi-Grid Methods and Applications", chapter 16].
 class CoarseBounces {
 public:
-    /// Leaves the rows before `first` out, from which no other row gets light.
+    /// Leaves the rows before `first` out, from which no other row gets light. Where processes
+    /// share the rows, each makes the groups of its own, and all get all groups.
     ///
     /// Cost:    a pass over the emitters.
-    CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first);
+    CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
+                  const SharedRows& shared = {});
 
     /// `albedo` is [num_rows - first] by place.
     void set_albedo(std::span<const PaddedRgb> albedo);
@@ -54,8 +57,12 @@ private:
         /// Writes A (given + albedo sum) to `next`.
         void multiply();
     };
-    template<typename AddRow>
-    static Level make_level(std::size_t num_rows, std::size_t group_size, const AddRow& add_row);
+    using Rows = std::vector<std::vector<Entry>>;
+    template<typename HasGroup, typename AddRow>
+    static Rows rows_of_groups(std::size_t num_rows, std::size_t group_size,
+                               const HasGroup& has_group, const AddRow& add_row);
+    static void share(Rows& rows, std::size_t group_size, prt::Reduction& reduction);
+    static Level level_of(const Rows& rows, std::size_t group_size);
     std::span<const PaddedRgb> sum_of_bounces(std::size_t level, std::span<const PaddedRgb> sent);
     std::span<const PaddedRgb> sum_of_last_level(std::span<const PaddedRgb> sent);
 

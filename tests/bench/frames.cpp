@@ -47,6 +47,7 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
     std::vector<double> trace;
     std::size_t num_clusters = 0;
     std::size_t num_resummed = 0;
+    std::size_t num_traced = 0, num_lights = 0;
     for (int pass = 0; pass < settings.passes; ++pass)
         for (const relight::BinnedEnvironment& frame : frames) {
             relight::BinnedEnvironment copy = frame; // not the Relighter's work
@@ -56,13 +57,18 @@ void measure_sequence(const data_gen::Sequence& sequence, const Settings& settin
             trace.push_back(1e3 * report.seconds_trace);
             num_clusters += report.num_clusters;
             num_resummed += static_cast<std::size_t>(report.resummed);
+            num_traced += report.num_sharp_lights;
+            num_lights += frame.sharp_lights.size();
         }
     const auto count = static_cast<double>(relight.size());
     const double least = *std::min_element(relight.begin(), relight.end());
-    fmt::print("| {} | {:.0f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.0f} |\n",
+    fmt::print("| {} | {:.0f} | {:.0f} % | {:.1f} | {:.1f} | {:.1f} | {:.1f} | {:.1f} of {:.1f} | "
+               "{:.0f} |\n",
                sequence.name, static_cast<double>(num_clusters) / count,
                100.0 * static_cast<double>(num_resummed) / count, bench::median(bin), least,
-               bench::median(relight), bench::median(trace), 1e3 / bench::median(relight));
+               bench::median(relight), bench::median(trace),
+               static_cast<double>(num_traced) / count, static_cast<double>(num_lights) / count,
+               1e3 / bench::median(relight));
     std::fflush(stdout);
 }
 
@@ -105,8 +111,8 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
     const LitScene lit(inputs.bunny());
     const Scene& scene = lit.scene();
     fmt::print("{} receivers, {} clusters, R = {}, milliseconds\n\n| sequence | clusters changed | "
-               "all summed | bin | relight, least | median | of it shadow rays | frames/s "
-               "|\n|---|---|---|---|---|---|---|---|\n",
+               "all summed | bin | relight, least | median | of it shadow rays | lights traced | "
+               "frames/s |\n|---|---|---|---|---|---|---|---|---|\n",
                scene.transfer.num_receivers(), scene.transfer.num_clusters(), settings.resolution);
     for (const data_gen::Sequence& sequence : data_gen::sequences())
         try {

@@ -187,26 +187,30 @@ void run_at_edges(std::span<const std::uint8_t> draws) {
 
 namespace relumine::fuzz {
 
-std::size_t run_all_edges() {
+std::vector<std::string> working_commands() {
+    std::vector<std::string> names;
+    for (const Words& line : working_lines())
+        names.push_back(fmt::format("{}_{}", line[0], names.size()));
+    return names;
+}
+
+std::size_t run_all_edges(std::size_t command) {
     std::size_t count = 0;
-    for (std::size_t line = 0; line < working_lines().size(); ++line) {
-        app::CommandLine program("relumine", "", "");
-        app::add_commands(program, fresh_session());
-        const std::vector<app::OptionTable> options =
-            numeric_options(program, working_lines()[line]);
-        for (std::size_t option = 0; option < options.size(); ++option) {
-            const bool is_number =
-                options[option].type == "UINT" || options[option].type == "FLOAT";
-            // In text, the fuzzer tries the other numbers.
-            for (std::size_t number = 0; number < Numbers.size(); number += is_number ? 1 : 3)
-                for (std::size_t place = 0; place < (is_number ? 1 : Places.size()); ++place) {
-                    const std::array<std::uint8_t, 4> draws = {
-                        static_cast<std::uint8_t>(line), static_cast<std::uint8_t>(option),
-                        static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(place)};
-                    run_at_edges(draws);
-                    ++count;
-                }
-        }
+    app::CommandLine program("relumine", "", "");
+    app::add_commands(program, fresh_session());
+    const std::vector<app::OptionTable> options =
+        numeric_options(program, working_lines()[command]);
+    for (std::size_t option = 0; option < options.size(); ++option) {
+        const bool is_number = options[option].type == "UINT" || options[option].type == "FLOAT";
+        // In text, the fuzzer tries the other numbers.
+        for (std::size_t number = 0; number < Numbers.size(); number += is_number ? 1 : 3)
+            for (std::size_t place = 0; place < (is_number ? 1 : Places.size()); ++place) {
+                const std::array<std::uint8_t, 4> draws = {
+                    static_cast<std::uint8_t>(command), static_cast<std::uint8_t>(option),
+                    static_cast<std::uint8_t>(number), static_cast<std::uint8_t>(place)};
+                run_at_edges(draws);
+                ++count;
+            }
     }
     return count;
 }

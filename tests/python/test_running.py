@@ -233,13 +233,19 @@ def relight_and_load():
                 with pytest.raises(OSError):
                     relumine.Scene.load(wrong)
 
+    # Where memory comes to lie differs a little from run to run, which shows once. A leak shows in
+    # every turn.
     relights(1000)
     loads(100)
-    before = resident_bytes()
-    relights(10000)
-    loads(1000)
-    after = resident_bytes()
-    assert after < 1.01 * before, (before, after)
+    turns = []
+    for _ in range(3):
+        before = resident_bytes()
+        relights(10000)
+        loads(1000)
+        turns.append((before, resident_bytes()))
+        if turns[-1][1] < 1.01 * before:
+            return
+    raise AssertionError(turns)
 
 
 def test_the_cost_of_python(scene, sky):

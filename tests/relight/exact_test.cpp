@@ -148,8 +148,7 @@ TEST(Exact, ToleranceZeroReproducesTheFullProduct) {
         const auto exact = exact_radiance(scene.receivers, all_of(scene.receivers.size()),
                                           scene.rays, environment, {.bias = scene.options.bias});
         const std::vector<glm::vec3> expected(exact.begin(), exact.end());
-        // Directions of beams are rounded to 2^-16, which counts where a light of 1000 grazes.
-        scenes::expect_close(relight(scene.transfer, environment), expected, 5e-4);
+        scenes::expect_close(relight(scene.transfer, environment), expected, 4e-6);
     }
 }
 

@@ -43,7 +43,7 @@ glm::dvec3 of_beam(const VectorIrradiance& light, const glm::dvec3& n) {
     const double length = glm::length(luminance);
     if (length == 0.0)
         return light.on(n);
-    const glm::dvec3 direction = glm::round(luminance / length * 65536.0) / 65536.0;
+    const glm::dvec3 direction = glm::vec3(luminance / length); // as it is stored
     glm::dvec3 result;
     double off = 0.0, all = 0.0;
     const std::array<glm::dvec3, 3> channels = {light.red, light.green, light.blue};

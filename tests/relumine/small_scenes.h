@@ -33,6 +33,33 @@ inline constexpr float Tolerance = 0.06f;
     return mesh;
 }
 
+/// Two squares of n x n vertices that meet at a right angle and face each other: a floor and a red
+/// wall. The floor has the left half of the atlas.
+[[nodiscard]] inline mesh::TriangleMesh corner(std::uint32_t n) {
+    mesh::TriangleMesh mesh;
+    for (const bool is_wall : {false, true}) {
+        const auto first = static_cast<std::uint32_t>(mesh.num_vertices());
+        for (std::uint32_t j = 0; j < n; ++j)
+            for (std::uint32_t i = 0; i < n; ++i) {
+                const float s = static_cast<float>(i) / static_cast<float>(n - 1);
+                const float t = static_cast<float>(j) / static_cast<float>(n - 1);
+                mesh.positions.push_back(is_wall ? glm::vec3(s, t, 0.0f) : glm::vec3(s, 0.0f, t));
+                mesh.normals.push_back(is_wall ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0));
+                mesh.colors.push_back(is_wall ? glm::vec3(0.8f, 0.1f, 0.1f) : glm::vec3(0.5f));
+                mesh.uvs.emplace_back(0.01f + 0.48f * s + (is_wall ? 0.5f : 0.0f),
+                                      0.02f + 0.96f * t);
+            }
+        for (std::uint32_t j = 0; j + 1 < n; ++j)
+            for (std::uint32_t i = 0; i + 1 < n; ++i) {
+                const std::uint32_t at = first + j * n + i;
+                const mesh::Triangle a = {at, at + 1, at + n + 1}, b = {at, at + n + 1, at + n};
+                mesh.triangles.push_back(is_wall ? a : mesh::Triangle{a[0], a[2], a[1]});
+                mesh.triangles.push_back(is_wall ? b : mesh::Triangle{b[0], b[2], b[1]});
+            }
+    }
+    return mesh;
+}
+
 /// A folder of its own for each test, gone afterwards.
 class InFolder : public testing::Test {
 protected:

@@ -57,7 +57,10 @@ OBJ
 vertices=(knot.ply --floor 30 --tolerance 0.03)
 glossy=(knot.ply --tolerance 0.06 --view auto --material ggx:roughness=0.4,f0=0.04 --glossy-tolerance 0.2)
 texels=(squares.obj --receivers texels:96x96 --tolerance 0.03)
-for kind in vertices glossy texels; do
+bouncing=(knot.ply --floor 50 --tolerance 0.05 --bounces)
+bouncing_texels=(squares.obj --receivers texels:64x64 --tolerance 0.05 --bounces --two-sided)
+bouncing_glossy=("${glossy[@]}" --bounces 0.02)
+for kind in vertices glossy texels bouncing bouncing_texels bouncing_glossy; do
     declare -n options=$kind
     "$relumine" precompute "${options[@]}" -o "$kind.prt" -q
     for ranks in 1 2 3 5 8; do
@@ -70,15 +73,45 @@ start 1 precompute "${vertices[@]}" -o shared.prt --threads 2 -q
 check "1 rank of 2 threads" cmp -s vertices.prt shared.prt
 rm -f shared.prt
 
-# Light: each rank reads its own tiles.
+# Light: each rank reads its own tiles and rows.
 "$relumine" generate sun_sky -o . --face-resolution 64 -q
-for scene in vertices texels; do
-    "$relumine" relight "$scene.prt" sun_sky.exr -o whole.npy -q
-    for ranks in 1 2 3 8; do
-        start "$ranks" relight "$scene.prt" sun_sky.exr -o shared.npy --threads 1 -q
-        check "light of $scene, $ranks ranks" cmp -s whole.npy shared.npy
-        rm -f shared.npy
+light() { # SCENE OUTPUT ARGS
+    local scene=$1 output=$2
+    shift 2
+    "$relumine" relight "$scene.prt" sun_sky.exr -o "whole$output" "$@" -q
+    for ranks in 1 2 3 5 8; do
+        start "$ranks" relight "$scene.prt" sun_sky.exr -o "shared$output" "$@" --threads 1 -q
+        check "light of $scene ($output $*), $ranks ranks" cmp -s "whole$output" "shared$output"
+        rm -f "shared$output"
     done
+}
+light vertices .npy
+light texels .npy
+light texels .exr
+light bouncing .npy
+light bouncing .png --size 200x150
+light bouncing .ply --bounces 2
+light bouncing_texels .exr --only-bounces
+
+"$relumine" verify bouncing.prt sun_sky.exr --samples 60 --surface 30 --paths 8 --json -q | grep -v '"seconds"' >whole.json
+for ranks in 1 2 3 8; do
+    start "$ranks" verify bouncing.prt sun_sky.exr --samples 60 --surface 30 --paths 8 --threads 1 --json |
+        grep -v '"seconds"' >shared.json
+    check "verify, $ranks ranks" cmp -s whole.json shared.json
+done
+
+# Frames, also those of a second run that goes on.
+"$relumine" generate sequence sun -o frames --num-frames 4 --face-resolution 32 -q
+mkdir whole shared
+animate=(animate bouncing.prt 'frames/sun.####.exr' --size 120x90 -q)
+"$relumine" "${animate[@]}" -o 'whole/f.####.png' --vertices whole/v.npy
+for ranks in 1 2 3 8; do
+    rm -f shared/*
+    start "$ranks" "${animate[@]}" -o 'shared/f.####.png' --vertices shared/v.npy --threads 1
+    rm shared/f.0002.png
+    start "$ranks" "${animate[@]}" -o 'shared/f.####.png' --vertices shared/v.npy --threads 1 --resume
+    rm -f whole/*.done shared/*.done
+    check "frames, $ranks ranks" diff -rq whole shared
 done
 
 # Kills a rank at ten moments. What is left goes on, or begins anew where there was no checkpoint yet.
@@ -95,6 +128,20 @@ for delay in 0.6 0.8 1.0 1.2 1.4 1.6 1.8 2.0 2.3 2.6; do
 done
 start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q
 check "$num_killed ranks killed, then --resume" cmp -s longer.prt killed.prt
+longer=(knot.ply --floor 60 --tolerance 0.05 --bounces 0.004 --checkpoint-seconds 0.05)
+"$relumine" precompute "${longer[@]}" -o longer.prt -q
+rm killed.prt
+num_killed=0
+for delay in 0.8 1.2 1.6 2.0 2.4; do
+    start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
+    run=$!
+    sleep "$delay"
+    rank=$(ranks_of "$run" | sort -R | head -n 1)
+    [ -z "$rank" ] || { kill -9 "$rank" 2>/dev/null && num_killed=$((num_killed + 1)); }
+    wait "$run" || true
+done
+start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q
+check "$num_killed ranks killed among bounces, then --resume" cmp -s longer.prt killed.prt
 check "no checkpoint is left" test ! -e killed.prt.checkpoint
 
 refuses() { # NAME CODE TEXT COMMAND...: one line of relumine-mpi, which has the text; nothing written
@@ -117,8 +164,21 @@ refuses "other arguments" 1 "process 1: expected the arguments" \
     mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader \
     -n 1 "$relumine_mpi" precompute knot.ply -o out.prt : -n 1 "$relumine_mpi" precompute squares.obj -o out.prt
 refuses "no folder" 1 "no/such/out.prt" start 3 precompute "${vertices[@]}" -o no/such/out.prt -q
-refuses "another command" 2 "expected precompute" start 3 verify vertices.prt
-refuses "a picture of shared light" 2 "--output" start 2 relight vertices.prt sun_sky.exr -o out.png
+refuses "another command" 2 "expected precompute" start 3 info vertices.prt
+refuses "lights of a list" 2 "--lights" start 2 relight vertices.prt sun_sky.exr --lights whole.json -o out.npy
+refuses "bounces of a scene without" 1 "vertices.prt: expected a scene made with" \
+    start 2 relight vertices.prt sun_sky.exr --bounces 3 -o out.npy
+refuses "frames that are not there" 1 "nothing" start 2 animate vertices.prt 'nothing.####.exr' -o 'out.####.png'
+# The same arguments name other files on another host.
+mkdir other
+cp texels.prt other/vertices.prt
+cp sun_sky.exr other
+for command in "relight vertices.prt sun_sky.exr -o out.npy" "verify vertices.prt sun_sky.exr --samples 10"; do
+    # shellcheck disable=SC2086 # several words
+    refuses "another scene (${command%% *})" 1 "process 1: vertices.prt: expected the scene and the environment" \
+        mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader \
+        --wdir "$folder" -n 1 "$relumine_mpi" $command -q : --wdir "$folder/other" -n 1 "$relumine_mpi" $command -q
+done
 refuses "shared highlights" 1 "glossy.prt: expected a scene without highlights" \
     start 2 relight glossy.prt sun_sky.exr -o out.npy -q
 refuses "parts" 2 "expected a mesh" start 2 precompute --plan knot.plan --part 1/2 -o out.prt

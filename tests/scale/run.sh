@@ -25,7 +25,7 @@ compare() { # NAME FILE
 }
 
 relumine generate knot -o . --vertices 20000 -q
-relumine plan knot.ply -o knot.plan --tolerance 0.04 --floor 40 -q
+relumine plan knot.ply -o knot.plan --tolerance 0.04 --floor 40 --bounces 0.02 -q
 relumine precompute --plan knot.plan --part 1/1 -o whole.part -q
 relumine join whole.part -o whole.prt -q
 
@@ -115,9 +115,9 @@ else
     job=$(sbatch --parsable "${options[@]}" --array=1-4 "$source/examples/slurm/array.sbatch" knot.plan)
     sbatch --wait --parsable --mem=0 --dependency="afterok:$job" "$source/examples/slurm/join.sbatch" knot >/dev/null
     compare "Slurm, an array of 4 and its join" knot.prt
-    relumine precompute knot.ply -o whole.prt --tolerance 0.04 --floor 40 -q
+    relumine precompute knot.ply -o whole.prt --tolerance 0.04 --floor 40 --bounces 0.02 -q
     OMPI_MCA_btl=self,vader sbatch --wait --parsable --mem=0 --nodes=1 --ntasks-per-node=2 --cpus-per-task=1 \
-        "$source/examples/slurm/mpi.sbatch" knot.ply shared.prt --tolerance 0.04 --floor 40 >/dev/null
+        "$source/examples/slurm/mpi.sbatch" knot.ply shared.prt --tolerance 0.04 --floor 40 --bounces 0.02 >/dev/null
     compare "Slurm, 2 ranks of one job" shared.prt
 fi
 exit "$failed"

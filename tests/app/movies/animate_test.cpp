@@ -231,6 +231,21 @@ TEST_F(Animate, ResumeMakesOnlyWhatIsNotThereAnyMore) {
               4);
 }
 
+TEST_F(Animate, NumbersAreTheSameWhenPicturesGoOn) {
+    lamps(3);
+    const std::vector<std::string> command = {"animate",    "scene.prt",  "lamp.%d.hdr", "-o",
+                                              "lit.%d.png", "--vertices", "v.npy",       "--size",
+                                              "40x30",      "-q"};
+    succeed(command);
+    const std::string numbers = read("v.npy"), picture = read("lit.1.png");
+    fs::remove(folder() / "lit.1.png");
+    std::vector<std::string> again = command;
+    again.emplace_back("--resume");
+    succeed(again);
+    EXPECT_EQ(read("v.npy"), numbers);
+    EXPECT_EQ(read("lit.1.png"), picture);
+}
+
 TEST_F(Animate, AnInterruptLeavesWholeFramesToGoOnFrom) {
     succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "100",
              "--face-resolution", "32", "-q"});

@@ -45,6 +45,27 @@ TEST_F(PlanTest, AnyNumberOfPartsInAnyOrderMakesTheSameScene) {
     succeed({"info", "four.prt", "--check"});
 }
 
+TEST_F(PlanTest, BouncesAreTheSameFromAnyNumberOfParts) {
+    succeed({"plan", "knot.ply", "-o", "scene.plan", "--tolerance", "0.06", "--floor", "20",
+             "--bounces", "0.03", "--two-sided", "-q"});
+    for (const int count : {1, 3}) {
+        std::vector<std::string> join = {"join"};
+        for (int i = 1; i <= count; ++i) {
+            const std::string which = std::to_string(i) + "/" + std::to_string(count);
+            join.push_back("part." + std::to_string(i));
+            succeed(part(which, join.back()));
+        }
+        join.insert(join.end(), {"-o", std::to_string(count) + ".prt", "-q"});
+        succeed(join);
+    }
+    EXPECT_EQ(read("1.prt"), read("3.prt"));
+    succeed({"info", "3.prt", "--check"});
+    write("sky.hdr", lamp_hdr(40));
+    succeed({"relight", "3.prt", "sky.hdr", "--only-bounces", "-o", "bounced.npy", "-q"});
+    fail({"relight", "3.prt", "sky.hdr", "--part", "1/2", "-o", "part"},
+         {"3.prt: expected a scene without bounces"});
+}
+
 TEST_F(PlanTest, AJoinedSceneIsAsExactAsAPlainOne) {
     plan("scene.plan", "0.02");
     for (const char* which : {"1/2", "2/2"})
@@ -145,7 +166,8 @@ TEST_F(PlanTest, WrongUsageIsNamed) {
     misuse({"precompute", "knot.ply", "--plan", "scene.plan", "--part", "1/2", "-o", "part"},
            "MESH");
     misuse({"plan", "knot.ply", "-o", "scene.prt"}, "--output");
-    misuse({"plan", "knot.ply", "-o", "scene.plan", "--bounces"}, "--bounces");
+    misuse({"plan", "knot.ply", "-o", "scene.plan", "--bounces", "7"}, "--bounces");
+    misuse({"plan", "knot.ply", "-o", "scene.plan", "--two-sided"}, "--two-sided");
 }
 
 TEST_F(PlanTest, HighlightsJoinToTheSameFileFromAnyNumberOfParts) {

@@ -58,18 +58,28 @@ TEST(CoarseDirections, WhatReachesAPointOverAnEmptyFloor) {
     EXPECT_EQ(count, 6u * 16u * 16u / 2u) << "the upper half";
 }
 
+/// A point on each side of the wall, both ends of an edge, and one between them on the right.
+struct BesideTheWall {
+    Receivers points;
+    std::vector<CoarseDirections::Bits> bits;
+    std::array<CoarseDirections::Point, 2> ends;
+
+    explicit BesideTheWall(const CoarseDirections& directions) {
+        points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
+        points.normals.assign(3, glm::vec3(0, 1, 0));
+        bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
+        for (std::size_t i = 0; i < ends.size(); ++i)
+            ends[i] = {points.normals[i], &bits[i]};
+    }
+};
+
 TEST(CoarseDirections, TheDifferenceAtAWallIsTheClosedForm) {
     // On one side of the wall half of the sky is seen, on the other the other half. The middle
     // differs from the mean by half of its T everywhere: RMS^2 = 1/(4 pi) Int_hemisphere
     // (cos / 2 pi)^2 = 1 / (24 pi^2).
     const CoarseDirections directions;
-    Receivers points;
-    points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
-    points.normals.assign(3, glm::vec3(0, 1, 0));
-    const auto bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
-    const std::array<CoarseDirections::Point, 2> ends = {
-        CoarseDirections::Point{points.normals[0], &bits[0]},
-        CoarseDirections::Point{points.normals[1], &bits[1]}};
+    const BesideTheWall beside(directions);
+    const auto& [points, bits, ends] = beside;
     EXPECT_NEAR(directions.difference({points.normals[2], &bits[2]}, ends, 0.5f),
                 std::sqrt(1.0 / 24.0) / 3.14159265, 3e-4);
     EXPECT_EQ(directions.difference({points.normals[0], &bits[0]}, std::span(ends).first(1), 1.0f),
@@ -112,13 +122,8 @@ TEST(CoarseDirections, TheLightOfAnEnvironmentCounts) {
     const glm::vec3 w = glm::vec3(cubemap::texel_direction(cubemap::Face::PositiveX, 64, 32, 128));
     for (std::size_t j = 0; j < DirectionPatch::Size; ++j)
         EXPECT_LT(glm::distance(directions.patches().back().direction(j), w), 0.02f);
-    Receivers points;
-    points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
-    points.normals.assign(3, glm::vec3(0, 1, 0));
-    const auto bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
-    const std::array<CoarseDirections::Point, 2> ends = {
-        CoarseDirections::Point{points.normals[0], &bits[0]},
-        CoarseDirections::Point{points.normals[1], &bits[1]}};
+    const BesideTheWall beside(directions);
+    const auto& [points, bits, ends] = beside;
     EXPECT_NEAR(directions.difference({points.normals[2], &bits[2]}, ends, 0.5f),
                 std::sqrt(1.0 / 24.0 + 4.0 * double{w.y * w.y} / 4.0) / 3.14159265, 1e-3);
     // Light without power and light from everywhere are no reason for patches.

@@ -483,7 +483,7 @@ TEST_F(SceneFileTest, OlderVersionsBecomeWhatAPrecomputeFindsNow) {
     }
     scenes::sign_as_version(file_, 0);
     expect_refused("version 0");
-    scenes::sign_as_version(file_, 4);
+    scenes::sign_as_version(file_, SceneFileVersion + 1);
     expect_refused("made by a newer relumine");
 }
 

@@ -12,6 +12,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <xxhash.h>
+#include <zstd.h>
 
 #include "files/output_file.h"
 #include "tests/prt/damaged_file.h"
@@ -107,7 +108,7 @@ TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
     const std::vector<std::byte> little_endian(bytes.begin() + ByteOrderAt,
                                                bytes.begin() + VersionAt);
     EXPECT_EQ(little_endian, (std::vector{std::byte{4}, std::byte{3}, std::byte{2}, std::byte{1}}));
-    EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), 3u);
+    EXPECT_EQ(value_at<std::uint32_t>(bytes, VersionAt), SceneFileVersion);
     EXPECT_EQ(value_at<std::uint64_t>(bytes, FileSizeAt), bytes.size());
     EXPECT_EQ(value_at<std::uint32_t>(bytes, NumSectionsAt), 1u);
     EXPECT_STREQ(reinterpret_cast<const char*>(bytes.data() + HeaderSize), "abc");
@@ -181,9 +182,9 @@ TEST_F(SectionFileTest, SaysWhatIsWrong) {
         write(bad);
     };
     changed([](auto& b) { put(b, VersionAt, std::uint32_t{0}); });
-    expect_refused("expected .prt version 1 to 3, got version 0");
-    changed([](auto& b) { put(b, VersionAt, std::uint32_t{4}); });
-    expect_refused("expected .prt version 3, got version 4, made by a newer relumine");
+    expect_refused("expected .prt version 1 to 4, got version 0");
+    changed([](auto& b) { put(b, VersionAt, SceneFileVersion + 1); });
+    expect_refused("expected .prt version 4, got version 5, made by a newer relumine");
     changed([](auto& b) { std::reverse(b.begin() + ByteOrderAt, b.begin() + VersionAt); });
     expect_refused("expected a little-endian .prt scene, got a big-endian one");
     changed([](auto& b) { b.resize(b.size() - 3); });
@@ -274,6 +275,42 @@ TEST_F(SectionFileTest, WhatIsHardlyBelievableIsReadPiecewise) {
     sign(lie);
     write(lie);
     expect_refused("expected zstd data, got a damaged section 'zeros'");
+}
+
+TEST_F(SectionFileTest, LargeSectionsAreSeveralFrames) {
+    std::mt19937 random(3);
+    std::vector<std::byte> large((std::size_t{5} << 20) + 7);
+    std::generate(large.begin(), large.end(), [&] { return static_cast<std::byte>(random() % 3); });
+    write_sections(file_, {{"large", large}});
+    EXPECT_TRUE(read_sections(file_).at("large") == large);
+    std::vector<std::byte> streamed;
+    stream_section(file_, "large", large.size(), [&](std::span<const std::byte> piece) {
+        streamed.insert(streamed.end(), piece.begin(), piece.end());
+    });
+    EXPECT_TRUE(streamed == large);
+
+    const std::vector<std::byte> good = files::read(file_);
+    const auto offset = value_at<std::uint64_t>(good, HeaderSize + OffsetAt);
+    std::vector<std::size_t> ends = {offset};
+    while (ends.back() < good.size())
+        ends.push_back(ends.back() + ZSTD_findFrameCompressedSize(good.data() + ends.back(),
+                                                                  good.size() - ends.back()));
+    EXPECT_EQ(ends.size(), 4u) << "frames of 2 MiB";
+    // A frame that is missing, and one too many.
+    for (const bool is_missing : {true, false}) {
+        std::vector<std::byte> bad = good;
+        if (is_missing)
+            bad.resize(ends[2]);
+        else
+            bad.insert(bad.end(), good.begin() + static_cast<std::ptrdiff_t>(ends[2]), good.end());
+        const std::uint64_t stored = bad.size() - offset;
+        put(bad, FileSizeAt, std::uint64_t{bad.size()});
+        put(bad, HeaderSize + StoredSizeAt, stored);
+        put(bad, HeaderSize + ChecksumAt, XXH64(bad.data() + offset, stored, 0));
+        sign(bad);
+        write(bad);
+        expect_refused("expected zstd data, got a damaged section 'large'");
+    }
 }
 
 TEST_F(SectionFileTest, UnwritablePlacesLeaveNothing) {

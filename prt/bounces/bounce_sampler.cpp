@@ -1,0 +1,141 @@
+#include "prt/bounces/bounce_sampler.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "cubemap/face.h"
+#include "cubemap/split_mix64.h"
+#include "prt/receivers/mesh_point.h"
+
+namespace relumine::prt {
+
+namespace {
+
+/// Sets the choice of vertices apart from the shift of directions.
+constexpr std::uint64_t ChoiceSeed = 0x5851f42d4c957f2du;
+
+/// Returns a number in [0, 1) from the upper bits.
+double unit_interval(std::uint64_t bits) {
+    return static_cast<double>(bits >> 11u) * 0x1p-53;
+}
+
+/// Cosine-distributed directions around a normal: Roberts' R2 sequence, shifted by the receiver, so
+/// that any beginning of it is stratified.
+class CosineDirections {
+public:
+    CosineDirections(const glm::vec3& normal, std::uint32_t receiver)
+        : normal_(normal),
+          shift_s_(unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver}).next())),
+          shift_t_(unit_interval(cubemap::SplitMix64(2 * std::uint64_t{receiver} + 1).next())) {
+        // Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+        const double sign = std::copysign(1.0, normal_.z);
+        const double a = -1.0 / (sign + normal_.z);
+        const double b = normal_.x * normal_.y * a;
+        tangent_ = {1.0 + sign * normal_.x * normal_.x * a, sign * b, -sign * normal_.x};
+        bitangent_ = {b, sign + normal_.y * normal_.y * a, -normal_.y};
+    }
+
+    [[nodiscard]] glm::dvec3 operator[](std::uint32_t i) const {
+        constexpr double StepS = 0.7548776662466927, StepT = 0.5698402909980532;
+        const double s = fraction(shift_s_ + StepS * i);
+        const double t = fraction(shift_t_ + StepT * i);
+        const double radius = std::sqrt(s);
+        const double angle = 2.0 * std::numbers::pi * t;
+        return radius * std::cos(angle) * tangent_ + radius * std::sin(angle) * bitangent_ +
+               std::sqrt(1.0 - s) * normal_;
+    }
+
+private:
+    static double fraction(double value) { return value - std::floor(value); }
+
+    glm::dvec3 normal_;
+    double shift_s_;
+    double shift_t_;
+    glm::dvec3 tangent_{};
+    glm::dvec3 bitangent_{};
+};
+
+} // namespace
+
+BounceSampler::BounceSampler(const mesh::TriangleMesh& mesh, const Receivers& receivers,
+                             const Transfer& transfer, const BounceProbes& probes,
+                             const RayScene& rays, const BounceOptions& options)
+    : mesh_(mesh), receivers_(receivers), transfer_(transfer), probes_(probes), rays_(rays),
+      options_(options), place_of_(mesh.num_vertices(), NoEmitter) {
+    for (std::uint32_t place = 0; place < transfer.order.size(); ++place) {
+        const std::uint32_t receiver = transfer.order[place];
+        if (receivers.points.empty())
+            place_of_[receiver] = place;
+        else if (receiver >= receivers.num_own())
+            place_of_[vertex_at(mesh, receivers.points[receiver])] = place;
+    }
+}
+
+std::uint64_t BounceSampler::look(const PartReceiver& of_part, std::uint32_t num_directions,
+                                  RayHits& hits) const {
+    const std::uint32_t begin = std::exchange(hits.num_directions, num_directions);
+    if (closure_of(of_part) == 0.0)
+        return 0;
+    const std::uint32_t receiver = transfer_.order[of_part.place];
+    const glm::vec3& normal = transfer_.normals[of_part.place];
+    const CosineDirections directions(normal, receiver);
+    const glm::vec3 origin = ray_origin(receivers_.positions[receiver], normal, options_.bias);
+    std::uint64_t num_rays = 0;
+    for (std::uint32_t i = begin; i < num_directions; ++i) {
+        const glm::dvec3 direction = directions[i];
+        const std::uint32_t leaf = transfer_.quadtree.leaf_at(cubemap::face_point(direction));
+        if (transfer_.counts.count(of_part.index, leaf) == 16)
+            continue;
+        ++num_rays;
+        const auto hit = rays_.closest_hit(origin, glm::vec3(direction));
+        if (!hit)
+            continue;
+        const double choice = unit_interval(
+            cubemap::SplitMix64((std::uint64_t{receiver} << 32u | i) ^ ChoiceSeed).next());
+        hits.halves[i % 2].push_back(emitter_of(*hit, glm::vec3(direction), choice));
+        const MeshPoint at{hit->triangle, hit->barycentric};
+        const auto distance =
+            static_cast<double>(glm::distance(value_at(mesh_, mesh_.positions, at), origin));
+        hits.sum_inverse_distances += 1.0 / distance;
+    }
+    return num_rays;
+}
+
+double BounceSampler::squared_error(const PartReceiver& receiver, const RayHits& hits) const {
+    const double closure = closure_of(receiver);
+    if (hits.num_hits() == 0)
+        return closure * closure;
+    std::array<std::array<double, NumProbeLights>, 2> means{};
+    for (std::size_t half = 0; half < 2; ++half) {
+        for (const std::uint32_t emitter : hits.halves[half])
+            if (emitter != NoEmitter)
+                for (std::size_t light = 0; light < NumProbeLights; ++light)
+                    means[half][light] += static_cast<double>(probes_.at(emitter)[light]);
+        for (double& mean : means[half])
+            mean /= std::max(static_cast<double>(hits.halves[half].size()), 1.0);
+    }
+    double worst = 0.0;
+    for (std::size_t light = 0; light < NumProbeLights; ++light)
+        worst = std::max(worst, std::abs(means[0][light] - means[1][light]));
+    return 0.25 * closure * closure * worst * worst;
+}
+
+/// Draws a vertex of the triangle by its barycentric weight; `choice` is in [0, 1).
+std::uint32_t BounceSampler::emitter_of(const Hit& hit, const glm::vec3& direction,
+                                        double choice) const {
+    const mesh::Triangle& corners = mesh_.triangles[hit.triangle];
+    const float u = hit.barycentric.x;
+    const float v = hit.barycentric.y;
+    if (!options_.two_sided && !meets_front(mesh_, {hit.triangle, hit.barycentric}, direction))
+        return NoEmitter;
+    const std::size_t corner = choice < static_cast<double>(u)       ? 1
+                               : choice < static_cast<double>(u + v) ? 2
+                                                                     : 0;
+    return place_of_[corners[corner]];
+}
+
+} // namespace relumine::prt

@@ -1,0 +1,85 @@
+// Traces the rays that find what surfaces a receiver sees. For bounce_precompute.cpp.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/bounces/bounce_precompute.h"
+#include "prt/bounces/bounce_samples.h"
+#include "prt/receivers/receivers.h"
+#include "prt/transfer.h"
+#include "prt/visibility/ray_scene.h"
+
+namespace relumine::prt {
+
+/// The column of a hit on a surface that radiates nothing.
+inline constexpr std::uint32_t NoEmitter = std::numeric_limits<std::uint32_t>::max();
+
+/// What a receiver's rays met.
+struct RayHits {
+    /// Place of each emitter, or NoEmitter, of every second direction: two halves, whose difference
+    /// tells the error.
+    std::array<std::vector<std::uint32_t>, 2> halves;
+    std::uint32_t num_directions = 0;
+    /// Over the hits.
+    double sum_inverse_distances = 0.0;
+
+    [[nodiscard]] std::size_t num_hits() const { return halves[0].size() + halves[1].size(); }
+    /// Harmonic mean of the distances of surfaces; sky is infinitely far away.
+    [[nodiscard]] float distance() const {
+        return static_cast<float>(num_directions / sum_inverse_distances);
+    }
+};
+
+/// A receiver of the part that is worked on: its place among all, and its index in the part.
+struct PartReceiver {
+    std::size_t place = 0;
+    std::size_t index = 0;
+};
+
+/// Traces the rays of receivers.
+///
+/// Threads: any number at a time.
+class BounceSampler {
+public:
+    /// All arguments must outlive this object. `transfer` has the counts of the part's receivers.
+    BounceSampler(const mesh::TriangleMesh& mesh, const Receivers& receivers,
+                  const Transfer& transfer, const BounceProbes& probes, const RayScene& rays,
+                  const BounceOptions& options);
+
+    /// Returns the part of the hemisphere that surfaces close.
+    [[nodiscard]] double closure_of(const PartReceiver& receiver) const {
+        return closed_part(transfer_.normals[receiver.place], probes_.open_parts[receiver.index]);
+    }
+
+    /// Looks into as many directions as `num_directions`, after those that are there. Returns the
+    /// number of rays.
+    std::uint64_t look(const PartReceiver& receiver, std::uint32_t num_directions,
+                       RayHits& hits) const;
+
+    /// Returns the squared standard error of one bounce under the worst of the probe lights, from
+    /// the difference of the halves.
+    [[nodiscard]] double squared_error(const PartReceiver& receiver, const RayHits& hits) const;
+
+private:
+    [[nodiscard]] std::uint32_t emitter_of(const Hit& hit, const glm::vec3& direction,
+                                           double choice) const;
+
+    const mesh::TriangleMesh& mesh_;
+    const Receivers& receivers_;
+    const Transfer& transfer_;
+    const BounceProbes& probes_;
+    const RayScene& rays_;
+    const BounceOptions& options_;
+    /// [num_vertices] place of each vertex.
+    std::vector<std::uint32_t> place_of_;
+};
+
+} // namespace relumine::prt

@@ -1,0 +1,214 @@
+// Processes that share a precompute and its light, and parts of a plan, against one process. Here
+// the processes are threads.
+#include <cmath>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "prt/parts/scene_part.h"
+#include "relumine/shared_light.h"
+#include "tests/prt/thread_team.h"
+#include "tests/relumine/small_scenes.h"
+
+namespace relumine {
+namespace {
+
+constexpr std::uint32_t Counts[] = {1, 2, 3, 8};
+
+/// A corner of six tiles of receivers; eight processes are too many.
+constexpr std::uint32_t Side = 54;
+
+class SharedWork : public scenes::InFolder {
+protected:
+    [[nodiscard]] static PrecomputeOptions
+    options(const std::variant<Vertices, Pixels, Texels>& receivers,
+            const std::filesystem::path& output) {
+        PrecomputeOptions result{.tolerance = 0.05f,
+                                 .receivers = receivers,
+                                 .bounce_tolerance = 0.02f,
+                                 .output = output,
+                                 .checkpoint_seconds = 0.0};
+        if (std::holds_alternative<Pixels>(receivers))
+            result.view = View{
+                Camera{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30}};
+        return result;
+    }
+    [[nodiscard]] static std::vector<std::variant<Vertices, Pixels, Texels>> all_receivers() {
+        return {Vertices{}, Pixels{.width = 60, .height = 40}, Texels{.width = 48, .height = 48}};
+    }
+    [[nodiscard]] static Mesh mesh() { return scenes::corner(Side); }
+    void make_scene() const {
+        PrecomputeOptions work = options(Vertices{}, file("scene.prt"));
+        work.surface = everywhere({.albedo = glm::vec3(0.7f, 0.5f, 0.3f)});
+        (void)precompute(mesh(), work);
+    }
+    /// Calls work(shared, is_first) in each process.
+    template<typename Work>
+    void share(std::uint32_t count, const Work& work) const {
+        prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
+            SharedLight light(team, file("scene.prt"),
+                              prt::load_scene_part(file("scene.prt"), team.part()));
+            work(light, index == 0);
+        });
+    }
+};
+
+cubemap::CubeMap sun_and_sky(float sun) {
+    cubemap::CubeMap map(16, glm::vec3(0.2f, 0.3f, 0.5f));
+    map.at(cubemap::Face::PositiveZ, 8, 3) = glm::vec3(sun);
+    return map;
+}
+
+void expect_same_light(const Lighting& a, const Lighting& b) {
+    EXPECT_TRUE(
+        std::equal(a.radiance.begin(), a.radiance.end(), b.radiance.begin(), b.radiance.end()));
+    EXPECT_EQ(a.soft, b.soft);
+    EXPECT_EQ(a.lights, b.lights);
+    EXPECT_EQ(a.environment == nullptr, b.environment == nullptr);
+}
+
+TEST_F(SharedWork, ProcessesFindTheBouncesOfOne) {
+    for (const auto& receivers : all_receivers()) {
+        (void)precompute(mesh(), options(receivers, file("whole.prt")));
+        for (const std::uint32_t count : Counts) {
+            prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
+                if (index != 0)
+                    return assist(team);
+                PrecomputeOptions work = options(receivers, file("shared.prt"));
+                work.team = &team;
+                (void)precompute(mesh(), work);
+            });
+            EXPECT_EQ(read("whole.prt"), read("shared.prt")) << count << " processes";
+        }
+    }
+}
+
+/// Relative L2 of the bounced light of two scenes with the same receivers.
+double difference_of_bounces(const std::filesystem::path& a, const std::filesystem::path& b) {
+    LitScene lit(load_scene(a)), other(load_scene(b));
+    for (LitScene* each : {&lit, &other}) {
+        each->light(sun_and_sky(60.0f));
+        each->bounce(bounce_albedo(each->scene()));
+    }
+    double difference = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < lit.bounced().size(); ++i) {
+        const glm::dvec3 d = glm::dvec3(lit.bounced()[i]) - glm::dvec3(other.bounced()[i]);
+        difference += glm::dot(d, d);
+        all += glm::dot(glm::dvec3(lit.bounced()[i]), glm::dvec3(lit.bounced()[i]));
+    }
+    return std::sqrt(difference / all);
+}
+
+TEST_F(SharedWork, PartsOfAPlanMakeTheSameBouncesInAnyNumber) {
+    for (const auto& receivers : all_receivers()) {
+        plan(mesh(), options(receivers, file("scene.plan")));
+        std::string one;
+        for (const std::uint32_t count : {1u, 4u, 7u}) {
+            std::vector<std::filesystem::path> parts;
+            for (std::uint32_t i = count; i-- > 0;) {
+                parts.push_back(file("part." + std::to_string(i)));
+                precompute_part(
+                    {.plan = file("scene.plan"), .part = {i, count}, .output = parts.back()});
+            }
+            join(parts, file("planned.prt"));
+            if (count == 1)
+                one = read("planned.prt");
+            EXPECT_EQ(one, read("planned.prt")) << count << " parts";
+        }
+        // The standard error of a bounce was to be 0.02 of a light of radiance 1.
+        (void)precompute(mesh(), options(receivers, file("whole.prt")));
+        EXPECT_LT(difference_of_bounces(file("whole.prt"), file("planned.prt")), 0.02);
+    }
+}
+
+TEST_F(SharedWork, ProcessesFindTheLightOfOne) {
+    make_scene();
+    LitScene whole(load_scene(file("scene.prt")));
+    const std::vector<glm::vec3> albedo = bounce_albedo(whole.scene());
+    whole.light(sun_and_sky(60.0f));
+    whole.bounce(albedo, {.num_bounces = 2});
+    const Lighting light = whole.lighting();
+    ASSERT_FALSE(light.lights.empty());
+    for (const std::uint32_t count : Counts)
+        share(count, [&](SharedLight& shared, bool is_first) {
+            shared.light(sun_and_sky(60.0f));
+            shared.set_bounces(bounces_of(shared.lit().scene(), albedo, {.num_bounces = 2}));
+            shared.bounce();
+            const Lighting own = shared.lighting();
+            EXPECT_EQ(own.radiance.empty(), !is_first);
+            if (is_first)
+                expect_same_light(light, own);
+        });
+}
+
+TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
+    make_scene();
+    const Scene scene = load_scene(file("scene.prt"));
+    LitScene lit{Scene(scene)};
+    const std::vector<lights::DistantLight> list = {
+        {.direction = glm::dvec3(0, 1, 0), .irradiance = glm::dvec3(2.0)}};
+    const std::vector<float> suns = {0.0f, 60.0f, 61.0f, 2.0f};
+    for (const std::uint32_t count : {2u, 8u}) {
+        relight::Relighter relighter(lit.scene().transfer, lit.shadow_rays());
+        relighter.set_bounces(bounces_of(lit.scene(), bounce_albedo(lit.scene())));
+        // All frames, then a list of lights.
+        std::vector<std::vector<glm::vec3>> expected;
+        const auto keep = [&] {
+            relighter.bounce();
+            expected.emplace_back(relighter.radiance().begin(), relighter.radiance().end());
+        };
+        for (const float sun : suns) {
+            relighter.set_frame(lit.bin(sun_and_sky(sun)));
+            keep();
+        }
+        relighter.set_lights(list);
+        keep();
+        share(count, [&](SharedLight& shared, bool is_first) {
+            const Scene& own = shared.lit().scene();
+            shared.set_bounces(bounces_of(own, bounce_albedo(own)));
+            std::size_t frame = 0;
+            const auto compare = [&] {
+                shared.bounce();
+                const Lighting light = shared.lighting();
+                if (is_first) {
+                    EXPECT_TRUE(std::equal(light.radiance.begin(), light.radiance.end(),
+                                           expected[frame].begin(), expected[frame].end()));
+                }
+                ++frame;
+            };
+            for (const float sun : suns) {
+                shared.set_frame(lit.bin(sun_and_sky(sun)));
+                compare();
+            }
+            shared.set_lights(list);
+            compare();
+        });
+    }
+}
+
+TEST_F(SharedWork, ProcessesFindTheErrorOfOne) {
+    make_scene();
+    const auto scene = std::make_shared<const Scene>(load_scene(file("scene.prt")));
+    const auto verified = [&](prt::Reduction* reduction) {
+        LitScene lit(scene);
+        lit.light(sun_and_sky(60.0f));
+        lit.bounce(bounce_albedo(*scene));
+        return lit.verify(
+            {.num_samples = 70, .num_surface_points = 30, .num_paths = 8, .reduction = reduction});
+    };
+    const Verification whole = verified(nullptr);
+    ASSERT_TRUE(whole.surface);
+    for (const std::uint32_t count : Counts)
+        prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t) {
+            const Verification shared = verified(&team);
+            EXPECT_EQ(whole.receivers, shared.receivers);
+            EXPECT_EQ(whole.error.relative_l2, shared.error.relative_l2);
+            EXPECT_EQ(whole.error.worst_receiver, shared.error.worst_receiver);
+            EXPECT_EQ(whole.noise, shared.noise);
+            ASSERT_TRUE(shared.surface);
+            EXPECT_EQ(whole.surface->error.relative_l2, shared.surface->error.relative_l2);
+        });
+}
+
+} // namespace
+} // namespace relumine
