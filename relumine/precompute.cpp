@@ -301,7 +301,7 @@ private:
     void leave_highlights_out() {
         for (prt::Surface& surface : scene_.receivers.surfaces) {
             report_.num_highlights_left_out += surface.highlight != prt::Highlight::None ? 1 : 0;
-            surface.highlight = prt::Highlight::None;
+            surface = prt::without_highlight(surface);
         }
         if (report_.num_highlights_left_out != 0)
             warn(Warning::HighlightsWithoutView,

@@ -200,7 +200,7 @@ private:
 
     /// How many times the directions of the first pass each receiver needs: the variance falls as
     /// the number of directions and of those who share them grows. Where surfaces meet, few share;
-    /// their noise would stand as a line beside even walls.
+    /// their noise would stand as a line beside even walls, the more the less sky they see.
     void choose_factors(const PlaceLists& averaged, std::vector<std::uint32_t>& factors) {
         const double allowed = static_cast<double>(options_.tolerance * options_.tolerance);
         tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
@@ -211,10 +211,11 @@ private:
                          static_cast<double>(end - begin);
             blocks_[block].squared_errors = 0.0;
             for (std::size_t i = begin; i < end; ++i) {
-                constexpr std::size_t LeastShared = 8;
-                const std::size_t num_shared = averaged[i].size();
-                const double shared = error / static_cast<double>(num_shared);
-                const std::size_t least = hits_[i].num_hits() == 0 ? 1 : LeastShared;
+                constexpr double LeastShared = 8.0;
+                const auto num_shared = static_cast<double>(averaged[i].size());
+                const double shared = error / num_shared;
+                const double least =
+                    hits_[i].num_hits() == 0 ? 1.0 : LeastShared * sampler_.closure_of(receiver(i));
                 factors[i] = 1;
                 while ((shared > factors[i] * allowed || factors[i] * num_shared < least) &&
                        2 * factors[i] * options_.min_directions <= options_.max_directions)

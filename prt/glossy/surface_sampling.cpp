@@ -9,6 +9,9 @@ namespace relumine::prt {
 
 namespace {
 
+/// glTF 2.0, Appendix B.
+constexpr float DielectricF0 = 0.04f;
+
 /// Interpolates an attribute of the corners at a point.
 template<class Value>
 Value interpolate(const std::array<Value, 3>& corners, const glm::vec2& barycentric) {
@@ -71,9 +74,17 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                 .roughness_or_exponent = roughness};
     }
     return {.albedo = base * (1.0f - metallic),
-            .specular = glm::mix(glm::vec3(0.04f), base, metallic),
+            .specular = glm::mix(glm::vec3(DielectricF0), base, metallic),
             .highlight = Highlight::Ggx,
             .roughness_or_exponent = roughness};
+}
+
+Surface without_highlight(Surface surface) {
+    if (surface.highlight == Highlight::Ggx)
+        surface.albedo =
+            glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);
+    surface.highlight = Highlight::None;
+    return surface;
 }
 
 std::vector<Surface> vertex_surfaces(const mesh::TriangleMesh& mesh,

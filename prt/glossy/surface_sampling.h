@@ -22,6 +22,10 @@ namespace relumine::prt {
 [[nodiscard]] Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
                                  const glm::vec2& barycentric);
 
+/// Returns the surface for a scene without a view, where highlights are left out. What a metal
+/// reflects, F0 above the 0.04 of other surfaces, counts as diffuse: otherwise metals were black.
+[[nodiscard]] Surface without_highlight(Surface surface);
+
 /// Replaces the surface of a triangle's points, given its own: materials from the command line.
 using SurfaceOverride = std::function<Surface(const mesh::TriangleMesh& mesh,
                                               std::uint32_t triangle, const Surface& surface)>;

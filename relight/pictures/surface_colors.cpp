@@ -26,7 +26,8 @@ SurfaceColors::SurfaceColors(const mesh::TriangleMesh& mesh, std::span<const prt
 }
 
 glm::vec3 SurfaceColors::albedo(const prt::MeshPoint& point) const {
-    return prt::surface_at(*mesh_, point.triangle, point.barycentric).albedo;
+    return prt::without_highlight(prt::surface_at(*mesh_, point.triangle, point.barycentric))
+        .albedo;
 }
 
 glm::vec3 SurfaceColors::radiance(std::span<const glm::vec3> vertex_radiance,

@@ -225,7 +225,7 @@ TEST_F(Bounces, AreWithinTheMemory) {
         words.push_back(bytes);
         return words;
     };
-    fail(within("63M"), {"colonnade.ply: expected bounces within ", " MB of memory, got ",
+    fail(within("60M"), {"colonnade.ply: expected bounces within ", " MB of memory, got ",
                          "; a larger error of --bounces takes less"});
     EXPECT_FALSE(std::filesystem::exists(folder() / "x.prt"));
     succeed(within("1G"));

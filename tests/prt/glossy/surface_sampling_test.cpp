@@ -139,5 +139,20 @@ TEST(SurfaceSampling, VerticesListenToTheirLowestTriangle) {
     EXPECT_EQ(overridden[3].albedo, glm::vec3(0.75f));
 }
 
+TEST(SurfaceSampling, MetalsAreNotBlackWithoutTheirHighlights) {
+    const glm::vec3 base(0.91f, 0.33f, 0.02f);
+    const Surface metal = without_highlight(
+        {.albedo = glm::vec3(0.0f), .specular = base, .highlight = Highlight::Ggx});
+    EXPECT_EQ(metal.highlight, Highlight::None);
+    EXPECT_EQ(metal.albedo, glm::vec3(0.91f - 0.04f, 0.33f - 0.04f, 0.0f));
+    const Surface paint = without_highlight(
+        {.albedo = base, .specular = glm::vec3(0.04f), .highlight = Highlight::Ggx});
+    EXPECT_EQ(paint.albedo, base);
+    const Surface phong = without_highlight(
+        {.albedo = base, .specular = glm::vec3(0.5f), .highlight = Highlight::BlinnPhong});
+    EXPECT_EQ(phong.albedo, base);
+    EXPECT_EQ(without_highlight({.albedo = base, .specular = glm::vec3(0.5f)}).albedo, base);
+}
+
 } // namespace
 } // namespace relumine::prt
