@@ -113,7 +113,7 @@ void append_wall(mesh::TriangleMesh& mesh, const Wall& wall, double spacing,
         lines[static_cast<std::size_t>(side)] =
             coordinates(wall.outline.min[side], wall.outline.max[side], breaks, spacing);
     }
-    const auto& [us, vs] = lines;
+    const std::vector<double>&us = lines[0], &vs = lines[1];
     const auto is_hole = [&](std::size_t i, std::size_t j) {
         const double u = 0.5 * (us[i] + us[i + 1]);
         const double v = 0.5 * (vs[j] + vs[j + 1]);

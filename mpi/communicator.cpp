@@ -246,6 +246,7 @@ std::vector<std::vector<std::byte>> Communicator::gather(std::vector<std::byte> 
 std::vector<std::byte> Communicator::scatter(std::vector<std::vector<std::byte>> bytes) {
     meet();
     std::vector<std::uint64_t> sizes;
+    sizes.reserve(bytes.size());
     for (const std::vector<std::byte>& of_process : bytes)
         sizes.push_back(of_process.size());
     std::uint64_t own_size = 0;

@@ -149,10 +149,10 @@ Environment environment_of(const std::shared_ptr<const cubemap::EnvironmentImage
 Environment load_environment(const std::filesystem::path& path, const EnvironmentOptions& options) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    auto image =
+    const auto image =
         std::make_shared<const cubemap::EnvironmentImage>(load_environment_image(path, options));
     const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
-    Environment result = environment_of(std::move(image), options);
+    Environment result = environment_of(image, options);
     result.seconds_load = seconds_load;
     return result;
 }

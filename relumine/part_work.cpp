@@ -34,6 +34,7 @@ prt::BounceSamples bounce_samples(const mesh::TriangleMesh& mesh, const prt::Rec
     transfer.counts = std::move(own.counts);
 
     std::vector<float> open_parts;
+    open_parts.reserve(own_probes.size());
     for (const prt::ProbeRadiance& probe : own_probes)
         open_parts.push_back(probe[0]);
     if (plan != nullptr) {

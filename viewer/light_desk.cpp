@@ -11,7 +11,7 @@
 
 namespace relumine::viewer {
 
-LightDesk::LightDesk(relight::LightEditor& editor, std::filesystem::path base_path)
+LightDesk::LightDesk(relight::LightEditor& editor, const std::filesystem::path& base_path)
     : editor_(editor) {
     editor_.forget_history();
     note_base_path(base_path);

@@ -33,7 +33,7 @@ class LightDesk {
 public:
     /// The editor must outlive the desk, and only the desk may edit it. The editor's present state
     /// becomes the state before all steps of undo. `base_path` is the file of its base.
-    explicit LightDesk(relight::LightEditor& editor, std::filesystem::path base_path = {});
+    explicit LightDesk(relight::LightEditor& editor, const std::filesystem::path& base_path = {});
 
     [[nodiscard]] const relight::LightEditor& editor() const { return editor_; }
     [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return editor_.layers(); }

@@ -1,5 +1,6 @@
 #include "app/movies/frame_light.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
@@ -62,9 +63,9 @@ Lighting FrameLight::lighting(bool is_drawn) {
 std::vector<bool> FrameLight::agreed(std::vector<bool> own) const {
     if (team_ == nullptr)
         return own;
-    std::vector<std::byte> bytes;
-    for (const bool flag : own)
-        bytes.push_back(static_cast<std::byte>(flag ? 1 : 0));
+    std::vector<std::byte> bytes(own.size());
+    std::transform(own.begin(), own.end(), bytes.begin(),
+                   [](bool flag) { return static_cast<std::byte>(flag ? 1 : 0); });
     std::vector<bool> result;
     for (const std::byte byte : team_->broadcast(std::move(bytes)))
         result.push_back(byte != std::byte{0});

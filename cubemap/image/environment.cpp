@@ -228,6 +228,7 @@ std::vector<std::filesystem::path> environment_files(const std::filesystem::path
     if (place == std::string::npos)
         return {path};
     std::vector<std::filesystem::path> paths;
+    paths.reserve(FaceFileNames.size());
     for (const std::string_view face : FaceFileNames)
         paths.emplace_back(fmt::format("{}{}{}", text.substr(0, place), face,
                                        text.substr(place + FacePlace.size())));
@@ -331,6 +332,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
         return extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
     };
     std::vector<std::unique_ptr<files::OutputFile>> outputs;
+    outputs.reserve(paths.size());
     for (const std::filesystem::path& each : paths)
         outputs.push_back(std::make_unique<files::OutputFile>(each));
     try {

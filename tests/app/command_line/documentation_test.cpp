@@ -43,7 +43,7 @@ protected:
         return text;
     }
     [[nodiscard]] bool has(const std::string& program) const {
-        return shell("command -v " + program + " || true") != "";
+        return !shell("command -v " + program + " || true").empty();
     }
 
     /// What bash offers for the last of the words.

@@ -97,10 +97,10 @@ TEST_F(Animate, EverySequenceIsMadeAndRead) {
     for (const char* kind : {"sun", "switch", "clouds", "tunnel", "turn"}) {
         const std::string name(kind);
         EXPECT_EQ(std::distance(fs::directory_iterator(folder() / name), {}), 3);
-        succeed({"info", name + "/" + name + ".0002.exr"});
+        succeed({"info", fmt::format("{0}/{0}.0002.exr", name)});
         const nlohmann::json report =
-            succeed({"animate", "scene.prt", name + "/" + name + ".####.exr", "--vertices", "v.npy",
-                     "--json"})
+            succeed({"animate", "scene.prt", fmt::format("{0}/{0}.####.exr", name), "--vertices",
+                     "v.npy", "--json"})
                 .json();
         EXPECT_EQ(report["frames"], 3);
     }
