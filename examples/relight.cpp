@@ -14,7 +14,7 @@ int main(int argc, char** argv) try {
         lit.light(load_environment(argv[2], {.face_resolution = 64, .rotate_degrees = 90.0}));
 
     // A part of the environment changes; only what it touches is computed.
-    const std::vector<glm::vec3> bright(8 * 8, glm::vec3(5.0f));
+    const std::vector<glm::vec3> bright(64, glm::vec3(5.0f));
     const UpdateReport edit = lit.update_region({cubemap::Face::PositiveX, 20, 10, 28, 18}, bright);
     lit.save(argv[3], {.exposure_ev = 0.5, .width = 320, .height = 240});
 

@@ -183,7 +183,7 @@ TEST_F(Frames, SizesFromHeadersAreThoseOfTheImages) {
     touch("text.exr");
     EXPECT_THROW(static_cast<void>(read_image_size(in("text.exr"))), std::runtime_error);
     EXPECT_THROW(static_cast<void>(read_image_size(in("missing.exr"))), std::runtime_error);
-    std::ofstream(in("empty.exr"));
+    std::ofstream(in("empty.exr")).close();
     EXPECT_THAT(refusal_of([&] { static_cast<void>(read_image_size(in("empty.exr"))); }),
                 HasSubstr("an empty file"));
 }

@@ -35,21 +35,21 @@ double relative_difference(std::span<const glm::vec3> a, std::span<const glm::ve
 class RelighterBounces : public testing::Test {
 protected:
     static void SetUpTestSuite() {
-        scene_ = new BouncingScene(scenes::sphere_and_box_on_floor(), 0.02f, 0.05f);
+        bouncing = new BouncingScene(scenes::sphere_and_box_on_floor(), 0.02f, 0.05f);
     }
-    static void TearDownTestSuite() { delete scene_; }
+    static void TearDownTestSuite() { delete bouncing; }
 
     static ShadowRays rays() {
-        return {.blockers = &scene_->rays,
-                .positions = scene_->receivers.positions,
-                .bias = scene_->bias,
+        return {.blockers = &bouncing->rays,
+                .positions = bouncing->receivers.positions,
+                .bias = bouncing->bias,
                 .tolerance = 0.05f};
     }
     static SurfaceBounces bounces(const BounceLimits& limits = {}) {
         Colors albedo;
-        for (std::size_t i = 0; i < scene_->receivers.size(); ++i)
+        for (std::size_t i = 0; i < bouncing->receivers.size(); ++i)
             albedo.emplace_back(0.8f, 0.5f, i % 2 == 0 ? 0.7f : 0.1f);
-        return {.matrix = &scene_->matrix, .albedo = albedo, .limits = limits};
+        return {.matrix = &bouncing->matrix, .albedo = albedo, .limits = limits};
     }
     /// A dim sky with a small sun, which has shadow rays of its own.
     static cubemap::CubeMap sunny(float sun = 3000.0f) {
@@ -64,12 +64,12 @@ protected:
         layer.effect = cubemap::Emit{.radiance = glm::vec3(radiance)};
         return layer;
     }
-    static BouncingScene* scene_;
+    static BouncingScene* bouncing;
 };
-BouncingScene* RelighterBounces::scene_ = nullptr;
+BouncingScene* RelighterBounces::bouncing = nullptr;
 
 TEST_F(RelighterBounces, ArePartOfTheRadianceUntilTheLightIsReplaced) {
-    Relighter relighter(scene_->transfer, rays());
+    Relighter relighter(bouncing->transfer, rays());
     EXPECT_THROW(relighter.bounce(), std::logic_error);
     relighter.set_environment(sunny());
     const Colors direct = copy(relighter.radiance());
@@ -96,11 +96,11 @@ TEST_F(RelighterBounces, ArePartOfTheRadianceUntilTheLightIsReplaced) {
 }
 
 TEST_F(RelighterBounces, AnUpdateShowsItsDirectLightAtOnceAndStepsBringTheRest) {
-    Relighter fresh(scene_->transfer, rays());
+    Relighter fresh(bouncing->transfer, rays());
     fresh.set_environment(sunny(9000.0f));
     fresh.set_bounces(bounces());
     fresh.bounce();
-    Relighter relighter(scene_->transfer, rays());
+    Relighter relighter(bouncing->transfer, rays());
     relighter.set_environment(sunny());
     relighter.set_bounces(bounces());
     relighter.bounce();
@@ -131,7 +131,7 @@ TEST_F(RelighterBounces, AnUpdateShowsItsDirectLightAtOnceAndStepsBringTheRest) 
 
 TEST_F(RelighterBounces, OfSeveralLightsAreTheSumOfTheirs) {
     const BounceLimits three{.num_bounces = 3};
-    Relighter one(scene_->transfer, rays()), other(scene_->transfer, rays());
+    Relighter one(bouncing->transfer, rays()), other(bouncing->transfer, rays());
     one.set_environment(sunny());
     other.set_environment(cubemap::CubeMap(8, glm::vec3(0.5f, 0.1f, 0.2f)));
     for (Relighter* relighter : {&one, &other}) {
@@ -147,7 +147,7 @@ TEST_F(RelighterBounces, OfSeveralLightsAreTheSumOfTheirs) {
 }
 
 TEST_F(RelighterBounces, AnEditAndItsReverseLeaveNothingAndUndoIsBitwise) {
-    LightEditor editor(scene_->transfer, rays());
+    LightEditor editor(bouncing->transfer, rays());
     editor.set_base(sunny());
     editor.set_bounces(bounces());
     editor.forget_history();
@@ -188,13 +188,13 @@ TEST_F(RelighterBounces, AnEditAndItsReverseLeaveNothingAndUndoIsBitwise) {
 
 TEST_F(RelighterBounces, FactorsAreTheTransposeOfTheBounces) {
     const SurfaceBounces all = bounces({.num_bounces = 4});
-    Relighter relighter(scene_->transfer, rays());
+    Relighter relighter(bouncing->transfer, rays());
     relighter.set_environment(sunny());
     relighter.set_bounces(all);
     relighter.bounce();
-    const auto num_receivers = static_cast<std::uint32_t>(scene_->receivers.size());
+    const auto num_receivers = static_cast<std::uint32_t>(bouncing->receivers.size());
     const std::vector<std::uint32_t> receivers = {5, num_receivers / 2, num_receivers - 1};
-    const auto factors = bounce_factors(all, scene_->transfer, receivers);
+    const auto factors = bounce_factors(all, bouncing->transfer, receivers);
     glm::dvec3 sum(0.0), expected(0.0);
     for (std::size_t i = 0; i < factors.size(); ++i)
         sum += factors[i] * glm::dvec3(relighter.diffuse_radiance()[i]);
@@ -202,21 +202,21 @@ TEST_F(RelighterBounces, FactorsAreTheTransposeOfTheBounces) {
         expected += glm::dvec3(relighter.bounced()[receiver]) / 3.0;
     for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(sum[c], expected[c], 1e-4 * expected[c]);
-    EXPECT_THROW(static_cast<void>(bounce_factors(all, scene_->transfer, {})),
+    EXPECT_THROW(static_cast<void>(bounce_factors(all, bouncing->transfer, {})),
                  std::invalid_argument);
     const std::uint32_t none = num_receivers;
-    EXPECT_THROW(static_cast<void>(bounce_factors(all, scene_->transfer, {&none, 1})),
+    EXPECT_THROW(static_cast<void>(bounce_factors(all, bouncing->transfer, {&none, 1})),
                  std::invalid_argument);
 }
 
 TEST_F(RelighterBounces, AreInWhatLightsAReceiverAndInWhatARegionLights) {
-    Relighter relighter(scene_->transfer, rays());
+    Relighter relighter(bouncing->transfer, rays());
     relighter.set_environment(sunny());
     // The darkest receiver has most of its light from others.
     relighter.set_bounces(bounces());
     relighter.bounce();
     std::uint32_t receiver = 0;
-    for (std::uint32_t i = 0; i < scene_->receivers.size(); ++i)
+    for (std::uint32_t i = 0; i < bouncing->receivers.size(); ++i)
         if (relighter.bounced()[i].g > relighter.bounced()[receiver].g)
             receiver = i;
     const glm::dvec3 power = cubemap::total_power(contribution_map(relighter, {&receiver, 1}));
