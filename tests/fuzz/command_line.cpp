@@ -55,7 +55,7 @@ bool run(app::CommandLine& program, const Words& arguments) {
         static_cast<void>(program.run(arguments));
         ++fuzz::num_accepted;
     } catch (const app::UsageError& error) {
-        fuzz::require(std::string_view(error.what()).size() > 0, "wrong usage is told");
+        fuzz::require(!std::string_view(error.what()).empty(), "wrong usage is told");
         return false;
     } catch (const std::invalid_argument&) {
     } catch (const std::runtime_error& error) {
@@ -67,7 +67,7 @@ bool run(app::CommandLine& program, const Words& arguments) {
 
 /// A new folder below the target's, which becomes the current one.
 fs::path enter(const char* name) {
-    const fs::path path = fuzz::folder() / name;
+    fs::path path = fuzz::folder() / name;
     fs::create_directory(path);
     fs::current_path(path);
     return path;
@@ -106,7 +106,7 @@ const std::vector<Words>& working_lines() {
 /// The folder with what the lines read.
 const fs::path& working_folder() {
     static const fs::path Path = [] {
-        const fs::path path = enter("full");
+        fs::path path = enter("full");
         write("mesh.obj", app::octahedron_obj());
         for (int frame = 0; frame < 2; ++frame)
             write(fmt::format("env.{}.hdr", frame), app::hdr_file(16, 8, [frame](auto x, auto) {

@@ -19,7 +19,7 @@ using namespace relumine;
 /// A folder with scene.prt, env.hdr and layers.json, which becomes the current one.
 const fs::path& request_folder() {
     static const fs::path Path = [] {
-        const fs::path path = fuzz::folder() / "requests";
+        fs::path path = fuzz::folder() / "requests";
         fs::create_directory(path);
         fs::current_path(path);
         std::ofstream("mesh.obj", std::ios::binary) << app::octahedron_obj();

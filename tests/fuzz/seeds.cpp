@@ -179,7 +179,7 @@ void write_environments(const fs::path& folder) {
     write(folder / "hdr/old_runs.hdr",
           std::string("#?RGBE\nEXPOSURE=2\nCOLORCORR=1 1 0.5\nFORMAT=32-bit_rle_rgbe\n\n+Y 3 -X 4\n"
                       "\x80\x40\x20\x81\x01\x01\x01\x03\x80\x40\x20\x81\x01\x01\x01\x07",
-                      87));
+                      86));
 }
 
 /// A zstd frame of one raw block, so that the fuzzer sees what is in it.
