@@ -45,4 +45,17 @@ private:
     std::size_t num_looks_ = 0;
 };
 
+/// Keeps what the store held after each save.
+class CheckpointHistory final : public MemoryCheckpoint {
+public:
+    std::vector<std::map<std::string, Saved>> after;
+
+    [[nodiscard]] bool save(const std::string& part, std::span<const std::byte> record,
+                            std::span<const std::byte> state) override {
+        const bool is_saved = MemoryCheckpoint::save(part, record, state);
+        after.push_back(parts);
+        return is_saved;
+    }
+};
+
 } // namespace relumine::prt

@@ -216,17 +216,7 @@ TEST(Parts, ProcessesGoOnFromTheCheckpointOfAll) {
         expect_same(whole, joined);
         expect_same_highlights(whole, joined);
     };
-    /// Keeps what the store held after each save.
-    class History final : public MemoryCheckpoint {
-    public:
-        std::vector<std::map<std::string, Saved>> after;
-        [[nodiscard]] bool save(const std::string& part, std::span<const std::byte> record,
-                                std::span<const std::byte> state) override {
-            const bool is_saved = MemoryCheckpoint::save(part, record, state);
-            after.push_back(parts);
-            return is_saved;
-        }
-    } history;
+    CheckpointHistory history;
     std::uint64_t num_rays = 0, num_rays_again = 0;
     shared(history, &num_rays);
     ASSERT_GT(history.after.size(), 3u);

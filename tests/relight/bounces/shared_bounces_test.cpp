@@ -110,16 +110,7 @@ TEST(SharedBounces, PartsOfDifferentKindsAreRefused) {
 
 /// Gives each run what an earlier one had saved up to some save.
 TEST(SharedBounces, ProcessesGoOnFromTheCheckpointOfAll) {
-    class History final : public prt::MemoryCheckpoint {
-    public:
-        std::vector<std::map<std::string, Saved>> after;
-        [[nodiscard]] bool save(const std::string& part, std::span<const std::byte> record,
-                                std::span<const std::byte> state) override {
-            const bool is_saved = MemoryCheckpoint::save(part, record, state);
-            after.push_back(parts);
-            return is_saved;
-        }
-    } history;
+    prt::CheckpointHistory history;
     const auto run = [&](prt::MemoryCheckpoint& store) {
         constexpr std::uint32_t Count = 3;
         std::vector<prt::BounceSamples> parts(Count);
