@@ -176,6 +176,14 @@ void OutputFile::append(std::span<const std::byte> bytes) {
     size_ += bytes.size();
 }
 
+void OutputFile::replace(std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (offset > size_ || bytes.size() > size_ - offset)
+        throw std::invalid_argument(
+            fmt::format("{}: expected bytes within the {} that were written, got {} at {}",
+                        target_.string(), size_, bytes.size(), offset));
+    write_at(target_, file_.get(), offset, bytes, std::max(expected_size_, size_), 0);
+}
+
 void OutputFile::commit() {
     // Some file systems report a full disk only now.
     if (::fsync(file_.get()) != 0)

@@ -18,9 +18,9 @@ namespace relumine::files {
 /// as it was.
 ///
 /// A target that is a symbolic link stays a link: the file it points to is replaced. A target that
-/// is there keeps its permissions. If several
-/// writers share a target, the last commit wins with a whole file. The temporary file of a killed
-/// process is taken over by the next writer of the target.
+/// is there keeps its permissions. If several writers share a target, the last commit wins with a
+/// whole file. The temporary file of a killed process is taken over by the next writer of the
+/// target.
 class OutputFile {
 public:
     /// Creates the temporary file, so an unwritable folder is found before any work is done.
@@ -42,7 +42,11 @@ public:
     /// Adds bytes at the end of the temporary file.
     /// Throws:  as write().
     void append(std::span<const std::byte> bytes);
-    /// Announces the size of the whole file, for the message about a full disk.
+    /// Replaces bytes that were written before.
+    /// Throws:  as write(); std::invalid_argument for bytes beyond the end.
+    void replace(std::uint64_t offset, std::span<const std::byte> bytes);
+    /// Announces the size of the whole file, or an estimate of it, for the message about a full
+    /// disk.
     void expect(std::uint64_t num_bytes) { expected_size_ = num_bytes; }
 
     /// Syncs the file and renames it over the target.

@@ -22,16 +22,19 @@ constexpr std::uint64_t BeamBytesPerTriangle = 260;
 constexpr std::uint64_t BytesPerVertex = 48;
 constexpr std::uint64_t BytesPerReceiver = 80;
 
-/// The joined counts have a third word for every two words of the columns. A file is written from a
-/// copy, with the compressed copy beside it.
+/// The joined counts have a third word for every two words of the columns. While they are joined, a
+/// run of receivers has both.
 constexpr double JoinedPerColumn = 1.3;
-constexpr double SavedPerColumn = 2.6;
+constexpr double ReceiversPerRun = 16384.0;
+
+/// A file is packed and written in batches of 32 MiB.
+constexpr double MostSavedBytes = 64.0 * MiB;
 
 /// Highlights: surfaces and directions to the eye, twice. Blocks are in memory beside the lobe that
-/// they are joined to, and beside its sections.
+/// they are joined to, and the longest section that is made for the file beside all lobes.
 constexpr std::uint64_t GlossyBytesPerReceiver = 120;
 constexpr double JoinedPerGlossyByte = 2.2;
-constexpr double SavedPerGlossyByte = 3.4;
+constexpr double SavedPerGlossyByte = 1.4;
 
 /// Bounces: samples, lists of similar receivers and probe lights.
 constexpr std::uint64_t BounceBytesPerReceiver = 450;
@@ -82,12 +85,16 @@ std::uint64_t peak_bytes(const SceneSizes& sizes, std::uint64_t plane_bytes,
     const auto columns = static_cast<double>(column_bytes);
     const std::uint64_t scene = scene_bytes(sizes);
     const std::uint64_t tracing = scene + plane_bytes + column_bytes;
+    const double run = std::min(
+        1.0, ReceiversPerRun / static_cast<double>(std::max<std::size_t>(sizes.num_receivers, 1)));
     const std::uint64_t joining =
-        scene + static_cast<std::uint64_t>((1.0 + JoinedPerColumn) * columns);
-    const std::uint64_t saving = scene_bytes({.num_vertices = sizes.num_vertices,
-                                              .num_triangles = 0,
-                                              .num_receivers = sizes.num_receivers}) +
-                                 static_cast<std::uint64_t>(SavedPerColumn * columns);
+        scene + static_cast<std::uint64_t>((JoinedPerColumn + run) * columns);
+    const double counts = JoinedPerColumn * columns;
+    const std::uint64_t saving =
+        scene_bytes({.num_vertices = sizes.num_vertices,
+                     .num_triangles = 0,
+                     .num_receivers = sizes.num_receivers}) +
+        static_cast<std::uint64_t>(counts + std::min(counts, MostSavedBytes));
     return std::max({tracing, joining, saving});
 }
 
@@ -120,7 +127,7 @@ std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_byt
     };
     return static_cast<std::uint64_t>(
         std::min(left(without_beams, JoinedPerColumn, JoinedPerGlossyByte),
-                 left(without_triangles, SavedPerColumn, SavedPerGlossyByte)));
+                 left(without_triangles, JoinedPerColumn, SavedPerGlossyByte)));
 }
 
 std::uint64_t max_bounce_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,

@@ -6,15 +6,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include <tbb/blocked_range.h>
+#include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
+
+#include "relight/light_packets.h"
 
 namespace relumine::relight {
 
 namespace {
-
-/// Blocks of one task: about 50 microseconds of work, well above the cost of starting a task.
-constexpr std::size_t BlocksPerTask = 4;
 
 void set(TracedRadiance& radiance, std::size_t receiver, const glm::dvec3& value) {
     for (int channel = 0; channel < 3; ++channel)
@@ -46,8 +45,9 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
         return 0;
     // What a ray meets depends on its direction in float alone.
     ReachedBlocks reached;
-    std::vector<SharpLight> fresh;
-    std::vector<Reached*> of_fresh, of_light;
+    std::vector<FreshPatch> fresh;
+    std::size_t num_fresh = 0;
+    std::vector<Reached*> of_light;
     for (const SharpLight& light : lights) {
         const glm::vec3 direction(light.direction);
         const auto [place, is_new] =
@@ -57,41 +57,80 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
                 place->second = std::move(before->second);
             } else {
                 place->second = std::make_unique<Reached>(diffuse_.size());
-                fresh.push_back(light);
-                of_fresh.push_back(place->second.get());
+                add(fresh, direction, place->second.get());
+                ++num_fresh;
             }
         }
         of_light.push_back(place->second.get());
     }
     reached_ = std::move(reached);
+    rays_.blockers->prepare(std::uint64_t{num_fresh} * transfer_.num_receivers());
 
-    const LightPackets packets(fresh);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, diffuse_.size(), BlocksPerTask),
-                      [&](const auto& blocks) {
-                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
-                              find_reached(packets, block, of_fresh);
-                              if (transfer_.glossy)
-                                  light_glossy_block(lights, of_light, block);
-                              else
-                                  light_block(lights, of_light, block);
-                          }
-                      });
-    return fresh.size();
+    constexpr std::size_t BlocksPerGroup = prt::ReceiverGroup::MaxSize / prt::BlockSize;
+    const std::size_t num_groups = (diffuse_.size() + BlocksPerGroup - 1) / BlocksPerGroup;
+    tbb::parallel_for(std::size_t{0}, num_groups, [&](std::size_t index) {
+        const std::size_t first = index * prt::ReceiverGroup::MaxSize;
+        const std::size_t size =
+            std::min(prt::ReceiverGroup::MaxSize, transfer_.num_receivers() - first);
+        std::array<glm::vec3, prt::ReceiverGroup::MaxSize> origins;
+        glm::vec3 mean_normal(0.0f);
+        for (std::size_t i = 0; i < size && !fresh.empty(); ++i) {
+            const glm::vec3& normal = transfer_.normals[first + i];
+            origins[i] =
+                prt::ray_origin(rays_.positions[transfer_.order[first + i]], normal, rays_.bias);
+            mean_normal += normal;
+        }
+        for (const FreshPatch& patch : fresh)
+            find_reached(patch, first, {std::span(origins).first(size), mean_normal});
+        for (std::size_t block = index * BlocksPerGroup;
+             block < std::min((index + 1) * BlocksPerGroup, diffuse_.size()); ++block) {
+            if (transfer_.glossy)
+                light_glossy_block(lights, of_light, block);
+            else
+                light_block(lights, of_light, block);
+        }
+    });
+    return num_fresh;
 }
 
-/// Traces the fresh lights' rays from a block.
-void TracedLight::find_reached(const LightPackets& packets, std::size_t block,
-                               std::span<Reached* const> of_fresh) const {
-    const std::size_t begin = block * prt::BlockSize;
-    const std::size_t size = std::min(prt::BlockSize, transfer_.num_receivers() - begin);
-    for (std::size_t i = 0; i < size; ++i) {
-        const glm::vec3& position = rays_.positions[transfer_.order[begin + i]];
-        for (std::size_t p = 0; p < packets.num_packets(); ++p)
-            for_receivers(packets.visible(p, position, transfer_.normals[begin + i], rays_),
-                          [&](std::size_t lane) {
-                              (*of_fresh[p * prt::PacketSize + lane])[block] |=
-                                  static_cast<std::uint16_t>(1u << i);
-                          });
+/// Lights of neighbouring clusters follow each other.
+void TracedLight::add(std::vector<FreshPatch>& patches, const glm::vec3& direction,
+                      Reached* reached) {
+    // So wide a patch makes a shaft that few triangles lie in: 3 degrees around its first light.
+    constexpr float CosineOfPatch = 0.9986f;
+    if (patches.empty() || patches.back().directions.full() ||
+        glm::dot(patches.back().directions.direction(0), direction) < CosineOfPatch)
+        patches.emplace_back();
+    FreshPatch& patch = patches.back();
+    patch.reached[patch.directions.num_directions] = reached;
+    patch.directions.add(direction);
+}
+
+/// Traces the rays of neighbouring receivers, the first one at place `first`, through a patch.
+void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
+                               const prt::ReceiverGroup& group) const {
+    std::array<std::uint64_t, prt::ReceiverGroup::MaxSize> rays{}; // a bit per direction
+    const std::span<std::uint64_t> of_group(rays.data(), group.origins.size());
+    const std::size_t num_directions = patch.directions.num_directions;
+    std::uint64_t any = 0;
+    for (std::size_t j = 0; j < num_directions; ++j) {
+        const glm::vec3 direction = patch.directions.direction(j);
+        for (std::size_t i = 0; i < of_group.size(); ++i)
+            of_group[i] |=
+                static_cast<std::uint64_t>(prt::is_above(transfer_.normals[first + i], direction))
+                << j;
+    }
+    for (const std::uint64_t bits : of_group)
+        any |= bits;
+    if (any == 0)
+        return;
+    rays_.blockers->clear_blocked(group, patch.directions, of_group);
+    for (std::size_t i = 0; i < of_group.size(); ++i) {
+        const std::size_t place = first + i;
+        for (std::uint64_t bits = of_group[i]; bits != 0; bits &= bits - 1)
+            (*patch.reached[static_cast<std::size_t>(std::countr_zero(bits))])[place /
+                                                                               prt::BlockSize] |=
+                static_cast<std::uint16_t>(1u << place % prt::BlockSize);
     }
 }
 

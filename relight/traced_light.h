@@ -14,7 +14,7 @@
 #include "prt/glossy/brdf.h"
 #include "prt/transfer.h"
 #include "relight/block_kernels.h"
-#include "relight/light_packets.h"
+#include "relight/shadow_rays.h"
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
@@ -50,8 +50,15 @@ private:
     /// By direction: x, y, z.
     using ReachedBlocks = std::map<std::array<float, 3>, std::unique_ptr<Reached>>;
 
-    void find_reached(const LightPackets& packets, std::size_t block,
-                      std::span<Reached* const> of_fresh) const;
+    /// New lights side by side in the sky, and what they reach.
+    struct FreshPatch {
+        prt::DirectionPatch directions;
+        std::array<Reached*, prt::DirectionPatch::Size> reached{};
+    };
+    static void add(std::vector<FreshPatch>& patches, const glm::vec3& direction, Reached* reached);
+
+    void find_reached(const FreshPatch& patch, std::size_t first,
+                      const prt::ReceiverGroup& group) const;
     void light_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
                      std::size_t block);
     void light_glossy_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,

@@ -23,8 +23,7 @@ struct LitPartOptions {
 };
 
 /// Lights a part of a scene's receivers and writes their radiance. The environment may have any
-/// resolution. The scene has no highlights and no bounces. `num_receivers` receives how many the
-/// part has.
+/// resolution. The scene has no bounces. `num_receivers` receives how many the part has.
 ///
 /// Memory:  the mesh, all receivers, and the part's share of the counts: docs/scale.md.
 /// Throws:  std::runtime_error "path: expected X, got Y"; std::invalid_argument as
@@ -36,8 +35,7 @@ relight::RelightTimes light_part(const LitPartOptions& options, cubemap::CubeMap
 /// .npy file: the same bytes for any number of parts. Returns the number of receivers.
 ///
 /// Throws:  std::runtime_error that names the part that is missing, given twice, damaged or of
-/// other
-///          light.
+///          other light.
 std::size_t join_light(std::span<const std::filesystem::path> parts,
                        const std::filesystem::path& output);
 

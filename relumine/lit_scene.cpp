@@ -12,6 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/layers/layer_composite.h"
+#include "prt/visibility/lazy_beam_scene.h"
 #include "relight/bounces/path_tracer.h"
 #include "relight/contribution.h"
 #include "relight/shadow_rays.h"
@@ -68,6 +69,7 @@ struct LitScene::Impl {
           clusters_only(options.clusters_only) {
         if (scene.blockers)
             others.emplace(*scene.blockers);
+        moving_light_rays.emplace(scene.blockers ? *scene.blockers : scene.mesh, blockers());
     }
 
     [[nodiscard]] const prt::RayScene& blockers() const { return others ? *others : rays; }
@@ -77,7 +79,7 @@ struct LitScene::Impl {
     [[nodiscard]] relight::ShadowRays shadow_rays() const {
         if (clusters_only)
             return {};
-        return {.blockers = &blockers(),
+        return {.blockers = &*moving_light_rays,
                 .positions = scene.receivers.positions,
                 .bias = scene.settings.bias,
                 .tolerance = rms_tolerance(scene)};
@@ -206,6 +208,8 @@ struct LitScene::Impl {
     prt::RayScene rays;
     /// Of the scene's own blockers
     std::optional<prt::RayScene> others;
+    /// Of sharp lights, which may move with every frame
+    std::optional<prt::LazyBeamScene> moving_light_rays;
     bool clusters_only;
     /// One of the two lights the scene; none before the first light()
     std::optional<relight::Relighter> relighter;

@@ -146,7 +146,8 @@ struct Painter::Impl {
     Impl(const LitScene& lit, const OutputOptions& given)
         : scene(lit.scene()), rays(lit.rays()), options(given),
           floor(picture_floor(scene, options)) {
-        if (is_on_vertices() && !scene.transfer.glossy)
+        // The transfer of a scene that processes share has no highlights.
+        if (is_on_vertices() && !scene.settings.glossy_tolerance)
             textures = {scene.mesh, scene.receivers.surfaces};
     }
 

@@ -89,9 +89,7 @@ void assist(prt::Team& team, const std::stop_token& stop) {
     }
     light.counts = std::move(transfer.counts);
     const ProcessFigures figures = work.figures(statistics);
-    std::vector<std::byte> packed = prt::packed_light(light);
-    light = {};
-    static_cast<void>(team.gather(std::move(packed)));
+    static_cast<void>(prt::gather_light(team, std::move(light)));
     const auto bytes = std::as_bytes(std::span(&figures, 1));
     static_cast<void>(team.gather({bytes.begin(), bytes.end()}));
 }
@@ -116,7 +114,7 @@ void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* stat
     prt::PartLight light;
     if (scene.settings.glossy_tolerance) {
         plan.scene.transfer.counts = std::move(counts);
-        light.glossy = prt::part_highlights(scene.receivers, scene.transfer, rays,
+        light.glossy = prt::part_highlights(scene.receivers, plan.scene.transfer, rays,
                                             {.tolerance = *scene.settings.glossy_tolerance,
                                              .face_resolution = scene.settings.face_resolution,
                                              .bias = scene.settings.bias,

@@ -22,7 +22,9 @@ public:
                 .seconds = seconds.count(),
                 .seconds_waiting = waiting() - waiting_before_,
                 .seconds_of_processors =
-                    static_cast<double>(std::clock() - processors_before_) / CLOCKS_PER_SEC};
+                    static_cast<double>(std::clock() - processors_before_) / CLOCKS_PER_SEC,
+                .plane_bytes = clusters.plane_bytes,
+                .column_bytes = clusters.column_bytes};
     }
 
 private:

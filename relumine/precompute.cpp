@@ -378,16 +378,11 @@ private:
     /// Joins the light of all processes.
     void take_in(const ProcessFigures& own_figures) {
         prt::Transfer& transfer = scene_.transfer;
-        std::vector<prt::PartLight> light(1);
-        light[0].counts = std::exchange(transfer.counts, {});
-        light[0].glossy = std::exchange(transfer.glossy, {});
-        light[0].bounces = std::exchange(own_bounces_, {});
         report_.processes = {own_figures};
-        for (std::vector<std::byte>& bytes : options_.team->gather({})) {
-            if (!bytes.empty())
-                light.push_back(prt::unpacked_light(bytes));
-            bytes = {}; // as much as the light
-        }
+        std::vector<prt::PartLight> light =
+            prt::gather_light(*options_.team, {.counts = std::exchange(transfer.counts, {}),
+                                               .glossy = std::exchange(transfer.glossy, {}),
+                                               .bounces = std::exchange(own_bounces_, {})});
         for (const std::vector<std::byte>& bytes : options_.team->gather({}))
             if (!bytes.empty())
                 std::memcpy(&report_.processes.emplace_back(), bytes.data(),

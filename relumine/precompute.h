@@ -155,6 +155,10 @@ struct ProcessFigures {
     double seconds_waiting = 0.0;
     /// Processor time of all threads
     double seconds_of_processors = 0.0;
+    /// Most bytes of planes of visibility at once
+    std::uint64_t plane_bytes = 0;
+    /// The process's counts, as bytes of finished clusters
+    std::uint64_t column_bytes = 0;
 };
 
 /// What a precompute found and took.

@@ -24,18 +24,22 @@ std::vector<std::byte> copy_of(std::span<Element> elements) {
     return {bytes.begin(), bytes.end()};
 }
 
+void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::uint64_t own) {
+    const std::vector<std::byte> bytes = copy_of(std::span(&own, 1));
+    if (team.broadcast(bytes) != bytes)
+        throw std::runtime_error(
+            fmt::format("{}: expected the scene and the light of the first process, got others",
+                        path.string()));
+}
+
 } // namespace
 
 void require_same(prt::Team& team, const std::filesystem::path& path,
                   const cubemap::CubeMap* environment) {
-    const std::uint64_t own = environment == nullptr
-                                  ? prt::file_hash(path)
-                                  : prt::bytes_hash(std::as_bytes(std::span(environment->texels)));
-    const std::vector<std::byte> bytes = copy_of(std::span(&own, 1));
-    if (team.broadcast(bytes) != bytes)
-        throw std::runtime_error(fmt::format(
-            "{}: expected the scene and the environment of the first process, got others",
-            path.string()));
+    require_same_hash(team, path,
+                      environment == nullptr
+                          ? prt::file_hash(path)
+                          : prt::bytes_hash(std::as_bytes(std::span(environment->texels))));
 }
 
 struct SharedLight::Impl {
@@ -102,11 +106,19 @@ struct SharedLight::Impl {
         return diffuse;
     }
 
-    BounceReport bounce() {
+    BounceReport bounce(std::span<const glm::vec3> more) {
         if (!bounce_light)
             return {};
         bounced.clear();
-        const BounceReport report = bounce_light->solve(diffuse_of_all(), limits);
+        std::vector<glm::vec3> direct = diffuse_of_all();
+        if (!more.empty()) {
+            if (more.size() != direct.size())
+                throw std::invalid_argument(fmt::format(
+                    "expected the light of {} receivers, got {}", direct.size(), more.size()));
+            std::transform(direct.begin(), direct.end(), more.begin(), direct.begin(),
+                           std::plus<>());
+        }
+        const BounceReport report = bounce_light->solve(direct, limits);
         const std::span<const glm::vec3> indirect = bounce_light->indirect();
         bounced.assign(indirect.begin(), indirect.end());
         const std::vector<prt::Surface>& surfaces = lit.scene().receivers.surfaces;
@@ -193,6 +205,7 @@ UpdateReport SharedLight::set_frame(BinnedEnvironment frame, double bound) {
 }
 
 RelightTimes SharedLight::set_lights(std::span<const lights::DistantLight> lights) {
+    require_same_hash(impl_->team, impl_->path, prt::bytes_hash(std::as_bytes(lights)));
     impl_->bounced.clear();
     return impl_->relighter ? impl_->relighter->set_lights(lights) : RelightTimes();
 }
@@ -213,8 +226,12 @@ void SharedLight::set_bounces(const relight::SurfaceBounces& bounces) {
     impl_->bounce_light->set_albedo(bounces.albedo);
 }
 
-BounceReport SharedLight::bounce() {
-    return impl_->bounce();
+BounceReport SharedLight::bounce(std::span<const glm::vec3> more) {
+    return impl_->bounce(more);
+}
+
+std::vector<glm::vec3> SharedLight::diffuse_radiance() {
+    return impl_->diffuse_of_all();
 }
 
 Lighting SharedLight::lighting() {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "cubemap/cube_map.h"
 #include "lights/light_list.h"
@@ -54,6 +55,8 @@ public:
     /// As Relighter::set_frame(). Throws as light().
     UpdateReport set_frame(BinnedEnvironment frame, double bound = 0.0);
     /// As Relighter::set_lights().
+    ///
+    /// Throws:  std::runtime_error where the first process has other lights.
     RelightTimes set_lights(std::span<const lights::DistantLight> lights);
     /// Forgets the light, so that the next frame is as the first.
     void restart();
@@ -61,7 +64,10 @@ public:
     /// Lets light bounce from now on; `bounces` is what bounces_of() gives for the scene.
     void set_bounces(const relight::SurfaceBounces& bounces);
     /// Adds the bounces to the present light; does nothing where set_bounces() was not called.
-    BounceReport bounce();
+    /// `more` is as for Relighter::bounce().
+    BounceReport bounce(std::span<const glm::vec3> more = {});
+    /// As Relighter::diffuse_radiance(), of all receivers, in all processes.
+    [[nodiscard]] std::vector<glm::vec3> diffuse_radiance();
 
     /// The light of all receivers, in the first process. It points into this object, and is good
     /// until the light changes. The others have no light.

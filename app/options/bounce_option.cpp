@@ -65,10 +65,11 @@ std::optional<BounceReport> BounceOption::bounce(LitScene& lit,
 
 std::optional<BounceReport> BounceOption::bounce(SharedLight& light,
                                                  const relumine::OutputOptions& output,
-                                                 const std::string& path) const {
+                                                 const std::string& path,
+                                                 std::span<const glm::vec3> more) const {
     if (!set(light, output, path))
         return std::nullopt;
-    return light.bounce();
+    return light.bounce(more);
 }
 
 bool BounceOption::set(SharedLight& light, const relumine::OutputOptions& output,

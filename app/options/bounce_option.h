@@ -28,7 +28,8 @@ public:
                                        std::span<const glm::vec3> more = {}) const;
     /// The same for light that processes share.
     std::optional<BounceReport> bounce(SharedLight& light, const relumine::OutputOptions& output,
-                                       const std::string& path) const;
+                                       const std::string& path,
+                                       std::span<const glm::vec3> more = {}) const;
     /// Sets the bounces of light that processes share, where there is something to do.
     bool set(SharedLight& light, const relumine::OutputOptions& output,
              const std::string& path) const;

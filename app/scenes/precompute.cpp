@@ -195,7 +195,9 @@ Report process_report(const std::vector<ProcessFigures>& processes, const Sessio
         report.push_back({{"rays", process.num_rays},
                           {"seconds", process.seconds},
                           {"seconds_waiting", process.seconds_waiting},
-                          {"seconds_of_processors", process.seconds_of_processors}});
+                          {"seconds_of_processors", process.seconds_of_processors},
+                          {"plane_bytes", process.plane_bytes},
+                          {"column_bytes", process.column_bytes}});
     }
     session.say(fmt::format(
         "{} processes: the one with the most rays has {:.3f} times the mean; up to {:.1f} % of "

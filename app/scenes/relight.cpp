@@ -193,36 +193,53 @@ void require_numbers(const RelightArguments& options, const Command& command) {
 
 /// Lights the receivers with all processes of the team; the first one writes the output.
 void light_with_team(const RelightArguments& options, Session& session) {
-    if (!options.lights.empty())
-        throw UsageError("--lights", "expected an environment where processes share the work");
-    if (options.environment.path.empty())
-        throw UsageError("ENV", "expected an environment where processes share the work");
-    if (session.team->part().index == 0)
-        options.output.check({options.scene.path, options.environment.path});
     Stopwatch watch;
     SharedLight light = shared_light(options.scene, *session.team);
     const Scene& scene = light.lit().scene();
     options.output.check_fits(scene);
-    Environment environment = load_environment(options.environment, session);
-    const RelightTimes times = light.light(std::move(environment.map));
-    const std::optional<BounceReport> bounces =
-        options.bounces.bounce(light, options.output.for_scene(scene), options.scene.path);
+    const bool has_environment = !options.environment.path.empty();
+
+    Lighting from_list;
+    std::vector<glm::vec3> radiance, list_for_bounces;
+    std::size_t num_lights = 0;
+    if (!options.lights.empty()) {
+        const lights::LightList list = lights::load_lights(options.lights);
+        num_lights = list.lights.size();
+        light.set_lights(list.lights);
+        if (has_environment) {
+            from_list = light.lighting();
+            radiance.assign(from_list.radiance.begin(), from_list.radiance.end());
+            list_for_bounces = light.diffuse_radiance();
+        }
+    }
+    std::optional<Environment> environment;
+    RelightTimes times;
+    if (has_environment) {
+        environment = load_environment(options.environment, session);
+        times = light.light(std::move(environment->map));
+    }
+    const std::optional<BounceReport> bounces = options.bounces.bounce(
+        light, options.output.for_scene(scene), options.scene.path, list_for_bounces);
     Lighting lighting = light.lighting();
     if (!light.is_first())
         return;
     if (options.only_bounces)
         keep_bounces(lighting, light.bounced(), options.scene.path);
-    if (environment.file.image != nullptr)
-        lighting.sharp = relight::backdrop_of(environment.file);
+    else if (!radiance.empty())
+        add(lighting, std::move(from_list), radiance);
+    if (environment && environment->file.image != nullptr)
+        lighting.sharp = relight::backdrop_of(environment->file);
     Painter painter(light.lit(), options.output.for_scene(scene));
     painter.save(options.output.path, lighting);
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers under {} in {:.2f} s by {} processes{}{}",
                             options.output.path, scene.receivers.num_own(),
-                            options.environment.path, seconds, session.team->part().count,
-                            text_of(bounces), options.output.exposure_text(painter)));
+                            has_environment ? options.environment.path : options.lights, seconds,
+                            session.team->part().count, text_of(bounces),
+                            options.output.exposure_text(painter)));
     session.report({{"receivers", scene.receivers.num_own()},
                     {"processes", session.team->part().count},
+                    {"lights", num_lights},
                     {"bounces", bounces ? bounces->num_bounces : 0},
                     {"sharp_lights", times.num_sharp_lights},
                     {"exposure", painter.exposure_ev(options.output.path)},
@@ -258,8 +275,6 @@ void light_one_part(const RelightArguments& options, const Command& command, Ses
 void run(const RelightArguments& options, const Command& command, Session& session) {
     if (session.team != nullptr && options.part.count != 0)
         throw UsageError("--part", "expected none where processes share the work");
-    if (session.team != nullptr)
-        return light_with_team(options, session);
     if (options.part.count != 0)
         return light_one_part(options, command, session);
     const bool has_environment = !options.environment.path.empty();
@@ -269,7 +284,10 @@ void run(const RelightArguments& options, const Command& command, Session& sessi
     for (const std::string& path : {options.environment.path, options.lights})
         if (!path.empty())
             inputs.push_back(path);
-    options.output.check(inputs);
+    if (session.team == nullptr || session.team->part().index == 0)
+        options.output.check(inputs);
+    if (session.team != nullptr)
+        return light_with_team(options, session);
     if (has_environment)
         light_with_environment(options, session);
     else

@@ -194,7 +194,6 @@ LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
             column.counts.insert(column.counts.end(), counts.begin(), counts.end());
         }
     }
-    column.counts.shrink_to_fit();
     return column;
 }
 

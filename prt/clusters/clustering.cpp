@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <stdexcept>
 #include <unordered_set>
 #include <utility>
@@ -116,6 +117,7 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
     max_planes_ =
         static_cast<std::size_t>(options.plane_bytes / (num_words * sizeof(std::uint64_t)));
     planes_.emplace(origins_, normals_, blockers);
+    columns_.emplace(origins_.size());
     if (context.plan != nullptr)
         for (const Cell& cell : context.plan->quadtree.leaves())
             given_keys_.push_back(depth_first_key(cell));
@@ -139,15 +141,17 @@ void Clustering::start() {
 }
 
 void Clustering::resume(const Checkpoint::Saved& saved) {
-    std::vector<Cluster> clusters;
-    for (const std::vector<std::byte>& record : saved.records)
+    for (const std::vector<std::byte>& record : saved.records) {
+        std::vector<Cluster> clusters;
         read_clusters(record, origins_.size(), clusters);
+        for (const Cluster& cluster : clusters)
+            add_cluster(cluster);
+    }
     read_work(saved.state, batch_, pending_, *planes_);
     // The cells must cover the sphere, each place once.
     std::vector<Cell> cells = pending_.cells();
     cells.insert(cells.end(), batch_.begin(), batch_.end());
-    for (const Cluster& cluster : clusters)
-        cells.push_back(cluster.cell);
+    cells.insert(cells.end(), clusters_.begin(), clusters_.end());
     std::sort(cells.begin(), cells.end(),
               [](const Cell& a, const Cell& b) { return depth_first_key(a) < depth_first_key(b); });
     std::uint64_t next_key = 0;
@@ -158,15 +162,14 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
     }
     if (next_key != cubemap::NumFaces * (std::uint64_t{1} << (2 * MaxLevel)))
         throw std::runtime_error("checkpoint: expected cells that cover the sphere");
-    for (Cluster& cluster : clusters)
-        add_cluster(std::move(cluster));
     num_saved_ = clusters_.size();
 }
 
-void Clustering::add_cluster(Cluster&& cluster) {
+void Clustering::add_cluster(const Cluster& cluster) {
     column_bytes_ += bytes_of(cluster.column, context_.column_scale);
     deepest_ = std::max<std::uint32_t>(deepest_, cluster.cell.level);
-    clusters_.push_back(std::move(cluster));
+    clusters_.push_back(cluster.cell);
+    columns_->add(cluster.column);
 }
 
 /// Siblings follow each other in `cells`. So the sixteen new points of a split follow each other in
@@ -236,6 +239,7 @@ void Clustering::trace_batch() {
     const double patch_width = 4 * 2.0 * batch_.front().size();
     planes_->trace(
         needed_points(batch_), patch_width, [this](double part) { progress_.report(part); }, steps);
+    most_planes_ = std::max(most_planes_, planes_->num_planes());
 }
 
 /// Whether the cell is one of the given clusters.
@@ -315,7 +319,7 @@ void Clustering::decide_batch() {
             throw TooManyClusters(clusters_.size() + num_found + num_waiting, num_bytes);
         for (std::size_t i = 0; i < slice.size(); ++i) {
             if (is_cluster[i] != 0) {
-                add_cluster({slice[i], std::move(columns[i])});
+                add_cluster({slice[i], std::exchange(columns[i], {})});
                 continue;
             }
             for (std::uint32_t child = 0; child < 4; ++child)
@@ -345,10 +349,9 @@ void Clustering::look_up() {
 
 void Clustering::save_checkpoint() {
     const auto start = std::chrono::steady_clock::now();
-    const std::span<const Cluster> unsaved =
-        std::span(std::as_const(clusters_)).subspan(num_saved_);
-    const std::vector<std::byte> record =
-        unsaved.empty() ? std::vector<std::byte>() : clusters_record(unsaved);
+    const std::vector<std::byte> record = num_saved_ == clusters_.size()
+                                              ? std::vector<std::byte>()
+                                              : clusters_record(clusters_, *columns_, num_saved_);
     if (options_.checkpoint->save(CheckpointPart, record, work_state(batch_, pending_, *planes_)))
         num_saved_ = clusters_.size();
     seconds_saving_ +=
@@ -403,6 +406,7 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
     statistics.num_rays = static_cast<std::uint64_t>(num_rays[0]);
     statistics.num_own_rays = planes_->num_rays();
     statistics.column_bytes = column_bytes_;
+    statistics.plane_bytes = most_planes_ * planes_->num_words() * sizeof(std::uint64_t);
     statistics.deepest_level = deepest_;
     statistics.seconds_checkpoints = seconds_saving_;
     return result();
@@ -411,21 +415,18 @@ Transfer Clustering::run(PrecomputeStatistics& statistics) {
 Transfer Clustering::result() {
     planes_.reset();
     return_free_memory();
-    std::sort(clusters_.begin(), clusters_.end(), [](const Cluster& a, const Cluster& b) {
-        return depth_first_key(a.cell) < depth_first_key(b.cell);
+    std::vector<std::uint32_t> order(clusters_.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
+        return depth_first_key(clusters_[a]) < depth_first_key(clusters_[b]);
     });
     std::vector<Cell> leaves;
-    std::vector<LeafColumn> columns;
-    for (Cluster& cluster : clusters_) {
-        leaves.push_back(cluster.cell);
-        columns.push_back(std::move(cluster.column));
-    }
-    clusters_.clear();
-    const std::size_t num_receivers = origins_.size();
+    for (const std::uint32_t cluster : order)
+        leaves.push_back(clusters_[cluster]);
     return {.quadtree = quadtree_of(leaves),
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),
-            .counts = counts_from_columns(std::move(columns), num_receivers)};
+            .counts = columns_->take(order)};
 }
 
 } // namespace relumine::prt

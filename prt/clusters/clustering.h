@@ -54,7 +54,7 @@ private:
     [[nodiscard]] std::uint64_t largest_of_all(std::uint64_t value);
     void look_up();
     void save_checkpoint();
-    void add_cluster(Cluster&& cluster);
+    void add_cluster(const Cluster& cluster);
 
     [[nodiscard]] std::vector<LatticePoint> needed_points(const std::vector<Cell>& cells) const;
     [[nodiscard]] std::vector<std::uint8_t> find_clusters(std::span<const Cell> cells);
@@ -88,13 +88,16 @@ private:
     /// The cells in work.
     std::vector<Cell> batch_;
     PendingCells pending_;
-    std::vector<Cluster> clusters_;
+    /// The clusters' cells and columns, as they were found.
+    std::vector<Cell> clusters_;
+    std::optional<ColumnStore> columns_;
     /// For the progress
     WorkEstimate estimate_;
     /// Clusters in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t column_bytes_ = 0;
     double seconds_saving_ = 0.0;
+    std::size_t most_planes_ = 0;
     /// The deepest level of any cluster.
     std::uint32_t deepest_ = 0;
 };

@@ -50,20 +50,21 @@ std::vector<Cell> next_cells(files::ByteReader& reader) {
 
 } // namespace
 
-std::vector<std::byte> clusters_record(std::span<const Cluster> clusters) {
-    return files::pack(
-        (clusters.size() + ColumnsPerPart - 1) / ColumnsPerPart, [&](std::size_t part) {
-            const std::size_t begin = part * ColumnsPerPart;
-            files::ByteWriter writer;
-            for (const Cluster& cluster :
-                 clusters.subspan(begin, std::min(ColumnsPerPart, clusters.size() - begin))) {
-                writer.add(number_of(cluster.cell));
-                writer.add_all(std::span(std::as_const(cluster.column.visible)));
-                writer.add_all(std::span(std::as_const(cluster.column.mixed)));
-                writer.add_all(std::span(std::as_const(cluster.column.counts)));
-            }
-            return writer.take();
-        });
+std::vector<std::byte> clusters_record(std::span<const Cell> cells, const ColumnStore& columns,
+                                       std::size_t first) {
+    const std::size_t num_parts = (cells.size() - first + ColumnsPerPart - 1) / ColumnsPerPart;
+    return files::pack(num_parts, [&](std::size_t part) {
+        const std::size_t begin = first + part * ColumnsPerPart;
+        files::ByteWriter writer;
+        for (std::size_t i = begin; i < std::min(begin + ColumnsPerPart, cells.size()); ++i) {
+            const LeafColumn column = columns.column(i);
+            writer.add(number_of(cells[i]));
+            writer.add_all(std::span(column.visible));
+            writer.add_all(std::span(column.mixed));
+            writer.add_all(std::span(column.counts));
+        }
+        return writer.take();
+    });
 }
 
 void read_clusters(std::span<const std::byte> record, std::size_t num_receivers,

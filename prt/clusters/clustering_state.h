@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
+#include "prt/clusters/column_store.h"
 #include "prt/clusters/pending_cells.h"
 #include "prt/clusters/quadtree.h"
 #include "prt/clusters/visibility_planes.h"
-#include "prt/clusters/visible_counts.h"
 
 namespace relumine::prt {
 
@@ -19,8 +19,9 @@ struct Cluster {
     LeafColumn column;
 };
 
-/// Packs clusters into one record.
-[[nodiscard]] std::vector<std::byte> clusters_record(std::span<const Cluster> clusters);
+/// Packs the clusters from `first` on into one record.
+[[nodiscard]] std::vector<std::byte> clusters_record(std::span<const Cell> cells,
+                                                     const ColumnStore& columns, std::size_t first);
 /// Appends the clusters of a record, made for `num_receivers` receivers.
 ///
 /// Throws:  std::runtime_error for bytes that are no such record.

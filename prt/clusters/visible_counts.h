@@ -97,9 +97,4 @@ struct VisibleCounts {
     void index();
 };
 
-/// Turns columns (one per leaf, in leaf order) into the layout of VisibleCounts. Frees each
-/// column's memory on the way.
-[[nodiscard]] VisibleCounts counts_from_columns(std::vector<LeafColumn>&& columns,
-                                                std::size_t num_receivers);
-
 } // namespace relumine::prt

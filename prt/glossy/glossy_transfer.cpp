@@ -11,7 +11,7 @@ std::uint32_t GlossyTransfer::deepest_level() const {
     for (const LobeCuts& lobe : lobes)
         for (const std::uint32_t cell : lobe.cells)
             largest = std::max(largest, cell);
-    return level_of_index(largest);
+    return std::max(whole_depth, level_of_index(largest));
 }
 
 std::size_t GlossyTransfer::num_bytes() const {

@@ -50,8 +50,11 @@ struct GlossyTransfer {
     std::vector<glm::vec3> to_eye;
     /// By GlossyLobe.
     std::array<LobeCuts, NumGlossyLobes> lobes{};
+    /// Of a part of a scene: the deepest level of the whole scene, whose light is summed from
+    /// there.
+    std::uint32_t whole_depth = 0;
 
-    /// Returns the deepest level of any cell.
+    /// Returns the deepest level of any cell, or the whole scene's.
     [[nodiscard]] std::uint32_t deepest_level() const;
     [[nodiscard]] std::size_t num_bytes() const;
 };

@@ -23,8 +23,7 @@ namespace relumine::prt {
 namespace {
 
 std::vector<std::byte> text_section(const files::Json& json) {
-    const std::string text = json.text(2);
-    return bytes_of(std::vector<char>(text.begin(), text.end()));
+    return bytes_of(json.text(2));
 }
 
 /// A part as its file has it.
@@ -102,11 +101,11 @@ std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene,
     if (scene.transfer.glossy || scene.bounces)
         throw std::invalid_argument(
             fmt::format("{}: expected a scene without light", path.string()));
-    Sections sections = sections_without_light(path, scene);
+    NewSections sections = sections_without_light(path, scene);
     files::Json json = {{"clusters", scene.transfer.num_clusters()}};
     if (bounces) {
         json.set("bounce_tolerance", bounces->tolerance);
-        sections["plan_probes"] = bytes_of(bounces->probes);
+        sections["plan_probes"] = SectionContent::view(bounces->probes);
     }
     sections["plan"] = text_section(json);
     return write_sections(path, sections);
@@ -134,7 +133,7 @@ Plan load_plan(const std::filesystem::path& path) {
 
 std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, const Part& part,
                         const PartLight& light) {
-    Sections sections;
+    NewSections sections;
     if (part.index == 0)
         sections = sections_without_light(path, plan.scene);
     sections["part"] = text_section({{"index", part.index},

@@ -187,13 +187,15 @@ VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
     return precompute(receivers, blockers, of_part, {.plan = &plan}, statistics).counts;
 }
 
-GlossyTransfer part_highlights(const Receivers& receivers, const Transfer& shared,
+GlossyTransfer part_highlights(const Receivers& receivers, Transfer& shared,
                                const Blockers& blockers, const GlossyOptions& options,
                                const Part& part, GlossyStatistics* statistics) {
     // The part's receivers by themselves, already in spatial order.
     Receivers own;
-    Transfer transfer{
-        .quadtree = shared.quadtree, .order = {}, .normals = {}, .counts = shared.counts};
+    Transfer transfer{.quadtree = shared.quadtree,
+                      .order = {},
+                      .normals = {},
+                      .counts = std::exchange(shared.counts, {})};
     for (const std::uint32_t place : places_of(part, shared.num_receivers())) {
         const std::uint32_t receiver = shared.order[place];
         transfer.order.push_back(static_cast<std::uint32_t>(transfer.order.size()));
@@ -203,7 +205,9 @@ GlossyTransfer part_highlights(const Receivers& receivers, const Transfer& share
         own.surfaces.push_back(receivers.surfaces[receiver]);
     }
     transfer.normals = own.normals;
-    return precompute_glossy(own, blockers, transfer, options, statistics);
+    GlossyTransfer glossy = precompute_glossy(own, blockers, transfer, options, statistics);
+    shared.counts = std::move(transfer.counts);
+    return glossy;
 }
 
 void join_light(Transfer& plan, std::span<const PartLight> parts) {

@@ -47,7 +47,7 @@ namespace relumine::prt {
 ///
 /// Options: those that the plan was made with. Joined counts are the same bit by bit for any number
 ///          of parts.
-/// Memory:  twice the part's result, and its share of plane_bytes or of 2,048 planes of visibility,
+/// Memory:  the part's result, and its share of plane_bytes or of 2,048 planes of visibility,
 ///          whichever is more.
 /// Throws:  std::invalid_argument for an index that is not below the count, or more than
 ///          MaxParts; as precompute() does.
@@ -57,10 +57,11 @@ namespace relumine::prt {
                                         PrecomputeStatistics* statistics = nullptr);
 
 /// Computes the highlights of a part's receivers, as precompute_glossy() does for all. `shared` has
-/// the counts of the part; its order and normals are those of all receivers.
+/// the counts of the part; its order and normals are those of all receivers. It is the same
+/// afterwards.
 ///
-/// Throws:  as precompute_glossy() does.
-[[nodiscard]] GlossyTransfer part_highlights(const Receivers& receivers, const Transfer& shared,
+/// Throws:  as precompute_glossy() does; `shared` has no counts then.
+[[nodiscard]] GlossyTransfer part_highlights(const Receivers& receivers, Transfer& shared,
                                              const Blockers& blockers, const GlossyOptions& options,
                                              const Part& part,
                                              GlossyStatistics* statistics = nullptr);

@@ -1,12 +1,12 @@
 #include "prt/parts/scene_part.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstring>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -16,55 +16,15 @@
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
+#include "prt/scene/glossy_sections.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
+#include "prt/scene/section_picker.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
 
 namespace {
-
-/// Picks ranges out of bytes that come piece by piece. Ranges ascend.
-class Picker {
-public:
-    struct Range {
-        std::uint64_t begin = 0, end = 0;
-    };
-    explicit Picker(std::vector<Range> ranges) : ranges_(std::move(ranges)) {
-        std::uint64_t size = 0;
-        for (const Range& range : ranges_)
-            size += range.end - range.begin;
-        picked_.reserve(static_cast<std::size_t>(size));
-    }
-
-    void take(std::span<const std::byte> piece) {
-        const std::uint64_t end = done_ + piece.size();
-        for (; next_ < ranges_.size() && ranges_[next_].begin < end; ++next_) {
-            const Range& range = ranges_[next_];
-            const auto first = static_cast<std::size_t>(std::max(range.begin, done_) - done_);
-            const auto last = static_cast<std::size_t>(std::min(range.end, end) - done_);
-            picked_.insert(picked_.end(), piece.begin() + static_cast<std::ptrdiff_t>(first),
-                           piece.begin() + static_cast<std::ptrdiff_t>(last));
-            if (range.end > end)
-                break; // goes on in the next piece
-        }
-        done_ = end;
-    }
-
-    template<typename Element>
-    [[nodiscard]] std::vector<Element> elements() const {
-        std::vector<Element> result(picked_.size() / sizeof(Element));
-        if (!result.empty())
-            std::memcpy(result.data(), picked_.data(), picked_.size());
-        return result;
-    }
-
-private:
-    std::vector<Range> ranges_;
-    std::vector<std::byte> picked_;
-    std::size_t next_ = 0;
-    std::uint64_t done_ = 0;
-};
 
 /// Reads the counts of the part's tiles, and nothing else of the counts stays in memory.
 VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCounts& whole,
@@ -74,18 +34,18 @@ VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCou
         return std::uint64_t{whole.tile_begin(tile)} * whole.words_per_block();
     };
     const std::size_t num_tiles = whole.num_tiles();
-    std::vector<Picker::Range> words;
+    std::vector<SectionPicker::Range> words;
     for (std::size_t tile = part.index; tile < num_tiles; tile += part.count)
         words.push_back({words_before(tile) * WordBytes, words_before(tile + 1) * WordBytes});
     const std::uint64_t num_bytes = words_before(num_tiles) * WordBytes;
 
     VisibleCounts counts{.num_receivers = num_own, .num_leaves = whole.num_leaves};
-    Picker visible(words);
+    SectionPicker visible(words);
     stream_section(path, "visible", num_bytes, [&](auto piece) { visible.take(piece); });
     counts.visible = visible.elements<std::uint64_t>();
 
     // Where the counts of a tile begin follows from the mixed pairs of all tiles before.
-    Picker mixed(words);
+    SectionPicker mixed(words);
     std::vector<std::uint64_t> pairs(num_tiles + 1);
     std::uint64_t word = 0;
     std::size_t tile = 0;
@@ -103,10 +63,10 @@ VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCou
     for (std::size_t i = 0; i < num_tiles; ++i)
         pairs[i + 1] += pairs[i];
 
-    std::vector<Picker::Range> entries;
+    std::vector<SectionPicker::Range> entries;
     for (std::size_t own = part.index; own < num_tiles; own += part.count)
         entries.push_back({pairs[own] * BlockSize, pairs[own + 1] * BlockSize});
-    Picker values(entries);
+    SectionPicker values(entries);
     stream_section(path, "counts", pairs[num_tiles] * BlockSize,
                    [&](auto piece) { values.take(piece); });
     counts.counts = values.elements<std::uint8_t>();
@@ -119,12 +79,12 @@ VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCou
     return counts;
 }
 
-/// Takes the sections of the bounces out of those of a scene.
-Sections taken_bounces(Sections& sections) {
+/// Takes the sections whose names begin so out of those of a scene.
+Sections taken(Sections& sections, std::string_view prefix) {
     Sections taken;
     for (auto section = sections.begin(); section != sections.end();) {
         const auto here = section++;
-        if (here->first.starts_with("bounce_"))
+        if (here->first.starts_with(prefix))
             taken.insert(sections.extract(here));
     }
     return taken;
@@ -167,9 +127,10 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     if (part.index >= part.count || part.count > MaxParts)
         throw std::invalid_argument(
             fmt::format("{}: expected a part of 1 to {}", path.string(), MaxParts));
-    const std::array<std::string, 4> Streamed = {"visible", "mixed", "counts", EmitterSection};
+    std::vector<std::string> streamed = long_glossy_sections();
+    streamed.insert(streamed.end(), {"visible", "mixed", "counts", EmitterSection});
     std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version, Streamed);
+    Sections sections = read_sections(path, &version, streamed);
     const auto refuse = [&](const std::string& expected, const std::string& got) {
         throw std::runtime_error(
             fmt::format("{}: expected {}, got {}", path.string(), expected, got));
@@ -181,9 +142,8 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
                fmt::format("version {}", version));
     if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
         refuse("a scene", "a plan or a part");
-    if (sections.contains("g_specular_b"))
-        refuse("a scene without highlights for a part of the receivers", "one with");
-    const SectionReader of_bounces(path, taken_bounces(sections));
+    const SectionReader of_bounces(path, taken(sections, "bounce_"));
+    const SectionReader of_highlights(path, taken(sections, "g_"));
     sections["plan"] = {}; // bounces and counts come later
     ScenePart result{.scene = plan_of(path, std::move(sections))};
     const Scene& whole = result.scene;
@@ -211,6 +171,17 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     transfer.counts = counts_of_part(
         path, {.num_receivers = num_receivers, .num_leaves = transfer.quadtree.num_leaves()}, part,
         result.receivers.size());
+    if (has_glossy(of_highlights)) {
+        if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
+            refuse("directions to the eye and surfaces with highlights", "none");
+        const VisibleCounts shape{.num_receivers = num_receivers};
+        std::vector<BlockRange> blocks;
+        for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
+            blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
+        transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
+        for (const std::uint32_t receiver : result.receivers)
+            transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
+    }
     return result;
 }
 
@@ -219,13 +190,12 @@ std::uint64_t save_lit_part(const std::filesystem::path& path, const LitPart& pa
                               {"count", part.part.count},
                               {"receivers", part.num_receivers},
                               {"light", part.light}};
-    const std::string text = json.text(2);
-    Sections sections;
-    sections["lit"] = bytes_of(std::vector<char>(text.begin(), text.end()));
-    sections["lit_receivers"] = bytes_of(part.receivers);
-    sections["lit_radiance"] = bytes_of(part.radiance);
+    NewSections sections;
+    sections["lit"] = bytes_of(json.text(2));
+    sections["lit_receivers"] = SectionContent::view(part.receivers);
+    sections["lit_radiance"] = SectionContent::view(part.radiance);
     // A scene's reader says what it is.
-    sections["plan"] = bytes_of(std::vector<char>{'{', '}'});
+    sections["plan"] = bytes_of("{}");
     sections["part"] = sections["lit"];
     return write_sections(path, sections);
 }

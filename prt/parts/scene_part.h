@@ -39,9 +39,9 @@ struct ScenePart {
 
 /// Reads the part's tiles of a scene of version 3 or later, and checks them.
 ///
-/// Memory:  the mesh, all receivers, the counts and rows of the part, and the file as it is on
-/// disk. Throws:  as load_scene(); std::runtime_error "path: expected X, got Y" for a scene with
-///          highlights.
+/// Memory:  the mesh, all receivers, the counts, highlights and rows of the part, the file as it is
+///          on disk, and for a while 4 bytes for each cell of a highlight.
+/// Throws:  as load_scene().
 [[nodiscard]] ScenePart load_scene_part(const std::filesystem::path& path, const Part& part);
 
 /// The light of a part's receivers.

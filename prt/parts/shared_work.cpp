@@ -1,6 +1,12 @@
 #include "prt/parts/shared_work.h"
 
+#include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <utility>
 
 #include "files/packed_parts.h"
 
@@ -15,18 +21,99 @@ void add_array(files::ByteWriter& writer, const std::vector<Element>& elements) 
 }
 
 template<typename Element>
+std::vector<std::byte> bytes_of(std::span<Element> elements) {
+    const auto bytes = std::as_bytes(elements);
+    return {bytes.begin(), bytes.end()};
+}
+
+template<typename Element>
 void take_array(files::ByteReader& reader, std::vector<Element>& elements) {
     elements = reader.next_all<Element>(static_cast<std::size_t>(reader.next<std::uint64_t>()));
 }
 
-void add_lists(files::ByteWriter& writer, const PlaceLists& lists) {
-    add_array(writer, lists.begin);
-    add_array(writer, lists.places);
+/// So many bytes of an array are sent at a time: a process has no more of it twice.
+constexpr std::size_t PieceBytes = std::size_t{1} << 25;
+
+/// Gives the first process, whose own light is lights[0], an array of each process. The others lose
+/// theirs.
+template<typename Access>
+void gather_array(Team& team, std::vector<PartLight>& lights, const Access& array_of) {
+    auto& own = array_of(lights[0]);
+    using Element = typename std::remove_reference_t<decltype(own)>::value_type;
+    const bool is_first = team.part().index == 0;
+    const std::uint64_t size = own.size();
+    const std::vector<std::vector<std::byte>> sizes = team.gather(bytes_of(std::span(&size, 1)));
+    for (std::size_t i = 1; i < sizes.size(); ++i) {
+        std::uint64_t of_other = 0;
+        std::memcpy(&of_other, sizes[i].data(), sizeof of_other);
+        array_of(lights[i]).clear();
+        array_of(lights[i]).reserve(static_cast<std::size_t>(of_other));
+    }
+    constexpr std::size_t PieceSize = PieceBytes / sizeof(Element);
+    std::array<std::int64_t, 1> num_pieces = {
+        static_cast<std::int64_t>((own.size() + PieceSize - 1) / PieceSize)};
+    team.max(num_pieces);
+    for (std::size_t piece = 0; piece < static_cast<std::size_t>(num_pieces[0]); ++piece) {
+        const std::size_t begin = std::min(piece * PieceSize, own.size());
+        const std::span<const Element> rest = std::span(std::as_const(own)).subspan(begin);
+        const std::vector<std::vector<std::byte>> of_all =
+            team.gather(is_first ? std::vector<std::byte>()
+                                 : bytes_of(rest.first(std::min(PieceSize, rest.size()))));
+        for (std::size_t i = 1; i < of_all.size(); ++i) {
+            auto& array = array_of(lights[i]);
+            const std::size_t before = array.size();
+            array.resize(before + of_all[i].size() / sizeof(Element));
+            if (!of_all[i].empty())
+                std::memcpy(array.data() + before, of_all[i].data(), of_all[i].size());
+        }
+    }
+    if (!is_first)
+        own = {};
 }
 
-void take_lists(files::ByteReader& reader, PlaceLists& lists) {
-    take_array(reader, lists.begin);
-    take_array(reader, lists.places);
+template<typename Access>
+void gather_lists(Team& team, std::vector<PartLight>& lights, const Access& lists_of) {
+    gather_array(
+        team, lights, [&](PartLight & light) -> auto& { return lists_of(light).begin; });
+    gather_array(
+        team, lights, [&](PartLight & light) -> auto& { return lists_of(light).places; });
+}
+
+/// Gives the first process what is no array. What it has, all have: a process without receivers has
+/// empty arrays.
+void gather_head(Team& team, std::vector<PartLight>& lights) {
+    PartLight& own = lights[0];
+    const std::array<std::byte, 3> has = {
+        std::byte{own.glossy.has_value()}, std::byte{own.bounces.has_value()},
+        std::byte{own.bounces && own.bounces->averaged.has_value()}};
+    const std::vector<std::byte> first = team.broadcast({has.begin(), has.end()});
+    if (first[0] != std::byte{0} && !own.glossy)
+        own.glossy.emplace();
+    if (first[1] != std::byte{0} && !own.bounces)
+        own.bounces.emplace();
+    if (first[2] != std::byte{0} && !own.bounces->averaged)
+        own.bounces->averaged.emplace();
+    files::ByteWriter writer;
+    writer.add<std::uint64_t>(own.counts.num_receivers);
+    writer.add<std::uint64_t>(own.counts.num_leaves);
+    writer.add<std::uint64_t>(own.bounces ? own.bounces->num_rays : 0);
+    writer.add(own.bounces ? own.bounces->squared_errors : 0.0);
+    const std::vector<std::vector<std::byte>> heads = team.gather(writer.take());
+    for (std::size_t i = 1; i < heads.size(); ++i) {
+        files::ByteReader reader(heads[i]);
+        PartLight& light = lights[i];
+        light.counts.num_receivers = static_cast<std::size_t>(reader.next<std::uint64_t>());
+        light.counts.num_leaves = static_cast<std::size_t>(reader.next<std::uint64_t>());
+        if (own.glossy)
+            light.glossy.emplace();
+        if (!own.bounces)
+            continue;
+        BounceSamples& samples = light.bounces.emplace();
+        samples.num_rays = reader.next<std::uint64_t>();
+        samples.squared_errors = reader.next<double>();
+        if (own.bounces->averaged)
+            samples.averaged.emplace();
+    }
 }
 
 } // namespace
@@ -99,65 +186,49 @@ SharedWork unpacked_work(std::span<const std::byte> bytes) {
     return work;
 }
 
-std::vector<std::byte> packed_light(const PartLight& light) {
-    files::ByteWriter writer;
-    writer.add<std::uint64_t>(light.counts.num_receivers);
-    writer.add<std::uint64_t>(light.counts.num_leaves);
-    add_array(writer, light.counts.visible);
-    add_array(writer, light.counts.mixed);
-    add_array(writer, light.counts.counts);
-    writer.add<std::uint8_t>(light.glossy ? 1 : 0);
-    if (light.glossy)
-        for (const LobeCuts& lobe : light.glossy->lobes) {
-            add_array(writer, lobe.begin);
-            add_array(writer, lobe.cells);
-            add_array(writer, lobe.scales);
-            add_array(writer, lobe.values);
+std::vector<PartLight> gather_light(Team& team, PartLight&& own) {
+    const bool is_first = team.part().index == 0;
+    std::vector<PartLight> lights(is_first ? team.part().count : 1);
+    lights[0] = std::move(own);
+    gather_head(team, lights);
+    gather_array(
+        team, lights, [](PartLight & light) -> auto& { return light.counts.visible; });
+    gather_array(
+        team, lights, [](PartLight & light) -> auto& { return light.counts.mixed; });
+    gather_array(
+        team, lights, [](PartLight & light) -> auto& { return light.counts.counts; });
+    if (lights[0].glossy)
+        for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
+            const auto gather = [&](const auto member) {
+                gather_array(
+                    team, lights, [&](PartLight & light) -> auto& {
+                        return light.glossy->lobes[lobe].*member;
+                    });
+            };
+            gather(&LobeCuts::begin);
+            gather(&LobeCuts::cells);
+            gather(&LobeCuts::scales);
+            gather(&LobeCuts::values);
         }
-    writer.add<std::uint8_t>(light.bounces ? 1 : 0);
-    if (light.bounces) {
-        const BounceSamples& samples = *light.bounces;
-        add_array(writer, samples.open_parts);
-        add_array(writer, samples.distances);
-        add_array(writer, samples.num_hits);
-        add_lists(writer, samples.emitters);
-        writer.add<std::uint8_t>(samples.averaged ? 1 : 0);
-        if (samples.averaged)
-            add_lists(writer, *samples.averaged);
-        writer.add(samples.num_rays);
-        writer.add(samples.squared_errors);
+    if (lights[0].bounces) {
+        const auto gather = [&](const auto member) {
+            gather_array(
+                team, lights, [&](PartLight & light) -> auto& { return (*light.bounces).*member; });
+        };
+        gather(&BounceSamples::open_parts);
+        gather(&BounceSamples::distances);
+        gather(&BounceSamples::num_hits);
+        gather_lists(
+            team, lights, [](PartLight & light) -> auto& { return light.bounces->emitters; });
+        if (lights[0].bounces->averaged)
+            gather_lists(
+                team, lights, [](PartLight & light) -> auto& { return *light.bounces->averaged; });
     }
-    return writer.take();
-}
-
-PartLight unpacked_light(std::span<const std::byte> bytes) {
-    files::ByteReader reader(bytes);
-    PartLight light;
-    light.counts.num_receivers = static_cast<std::size_t>(reader.next<std::uint64_t>());
-    light.counts.num_leaves = static_cast<std::size_t>(reader.next<std::uint64_t>());
-    take_array(reader, light.counts.visible);
-    take_array(reader, light.counts.mixed);
-    take_array(reader, light.counts.counts);
-    light.counts.index();
-    if (reader.next<std::uint8_t>() != 0)
-        for (LobeCuts& lobe : light.glossy.emplace().lobes) {
-            take_array(reader, lobe.begin);
-            take_array(reader, lobe.cells);
-            take_array(reader, lobe.scales);
-            take_array(reader, lobe.values);
-        }
-    if (reader.next<std::uint8_t>() != 0) {
-        BounceSamples& samples = light.bounces.emplace();
-        take_array(reader, samples.open_parts);
-        take_array(reader, samples.distances);
-        take_array(reader, samples.num_hits);
-        take_lists(reader, samples.emitters);
-        if (reader.next<std::uint8_t>() != 0)
-            take_lists(reader, samples.averaged.emplace());
-        samples.num_rays = reader.next<std::uint64_t>();
-        samples.squared_errors = reader.next<double>();
-    }
-    return light;
+    if (!is_first)
+        return {};
+    for (PartLight& light : std::span(lights).subspan(1))
+        light.counts.index();
+    return lights;
 }
 
 } // namespace relumine::prt

@@ -10,6 +10,7 @@
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/parts.h"
+#include "prt/parts/team.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
 
@@ -42,8 +43,11 @@ struct SharedWork {
 /// Throws: std::runtime_error for other bytes.
 [[nodiscard]] SharedWork unpacked_work(std::span<const std::byte> bytes);
 
-[[nodiscard]] std::vector<std::byte> packed_light(const PartLight& light);
-/// Throws: std::runtime_error for other bytes.
-[[nodiscard]] PartLight unpacked_light(std::span<const std::byte> bytes);
+/// Gives the first process the light of all processes, by index, and leaves the others without.
+///
+/// Memory:  32 MiB, and in the first process the light of all.
+/// Throws:  what the team throws where another process has failed; std::invalid_argument for counts
+///          that contradict themselves.
+[[nodiscard]] std::vector<PartLight> gather_light(Team& team, PartLight&& own);
 
 } // namespace relumine::prt

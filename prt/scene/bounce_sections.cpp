@@ -57,7 +57,7 @@ private:
     std::size_t at_ = 0;
 };
 
-void add_lists(Sections& sections, const std::string& size_name, const std::string& name,
+void add_lists(NewSections& sections, const std::string& size_name, const std::string& name,
                const PlaceLists& lists) {
     std::vector<std::uint32_t> sizes;
     std::vector<std::uint8_t> bytes;
@@ -142,9 +142,9 @@ void stream_lists(const SectionReader& reader, std::span<const std::uint32_t> si
 
 } // namespace
 
-void add_bounce_sections(Sections& sections, const BounceMatrix& matrix) {
+void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix) {
     sections[Radius] = bytes_of(std::vector{matrix.spectral_radius});
-    sections[Weights] = bytes_of(matrix.weights);
+    sections[Weights] = SectionContent::view(matrix.weights);
     add_lists(sections, EmitterSizes, Emitters, matrix.emitters);
     add_lists(sections, AveragedSizes, Averaged, matrix.averaged);
 }
@@ -197,10 +197,10 @@ BounceRows read_bounce_rows(const SectionReader& reader, std::size_t num_receive
     return rows;
 }
 
-void add_bounce_samples(Sections& sections, const BounceSamples& samples) {
-    sections[OpenParts] = bytes_of(samples.open_parts);
-    sections[Distances] = bytes_of(samples.distances);
-    sections[HitCounts] = bytes_of(samples.num_hits);
+void add_bounce_samples(NewSections& sections, const BounceSamples& samples) {
+    sections[OpenParts] = SectionContent::view(samples.open_parts);
+    sections[Distances] = SectionContent::view(samples.distances);
+    sections[HitCounts] = SectionContent::view(samples.num_hits);
     add_lists(sections, EmitterSizes, Emitters, samples.emitters);
 }
 

@@ -11,7 +11,7 @@
 
 namespace relumine::prt {
 
-void add_bounce_sections(Sections& sections, const BounceMatrix& matrix);
+void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix);
 
 [[nodiscard]] bool has_bounces(const SectionReader& reader);
 
@@ -42,7 +42,7 @@ inline constexpr const char* EmitterSection = "bounce_hits";
                                           const Part& part);
 
 /// Adds the samples of a part of a plan.
-void add_bounce_samples(Sections& sections, const BounceSamples& samples);
+void add_bounce_samples(NewSections& sections, const BounceSamples& samples);
 
 /// Reads the samples of a part with `num_own` of the receivers. Empty where the file has none.
 ///

@@ -1,9 +1,11 @@
 #include "prt/scene/glossy_sections.h"
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "prt/clusters/cell_index.h"
+#include "prt/scene/section_picker.h"
 
 namespace relumine::prt {
 
@@ -21,18 +23,16 @@ std::string name_of(std::size_t lobe, char part) {
 /// times better.
 template<typename Number>
 std::vector<std::byte> byte_planes(const std::vector<Number>& numbers) {
-    const std::vector<std::byte> bytes = bytes_of(numbers);
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(numbers));
     std::vector<std::byte> planes(bytes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i)
         planes[i % sizeof(Number) * numbers.size() + i / sizeof(Number)] = bytes[i];
     return planes;
 }
 
+/// Undoes byte_planes().
 template<typename Number>
-std::vector<Number> from_byte_planes(const SectionReader& reader, const std::string& name) {
-    const std::vector<std::byte>& planes = reader.bytes(name);
-    if (planes.size() % sizeof(Number) != 0)
-        reader.fail(name, fmt::format("a multiple of {} bytes", sizeof(Number)));
+std::vector<Number> numbers_of(const std::vector<std::byte>& planes) {
     std::vector<Number> numbers(planes.size() / sizeof(Number));
     std::vector<std::byte> bytes(planes.size());
     for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -40,6 +40,14 @@ std::vector<Number> from_byte_planes(const SectionReader& reader, const std::str
     if (!bytes.empty())
         std::memcpy(numbers.data(), bytes.data(), bytes.size());
     return numbers;
+}
+
+template<typename Number>
+std::vector<Number> from_byte_planes(const SectionReader& reader, const std::string& name) {
+    const std::vector<std::byte>& planes = reader.bytes(name);
+    if (planes.size() % sizeof(Number) != 0)
+        reader.fail(name, fmt::format("a multiple of {} bytes", sizeof(Number)));
+    return numbers_of<Number>(planes);
 }
 
 /// Returns each cell minus the one before, modulo 2^32: neighbours on the Z curve differ by little.
@@ -71,36 +79,119 @@ bool is_a_cut(std::span<const std::uint32_t> cells) {
     return true;
 }
 
+/// Returns the first entry of each block.
+std::vector<std::uint64_t> read_begin(const SectionReader& reader, std::size_t lobe,
+                                      std::size_t num_blocks) {
+    const std::string name = name_of(lobe, 'b');
+    auto begin = reader.elements<std::uint64_t>(name, num_blocks + 1);
+    if (begin.front() != 0 || !std::is_sorted(begin.begin(), begin.end()))
+        reader.fail(name, "ranges of cells");
+    return begin;
+}
+
+void require_cuts(const SectionReader& reader, std::size_t lobe, const LobeCuts& cuts) {
+    for (std::size_t block = 0; block + 1 < cuts.begin.size(); ++block)
+        if (!is_a_cut(std::span(cuts.cells)
+                          .subspan(cuts.begin[block], cuts.begin[block + 1] - cuts.begin[block])))
+            reader.fail(name_of(lobe, 'c'), "cells in order that do not overlap");
+}
+
 LobeCuts read_lobe(const SectionReader& reader, std::size_t lobe, std::size_t num_blocks) {
     LobeCuts cuts;
-    const std::string begin = name_of(lobe, 'b');
-    const std::string cells = name_of(lobe, 'c');
     const std::string scales = name_of(lobe, 's');
-    cuts.begin = reader.elements<std::uint64_t>(begin, num_blocks + 1);
-    cuts.cells = sums(from_byte_planes<std::uint32_t>(reader, cells));
+    cuts.begin = read_begin(reader, lobe, num_blocks);
+    cuts.cells = sums(from_byte_planes<std::uint32_t>(reader, name_of(lobe, 'c')));
     cuts.scales = from_byte_planes<float>(reader, scales);
-    if (cuts.begin.front() != 0 || cuts.begin.back() != cuts.num_entries() ||
-        !std::is_sorted(cuts.begin.begin(), cuts.begin.end()))
-        reader.fail(begin, "ranges of cells");
+    if (cuts.begin.back() != cuts.num_entries())
+        reader.fail(name_of(lobe, 'b'), "ranges of cells");
     if (cuts.scales.size() != cuts.num_entries())
         reader.fail(scales, "one number for each cell");
     cuts.values = reader.elements<std::uint8_t>(name_of(lobe, 'v'), cuts.num_entries() * BlockSize);
-    for (std::size_t block = 0; block < num_blocks; ++block)
-        if (!is_a_cut(std::span(cuts.cells)
-                          .subspan(cuts.begin[block], cuts.begin[block + 1] - cuts.begin[block])))
-            reader.fail(cells, "cells in order that do not overlap");
+    require_cuts(reader, lobe, cuts);
+    return cuts;
+}
+
+/// Reads the cells of all blocks.
+std::vector<std::uint32_t> stream_cells(const SectionReader& reader, std::size_t lobe,
+                                        std::uint64_t num_entries) {
+    std::vector<std::uint32_t> cells(static_cast<std::size_t>(num_entries));
+    std::size_t entry = 0;
+    std::uint32_t shift = 0;
+    stream_section(reader.path(), name_of(lobe, 'c'), num_entries * sizeof(std::uint32_t),
+                   [&](std::span<const std::byte> piece) {
+                       for (const std::byte byte : piece) {
+                           cells[entry] |= std::to_integer<std::uint32_t>(byte) << shift;
+                           if (++entry == cells.size()) {
+                               entry = 0;
+                               shift += 8;
+                           }
+                       }
+                   });
+    return sums(std::move(cells));
+}
+
+/// Picks entries out of a section: `size` bytes each, or as many planes of single bytes.
+std::vector<std::byte> picked(const SectionReader& reader, const std::string& name,
+                              std::uint64_t num_entries, std::size_t size, bool in_planes,
+                              std::span<const SectionPicker::Range> entries) {
+    std::vector<SectionPicker::Range> ranges;
+    const std::size_t num_planes = in_planes ? size : 1, width = in_planes ? 1 : size;
+    for (std::size_t plane = 0; plane < num_planes; ++plane)
+        for (const SectionPicker::Range& range : entries)
+            ranges.push_back({plane * num_entries + range.begin * width,
+                              plane * num_entries + range.end * width});
+    SectionPicker picker(std::move(ranges));
+    stream_section(reader.path(), name, num_entries * size,
+                   [&](auto piece) { picker.take(piece); });
+    return picker.elements<std::byte>();
+}
+
+LobeCuts read_lobe_part(const SectionReader& reader, std::size_t lobe, std::size_t num_blocks,
+                        std::span<const BlockRange> blocks, std::uint32_t& depth) {
+    const std::vector<std::uint64_t> begin = read_begin(reader, lobe, num_blocks);
+    const std::uint64_t num_entries = begin.back();
+    LobeCuts cuts;
+    cuts.begin.push_back(0);
+    std::vector<SectionPicker::Range> entries;
+    for (const BlockRange& range : blocks) {
+        entries.push_back({begin[range.begin], begin[range.end]});
+        for (std::size_t block = range.begin; block < range.end; ++block)
+            cuts.begin.push_back(cuts.begin.back() + begin[block + 1] - begin[block]);
+    }
+    const std::vector<std::uint32_t> cells = stream_cells(reader, lobe, num_entries);
+    for (const std::uint32_t cell : cells) {
+        if (cell >= num_cells_above(MaxGlossyLevel + 1))
+            reader.fail(name_of(lobe, 'c'), "cells in order that do not overlap");
+        depth = std::max(depth, level_of_index(cell));
+    }
+    for (const SectionPicker::Range& range : entries)
+        cuts.cells.insert(cuts.cells.end(),
+                          cells.begin() + static_cast<std::ptrdiff_t>(range.begin),
+                          cells.begin() + static_cast<std::ptrdiff_t>(range.end));
+    cuts.scales = numbers_of<float>(
+        picked(reader, name_of(lobe, 's'), num_entries, sizeof(float), true, entries));
+    const std::vector<std::byte> values =
+        picked(reader, name_of(lobe, 'v'), num_entries, BlockSize, false, entries);
+    cuts.values.resize(values.size());
+    std::transform(values.begin(), values.end(), cuts.values.begin(),
+                   [](std::byte byte) { return std::to_integer<std::uint8_t>(byte); });
+    require_cuts(reader, lobe, cuts);
     return cuts;
 }
 
 } // namespace
 
-void add_glossy_sections(Sections& sections, const GlossyTransfer& glossy) {
+void add_glossy_sections(NewSections& sections, const GlossyTransfer& glossy) {
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
         const LobeCuts& cuts = glossy.lobes[lobe];
-        sections[name_of(lobe, 'b')] = bytes_of(cuts.begin);
-        sections[name_of(lobe, 'c')] = byte_planes(differences(cuts.cells));
-        sections[name_of(lobe, 's')] = byte_planes(cuts.scales);
-        sections[name_of(lobe, 'v')] = bytes_of(cuts.values);
+        sections[name_of(lobe, 'b')] = SectionContent::view(cuts.begin);
+        sections[name_of(lobe, 'c')] = {cuts.cells.size() * sizeof(cuts.cells[0]), [&cuts] {
+                                            return byte_planes(differences(cuts.cells));
+                                        }};
+        sections[name_of(lobe, 's')] = {cuts.scales.size() * sizeof(cuts.scales[0]), [&cuts] {
+                                            return byte_planes(cuts.scales);
+                                        }};
+        sections[name_of(lobe, 'v')] = SectionContent::view(cuts.values);
     }
 }
 
@@ -113,6 +204,22 @@ GlossyTransfer read_glossy(const SectionReader& reader, std::size_t num_blocks) 
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
         glossy.lobes[lobe] = read_lobe(reader, lobe, num_blocks);
     return glossy;
+}
+
+GlossyTransfer read_glossy_part(const SectionReader& reader, std::size_t num_blocks,
+                                std::span<const BlockRange> blocks) {
+    GlossyTransfer glossy;
+    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
+        glossy.lobes[lobe] = read_lobe_part(reader, lobe, num_blocks, blocks, glossy.whole_depth);
+    return glossy;
+}
+
+std::vector<std::string> long_glossy_sections() {
+    std::vector<std::string> names;
+    for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe)
+        for (const char part : {'c', 's', 'v'})
+            names.push_back(name_of(lobe, part));
+    return names;
 }
 
 } // namespace relumine::prt

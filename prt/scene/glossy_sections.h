@@ -1,13 +1,18 @@
 // The glossy part of a transfer as sections of a .prt file; docs/prt-format.md describes them.
 #pragma once
 
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
 #include "prt/glossy/glossy_transfer.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
 
-void add_glossy_sections(Sections& sections, const GlossyTransfer& glossy);
+void add_glossy_sections(NewSections& sections, const GlossyTransfer& glossy);
 
 /// Whether the file has glossy sections.
 [[nodiscard]] bool has_glossy(const SectionReader& reader);
@@ -17,5 +22,22 @@ void add_glossy_sections(Sections& sections, const GlossyTransfer& glossy);
 ///
 /// Throws:  as SectionReader.
 [[nodiscard]] GlossyTransfer read_glossy(const SectionReader& reader, std::size_t num_blocks);
+
+/// Where blocks of 16 receivers begin and end.
+struct BlockRange {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+};
+
+/// Reads the highlights of some blocks, one range behind the other, and checks them. `reader` has
+/// the glossy sections but for the long ones, which are read from the file piece by piece.
+///
+/// Memory:  the blocks' own highlights, and for a while 4 bytes a cell of all blocks.
+/// Throws:  as SectionReader.
+[[nodiscard]] GlossyTransfer read_glossy_part(const SectionReader& reader, std::size_t num_blocks,
+                                              std::span<const BlockRange> blocks);
+
+/// The long glossy sections.
+[[nodiscard]] std::vector<std::string> long_glossy_sections();
 
 } // namespace relumine::prt

@@ -123,7 +123,7 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
 
 } // namespace
 
-void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh) {
+void add_material_sections(NewSections& sections, const mesh::TriangleMesh& mesh) {
     const auto has_texture = [&](const Material& material) {
         return material.base_color_texture && has_files(material, mesh.textures);
     };
@@ -156,11 +156,11 @@ void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh) {
         materials.push_back(json);
     }
     const std::string text = Json({{"images", textures}, {"materials", materials}}).text(2);
-    sections["materials"] = bytes_of(std::vector<char>(text.begin(), text.end()));
+    sections["materials"] = bytes_of(text);
     sections["images"] = std::move(images);
-    sections["t_materials"] = bytes_of(mesh.triangle_materials);
+    sections["t_materials"] = SectionContent::view(mesh.triangle_materials);
     if (!mesh.corner_uvs.empty())
-        sections["corner_uvs"] = bytes_of(mesh.corner_uvs);
+        sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
 }
 
 void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mesh) {

@@ -9,7 +9,7 @@ namespace relumine::prt {
 
 /// Adds what gives a textured mesh its colours between the vertices: materials, the image files as
 /// they were, materials of triangles, uvs of corners. A mesh without textures adds nothing.
-void add_material_sections(Sections& sections, const mesh::TriangleMesh& mesh);
+void add_material_sections(NewSections& sections, const mesh::TriangleMesh& mesh);
 
 /// Reads them into a mesh that has its triangles. Without the sections the mesh stays as it is.
 ///

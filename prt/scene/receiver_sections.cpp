@@ -65,17 +65,17 @@ void check(const Layout& layout, const Receivers& receivers) {
 }
 
 template<typename Layout>
-void add_layout(Sections& sections, const Layout& layout, const Receivers& receivers) {
+void add_layout(NewSections& sections, const Layout& layout, const Receivers& receivers) {
     check(layout, receivers);
     if (receivers.normals.size() != receivers.size() || receivers.points.size() != receivers.size())
         throw std::invalid_argument(
             fmt::format("expected a normal and a point for each of {} receivers, got {} and {}",
                         receivers.size(), receivers.normals.size(), receivers.points.size()));
     const std::string text = json_of(layout).text(2);
-    sections["layout"] = bytes_of(std::vector<char>(text.begin(), text.end()));
+    sections["layout"] = bytes_of(text);
     sections["layout_mask"] = mask(places(layout), num_places(layout));
-    sections["r_positions"] = bytes_of(receivers.positions);
-    sections["r_normals"] = bytes_of(receivers.normals);
+    sections["r_positions"] = SectionContent::view(receivers.positions);
+    sections["r_normals"] = SectionContent::view(receivers.normals);
     std::vector<std::uint32_t> triangles;
     std::vector<glm::vec2> barycentric;
     for (const MeshPoint& point : receivers.points) {
@@ -87,7 +87,7 @@ void add_layout(Sections& sections, const Layout& layout, const Receivers& recei
 }
 
 /// Stores field by field: a Surface in memory has padding.
-void add_surfaces(Sections& sections, const std::vector<Surface>& surfaces) {
+void add_surfaces(NewSections& sections, const std::vector<Surface>& surfaces) {
     std::vector<glm::vec3> albedo, specular;
     std::vector<std::uint8_t> highlight;
     std::vector<float> shape;
@@ -185,7 +185,7 @@ std::vector<std::uint32_t> read_places(const SectionReader& reader, const Layout
 
 } // namespace
 
-void add_receiver_sections(Sections& sections, const Receivers& receivers,
+void add_receiver_sections(NewSections& sections, const Receivers& receivers,
                            const ReceiverLayout& layout) {
     const auto fits = [&](std::size_t size) {
         return size == 0 || size == receivers.size();
@@ -199,7 +199,7 @@ void add_receiver_sections(Sections& sections, const Receivers& receivers,
     else if (const auto* texels = std::get_if<TexelLayout>(&layout))
         add_layout(sections, *texels, receivers);
     if (!receivers.to_eye.empty())
-        sections["r_to_eye"] = bytes_of(receivers.to_eye);
+        sections["r_to_eye"] = SectionContent::view(receivers.to_eye);
     if (!receivers.surfaces.empty())
         add_surfaces(sections, receivers.surfaces);
 }

@@ -15,7 +15,7 @@ namespace relumine::prt {
 ///
 /// Throws:  std::invalid_argument for arrays of different lengths, or a layout that does not fit
 ///          them.
-void add_receiver_sections(Sections& sections, const Receivers& receivers,
+void add_receiver_sections(NewSections& sections, const Receivers& receivers,
                            const ReceiverLayout& layout);
 
 /// Reads the layout alone; a file without its sections has vertices. Checks that there are as many

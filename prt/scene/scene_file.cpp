@@ -52,7 +52,7 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
                           view.target.z, view.fov_degrees});
     }
     const std::string text = json.text(2);
-    return bytes_of(std::vector<char>(text.begin(), text.end()));
+    return bytes_of(text);
 }
 
 class SceneReader {
@@ -214,7 +214,7 @@ private:
 
 } // namespace
 
-Sections sections_without_light(const std::filesystem::path& path, const Scene& scene) {
+NewSections sections_without_light(const std::filesystem::path& path, const Scene& scene) {
     const bool on_vertices = std::holds_alternative<VertexLayout>(scene.layout);
     if (on_vertices && scene.receivers.size() != 0 &&
         scene.receivers.size() != scene.mesh.num_vertices())
@@ -231,35 +231,35 @@ Sections sections_without_light(const std::filesystem::path& path, const Scene& 
                         path.string(), num_receivers, scene.mesh.num_vertices(),
                         scene.transfer.num_receivers(), scene.mesh.normals.size()));
     check_scene(scene, path);
-    Sections sections;
+    NewSections sections;
     sections["settings"] = settings_json(scene.settings);
-    sections["positions"] = bytes_of(scene.mesh.positions);
-    sections["triangles"] = bytes_of(scene.mesh.triangles);
-    sections["normals"] = bytes_of(scene.mesh.normals);
+    sections["positions"] = SectionContent::view(scene.mesh.positions);
+    sections["triangles"] = SectionContent::view(scene.mesh.triangles);
+    sections["normals"] = SectionContent::view(scene.mesh.normals);
     if (scene.blockers) {
-        sections["block_positions"] = bytes_of(scene.blockers->positions);
-        sections["block_triangles"] = bytes_of(scene.blockers->triangles);
+        sections["block_positions"] = SectionContent::view(scene.blockers->positions);
+        sections["block_triangles"] = SectionContent::view(scene.blockers->triangles);
     }
     if (!scene.mesh.colors.empty())
-        sections["colors"] = bytes_of(scene.mesh.colors);
+        sections["colors"] = SectionContent::view(scene.mesh.colors);
     if (!scene.mesh.uvs.empty())
-        sections["uvs"] = bytes_of(scene.mesh.uvs);
+        sections["uvs"] = SectionContent::view(scene.mesh.uvs);
     if (on_vertices && !scene.receivers.surfaces.empty())
         add_material_sections(sections, scene.mesh);
     add_receiver_sections(sections, scene.receivers, scene.layout);
-    sections["order"] = bytes_of(scene.transfer.order);
+    sections["order"] = SectionContent::view(scene.transfer.order);
     sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
     return sections;
 }
 
-void add_counts(Sections& sections, const VisibleCounts& counts) {
-    sections["visible"] = bytes_of(counts.visible);
-    sections["mixed"] = bytes_of(counts.mixed);
-    sections["counts"] = bytes_of(counts.counts);
+void add_counts(NewSections& sections, const VisibleCounts& counts) {
+    sections["visible"] = SectionContent::view(counts.visible);
+    sections["mixed"] = SectionContent::view(counts.mixed);
+    sections["counts"] = SectionContent::view(counts.counts);
 }
 
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {
-    Sections sections = sections_without_light(path, scene);
+    NewSections sections = sections_without_light(path, scene);
     add_counts(sections, scene.transfer.counts);
     if (scene.transfer.glossy)
         add_glossy_sections(sections, *scene.transfer.glossy);

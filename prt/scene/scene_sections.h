@@ -19,13 +19,14 @@ namespace relumine::prt {
 /// Does the same for a scene whose counts are missing, as sections_without_light() makes it.
 [[nodiscard]] Scene plan_of(const std::filesystem::path& path, Sections&& sections);
 
-/// Returns the sections of a scene without counts, highlights and bounces.
+/// Returns the sections of a scene without counts, highlights and bounces. They refer to the scene,
+/// which must last until they are written.
 ///
 /// Throws: as save_scene() does.
-[[nodiscard]] Sections sections_without_light(const std::filesystem::path& path,
-                                              const Scene& scene);
+[[nodiscard]] NewSections sections_without_light(const std::filesystem::path& path,
+                                                 const Scene& scene);
 
-/// Adds the sections of the counts.
-void add_counts(Sections& sections, const VisibleCounts& counts);
+/// Adds the sections of the counts, which must last until they are written.
+void add_counts(NewSections& sections, const VisibleCounts& counts);
 
 } // namespace relumine::prt

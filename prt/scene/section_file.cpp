@@ -4,8 +4,10 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <deque>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
 
@@ -275,68 +277,150 @@ private:
     std::vector<std::byte> bytes_;
 };
 
-/// Returns the frames of a section, one behind the other.
-std::vector<std::byte> compressed(std::span<const std::byte> section) {
-    std::vector<std::vector<std::byte>> frames(
-        std::max<std::size_t>((section.size() + FrameSize - 1) / FrameSize, 1));
-    tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
-        const std::span<const std::byte> rest = section.subspan(i * FrameSize);
-        frames[i] =
-            files::compressed(rest.first(std::min(FrameSize, rest.size())), CompressionLevel);
-    });
-    std::vector<std::byte> result = std::move(frames.front());
-    for (std::size_t i = 1; i < frames.size(); ++i)
-        result.insert(result.end(), frames[i].begin(), frames[i].end());
-    return result;
-}
+/// Writes sections frame by frame: a batch of frames is packed in parallel, written and forgotten.
+class Writer {
+public:
+    Writer(const std::filesystem::path& path, const NewSections& sections)
+        : table_(checked_table(sections)), file_(path) {
+        // The table comes first in the file and is known last.
+        file_.append(std::vector<std::byte>(sizeof(Header) + table_.size() * sizeof(SectionEntry)));
+        size_ = sizeof(Header) + table_.size() * sizeof(SectionEntry);
+    }
+
+    std::uint64_t write(const NewSections& sections) {
+        std::size_t index = 0;
+        for (const auto& [name, content] : sections) {
+            made_.emplace_back();
+            std::span<const std::byte> rest = content.bytes(made_.back());
+            do { // An empty section has one frame, too.
+                const std::span<const std::byte> frame =
+                    rest.first(std::min(FrameSize, rest.size()));
+                rest = rest.subspan(frame.size());
+                batch_.push_back({.section = index, .content = frame, .is_last = rest.empty()});
+                if (batch_.size() == BatchFrames)
+                    write_batch();
+            } while (!rest.empty());
+            ++index;
+        }
+        write_batch();
+        write_table();
+        file_.commit();
+        return size_;
+    }
+
+private:
+    /// Enough for all processors, and 32 MiB.
+    static constexpr std::size_t BatchFrames = 16;
+
+    struct Frame {
+        std::size_t section;
+        std::span<const std::byte> content;
+        bool is_last;
+        std::vector<std::byte> stored = {};
+    };
+
+    static std::vector<SectionEntry> checked_table(const NewSections& sections) {
+        if (sections.size() > MaxSections)
+            throw std::invalid_argument(
+                fmt::format("expected at most {} sections, got {}", MaxSections, sections.size()));
+        std::vector<SectionEntry> table;
+        for (const auto& [name, content] : sections) {
+            SectionEntry& entry = table.emplace_back();
+            if (name.empty() || name.size() > entry.name.size())
+                throw std::invalid_argument(
+                    fmt::format("expected a section name of 1 to 16 letters, got '{}'", name));
+            std::copy(name.begin(), name.end(), entry.name.begin());
+            entry.size = content.size();
+        }
+        return table;
+    }
+
+    void write_batch() {
+        tbb::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t i) {
+            batch_[i].stored = files::compressed(batch_[i].content, CompressionLevel);
+        });
+        for (const Frame& frame : batch_) {
+            num_packed_ += frame.content.size();
+            num_stored_ += frame.stored.size();
+        }
+        // The rest will pack as what came before did.
+        const auto num_bytes = static_cast<double>(std::accumulate(
+            table_.begin(), table_.end(), std::uint64_t{0},
+            [](std::uint64_t sum, const SectionEntry& entry) { return sum + entry.size; }));
+        if (num_packed_ > 0)
+            file_.expect(static_cast<std::uint64_t>(static_cast<double>(num_stored_) * num_bytes /
+                                                    static_cast<double>(num_packed_)));
+        for (const Frame& frame : batch_) {
+            SectionEntry& entry = table_[frame.section];
+            if (entry.stored_size == 0) {
+                entry.offset = size_;
+                XXH64_reset(hash_.get(), 0);
+            }
+            XXH64_update(hash_.get(), frame.stored.data(), frame.stored.size());
+            file_.append(frame.stored);
+            size_ += frame.stored.size();
+            entry.stored_size += frame.stored.size();
+            if (frame.is_last)
+                entry.checksum = XXH64_digest(hash_.get());
+        }
+        batch_.clear();
+        // The content of a section that goes on in the next batch stays.
+        if (made_.size() > 1)
+            made_.erase(made_.begin(), made_.end() - 1);
+    }
+
+    void write_table() {
+        Header header{.magic = Magic,
+                      .byte_order_mark = ByteOrderMark,
+                      .version = SceneFileVersion,
+                      .file_size = size_,
+                      .num_sections = static_cast<std::uint32_t>(table_.size()),
+                      .reserved = 0,
+                      .checksum = 0};
+        header.checksum = table_checksum(header, table_);
+        file_.replace(0, std::as_bytes(std::span(&header, 1)));
+        file_.replace(sizeof header, std::as_bytes(std::span(table_)));
+    }
+
+    std::vector<SectionEntry> table_;
+    files::OutputFile file_;
+    std::uint64_t size_ = 0;
+    std::uint64_t num_packed_ = 0;
+    std::uint64_t num_stored_ = 0;
+    std::vector<Frame> batch_;
+    std::deque<std::vector<std::byte>> made_;
+    const std::unique_ptr<XXH64_state_t, XXH_errorcode (*)(XXH64_state_t*)> hash_{
+        XXH64_createState(), XXH64_freeState};
+};
 
 } // namespace
 
-std::uint64_t write_sections(const std::filesystem::path& path, const Sections& sections) {
-    if (sections.size() > MaxSections)
-        throw std::invalid_argument(
-            fmt::format("expected at most {} sections, got {}", MaxSections, sections.size()));
-    files::OutputFile file(path);
-    std::vector<const Sections::value_type*> in_order;
-    for (const auto& section : sections)
-        in_order.push_back(&section);
-    std::vector<std::vector<std::byte>> stored(in_order.size());
-    tbb::parallel_for(std::size_t{0}, stored.size(),
-                      [&](std::size_t i) { stored[i] = compressed(in_order[i]->second); });
+std::span<const std::byte> SectionContent::bytes(std::vector<std::byte>& made) const {
+    if (const auto* own = std::get_if<std::vector<std::byte>>(&content_))
+        return *own;
+    if (const auto* view = std::get_if<std::span<const std::byte>>(&content_))
+        return *view;
+    made = std::get<Maker>(content_).make();
+    return made;
+}
 
-    Header header{.magic = Magic,
-                  .byte_order_mark = ByteOrderMark,
-                  .version = SceneFileVersion,
-                  .file_size = sizeof(Header) + stored.size() * sizeof(SectionEntry),
-                  .num_sections = static_cast<std::uint32_t>(stored.size()),
-                  .reserved = 0,
-                  .checksum = 0};
-    std::vector<SectionEntry> table(stored.size());
-    for (std::size_t i = 0; i < table.size(); ++i) {
-        const auto& [name, content] = *in_order[i];
-        if (name.empty() || name.size() > table[i].name.size())
-            throw std::invalid_argument(
-                fmt::format("expected a section name of 1 to 16 letters, got '{}'", name));
-        std::copy(name.begin(), name.end(), table[i].name.begin());
-        table[i].offset = header.file_size;
-        table[i].stored_size = stored[i].size();
-        table[i].size = content.size();
-        table[i].checksum = XXH64(stored[i].data(), stored[i].size(), 0);
-        header.file_size += stored[i].size();
-    }
-    header.checksum = table_checksum(header, table);
+std::uint64_t SectionContent::size() const {
+    if (const auto* own = std::get_if<std::vector<std::byte>>(&content_))
+        return own->size();
+    if (const auto* view = std::get_if<std::span<const std::byte>>(&content_))
+        return view->size();
+    return std::get<Maker>(content_).size;
+}
 
-    std::vector<std::byte> bytes(header.file_size);
-    std::memcpy(bytes.data(), &header, sizeof header);
-    if (!table.empty())
-        std::memcpy(bytes.data() + sizeof header, table.data(),
-                    table.size() * sizeof(SectionEntry));
-    for (std::size_t i = 0; i < table.size(); ++i)
-        std::copy(stored[i].begin(), stored[i].end(),
-                  bytes.begin() + static_cast<std::ptrdiff_t>(table[i].offset));
-    file.write(bytes);
-    file.commit();
-    return header.file_size;
+NewSections to_write(Sections sections) {
+    NewSections result;
+    for (auto& [name, bytes] : sections)
+        result.emplace(name, std::move(bytes));
+    return result;
+}
+
+std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections) {
+    return Writer(path, sections).write(sections);
 }
 
 Sections read_sections(const std::filesystem::path& path, std::uint32_t* version,

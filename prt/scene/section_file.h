@@ -9,6 +9,9 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
 #include <vector>
 
 namespace relumine::prt {
@@ -16,14 +19,55 @@ namespace relumine::prt {
 /// The version that is written. All versions up to this one are read.
 inline constexpr std::uint32_t SceneFileVersion = 4;
 
-/// Sections by name (1 to 16 ASCII letters), each a string of bytes.
+/// Sections of a file by name (1 to 16 ASCII letters), each a string of bytes.
 using Sections = std::map<std::string, std::vector<std::byte>>;
+
+/// The bytes of a section that will be written: bytes of its own, a view of an array that lasts
+/// until then, or a function that makes them when their turn has come. So a save needs little
+/// memory beside the scene.
+class SectionContent {
+public:
+    SectionContent() = default;
+    SectionContent(std::vector<std::byte> own) : content_(std::move(own)) {}
+    /// `make` returns `size` bytes.
+    SectionContent(std::uint64_t size, std::function<std::vector<std::byte>()> make)
+        : content_(Maker{size, std::move(make)}) {}
+
+    /// `elements` must last until the section is written.
+    template<typename Element>
+    [[nodiscard]] static SectionContent view(const std::vector<Element>& elements) {
+        static_assert(std::is_trivially_copyable_v<Element>);
+        SectionContent content;
+        content.content_ = std::as_bytes(std::span(elements));
+        return content;
+    }
+    template<typename Element>
+    static SectionContent view(std::vector<Element>&&) = delete;
+
+    [[nodiscard]] std::uint64_t size() const;
+    /// Returns the bytes. `made` keeps them if the function makes them.
+    [[nodiscard]] std::span<const std::byte> bytes(std::vector<std::byte>& made) const;
+
+private:
+    struct Maker {
+        std::uint64_t size;
+        std::function<std::vector<std::byte>()> make;
+    };
+    std::variant<std::vector<std::byte>, std::span<const std::byte>, Maker> content_;
+};
+
+/// Sections to write, by name.
+using NewSections = std::map<std::string, SectionContent>;
+
+/// Returns the sections of a file, to write them again.
+[[nodiscard]] NewSections to_write(Sections sections);
 
 /// Writes sections compressed (zstd), with sizes and xxHash64 checksums; whole or not at all.
 /// Returns the file's size.
 ///
+/// Memory:  32 MiB, and the largest content that a function makes.
 /// Throws:  std::runtime_error that names the path.
-std::uint64_t write_sections(const std::filesystem::path& path, const Sections& sections);
+std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections);
 
 /// Reads a file of sections, all but those in `left_out`. Refuses a file that is truncated, longer
 /// than it says, of an unknown version or byte order, or changed in any bit, before its sizes are

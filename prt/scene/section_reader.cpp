@@ -3,8 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace relumine::prt {
+
+std::vector<std::byte> bytes_of(std::string_view text) {
+    const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+    return {bytes.begin(), bytes.end()};
+}
 
 std::vector<std::byte> packed(const std::vector<bool>& flags) {
     std::vector<std::byte> bytes((flags.size() + 7) / 8);

@@ -17,7 +17,8 @@
 
 namespace relumine::prt {
 
-/// Returns an array as a section stores it.
+/// Returns an array as a section stores it. For an array that lasts until the section is written,
+/// SectionContent::view() needs no memory.
 template<typename Element>
 [[nodiscard]] std::vector<std::byte> bytes_of(const std::vector<Element>& elements) {
     static_assert(std::is_trivially_copyable_v<Element>);
@@ -26,6 +27,9 @@ template<typename Element>
         std::memcpy(bytes.data(), elements.data(), bytes.size());
     return bytes;
 }
+
+/// Returns a text as a section stores it.
+[[nodiscard]] std::vector<std::byte> bytes_of(std::string_view text);
 
 /// Packs split flags or masks, eight to a byte, lowest bit first.
 [[nodiscard]] std::vector<std::byte> packed(const std::vector<bool>& flags);

@@ -77,6 +77,9 @@ public:
     virtual void clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                                std::span<std::uint64_t> rays) const;
 
+    /// Says that so many rays will be asked for soon. It is worth work that makes them faster.
+    virtual void prepare(std::uint64_t num_rays) const { static_cast<void>(num_rays); }
+
 protected:
     Blockers(const Blockers&) = default;
     Blockers& operator=(const Blockers&) = default;
@@ -84,18 +87,22 @@ protected:
     Blockers& operator=(Blockers&&) = default;
 };
 
-/// Returns the lanes of `candidates` whose light reaches a receiver: above its horizon (n.w > 0 in
-/// float) and not blocked.
+/// Whether light from a direction lies above a receiver's horizon: n.w > 0 in float.
+[[nodiscard]] inline bool is_above(const glm::vec3& normal, const glm::vec3& direction) {
+    return normal.x * direction.x + normal.y * direction.y + normal.z * direction.z > 0.0f;
+}
+
+/// Returns the lanes of `candidates` whose light reaches a receiver: above its horizon and not
+/// blocked.
 [[nodiscard]] inline std::uint32_t lit_lanes(const Blockers& blockers, const glm::vec3& origin,
                                              const glm::vec3& normal,
                                              const DirectionPacket& directions,
                                              std::uint32_t candidates) {
     std::uint32_t above = 0;
-    for (std::uint32_t i = 0; i < PacketSize; ++i) {
-        const float cosine =
-            normal.x * directions.x[i] + normal.y * directions.y[i] + normal.z * directions.z[i];
-        above |= static_cast<std::uint32_t>(cosine > 0.0f) << i;
-    }
+    for (std::uint32_t i = 0; i < PacketSize; ++i)
+        above |= static_cast<std::uint32_t>(
+                     is_above(normal, {directions.x[i], directions.y[i], directions.z[i]}))
+                 << i;
     above &= candidates;
     return above == 0 ? 0 : above & ~blockers.occluded(origin, directions, above);
 }

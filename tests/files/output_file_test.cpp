@@ -228,6 +228,17 @@ TEST_F(OutputFileTest, AppendsPieceByPiece) {
     EXPECT_EQ(read(target), bytes_of("one two three"));
 }
 
+TEST_F(OutputFileTest, ReplacesWhatWasWritten) {
+    const fs::path target = folder_ / "out.txt";
+    OutputFile file(target);
+    file.append(bytes_of("...., 1 2 3"));
+    file.replace(0, bytes_of("head"));
+    EXPECT_THROW(file.replace(8, bytes_of("long")), std::invalid_argument);
+    file.append(bytes_of(" 4"));
+    file.commit();
+    EXPECT_EQ(read(target), bytes_of("head, 1 2 3 4"));
+}
+
 TEST_F(OutputFileTest, FollowsLinks) {
     fs::create_directory(folder_ / "far");
     std::ofstream(folder_ / "far" / "real.txt") << "old";

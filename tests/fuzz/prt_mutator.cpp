@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "files/output_file.h"
@@ -91,7 +92,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
         if (sections.empty() || random() % 8 == 0)
             return LLVMFuzzerMutate(data, size, max_size);
         mutate(sections, max_size, random);
-        prt::write_sections(path, sections);
+        prt::write_sections(path, prt::to_write(std::move(sections)));
         result = files::read(path);
         fuzz::set_version(result, random() % 8 == 0 ? random() % 5 : version);
         result = fuzz::with_checksums(result);

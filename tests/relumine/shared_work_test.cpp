@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "prt/parts/scene_part.h"
+#include "relumine/lit_part.h"
 #include "relumine/shared_light.h"
 #include "tests/prt/thread_team.h"
 #include "tests/relumine/small_scenes.h"
@@ -136,6 +137,71 @@ TEST_F(SharedWork, ProcessesFindTheLightOfOne) {
             shared.bounce();
             const Lighting own = shared.lighting();
             EXPECT_EQ(own.radiance.empty(), !is_first);
+            if (is_first)
+                expect_same_light(light, own);
+        });
+}
+
+TEST_F(SharedWork, ProcessesAndPartsFindTheHighlightsOfOne) {
+    PrecomputeOptions work = options(Vertices{}, file("scene.prt"));
+    work.bounce_tolerance.reset();
+    work.view =
+        View{Camera{.eye = {0.5f, 1.2f, 2.5f}, .target = {0.5f, 0.3f, 0.3f}, .fov_degrees = 30}};
+    work.surface = everywhere({.albedo = glm::vec3(0.4f),
+                               .specular = glm::vec3(0.3f),
+                               .highlight = prt::Highlight::Ggx,
+                               .roughness_or_exponent = 0.4f});
+    work.glossy_tolerance = 0.3f;
+    (void)precompute(mesh(), work);
+    LitScene whole(load_scene(file("scene.prt")));
+    ASSERT_TRUE(whole.scene().transfer.glossy);
+    whole.light(sun_and_sky(60.0f));
+    const Lighting light = whole.lighting();
+    std::vector<float> highlights;
+    for (std::size_t i = 0; i < light.radiance.size(); ++i)
+        highlights.push_back(light.radiance[i].g -
+                             0.4f * whole.relighter().diffuse_radiance()[i].g);
+    ASSERT_GT(*std::max_element(highlights.begin(), highlights.end()), 0.05f);
+    for (const std::uint32_t count : Counts) {
+        share(count, [&](SharedLight& shared, bool is_first) {
+            shared.light(sun_and_sky(60.0f));
+            const Lighting own = shared.lighting();
+            if (is_first)
+                expect_same_light(light, own);
+        });
+        std::vector<std::filesystem::path> parts;
+        for (std::uint32_t i = 0; i < count; ++i) {
+            parts.push_back(file("lit." + std::to_string(i)));
+            light_part({.scene = file("scene.prt"), .part = {i, count}, .output = parts.back()},
+                       sun_and_sky(60.0f));
+        }
+        join_light(parts, file("joined.npy"));
+        whole.save(file("whole.npy"));
+        EXPECT_EQ(read("joined.npy"), read("whole.npy")) << count << " parts";
+    }
+}
+
+TEST_F(SharedWork, LightsOfAListBounceWithTheEnvironment) {
+    make_scene();
+    LitScene whole(load_scene(file("scene.prt")));
+    const std::vector<glm::vec3> albedo = bounce_albedo(whole.scene());
+    const std::vector<lights::DistantLight> list = {
+        {.direction = glm::dvec3(0.6, 0.8, 0), .irradiance = glm::dvec3(2.0, 1.0, 0.5)}};
+    whole.light(list);
+    const std::span<const glm::vec3> direct = whole.relighter().diffuse_radiance();
+    const std::vector<glm::vec3> of_list(direct.begin(), direct.end());
+    whole.light(sun_and_sky(3.0f));
+    whole.bounce(albedo, {}, of_list);
+    const Lighting light = whole.lighting();
+    for (const std::uint32_t count : {2u, 5u})
+        share(count, [&](SharedLight& shared, bool is_first) {
+            shared.set_bounces(bounces_of(shared.lit().scene(), albedo));
+            shared.set_lights(list);
+            const std::vector<glm::vec3> of_shared_list = shared.diffuse_radiance();
+            EXPECT_EQ(of_shared_list, of_list);
+            shared.light(sun_and_sky(3.0f));
+            shared.bounce(of_shared_list);
+            const Lighting own = shared.lighting();
             if (is_first)
                 expect_same_light(light, own);
         });

@@ -86,12 +86,23 @@ light() { # SCENE OUTPUT ARGS
     done
 }
 light vertices .npy
+light glossy .npy
+light glossy .png --size 120x90
+light bouncing_glossy .npy
 light texels .npy
 light texels .exr
 light bouncing .npy
 light bouncing .png --size 200x150
 light bouncing .ply --bounces 2
 light bouncing_texels .exr --only-bounces
+"$relumine" lights sun_sky.exr --number 12 -o lamps.json -q
+light bouncing .png --size 120x90 --lights lamps.json
+light glossy .npy --lights lamps.json
+"$relumine" relight bouncing.prt --lights lamps.json -o whole.npy -q
+for ranks in 1 3 8; do
+    start "$ranks" relight bouncing.prt --lights lamps.json -o shared.npy --threads 1 -q
+    check "a list of lights, $ranks ranks" cmp -s whole.npy shared.npy
+done
 
 "$relumine" verify bouncing.prt sun_sky.exr --samples 60 --surface 30 --paths 8 --json -q | grep -v '"seconds"' >whole.json
 for ranks in 1 2 3 8; do
@@ -114,34 +125,25 @@ for ranks in 1 2 3 8; do
     check "frames, $ranks ranks" diff -rq whole shared
 done
 
-# Kills a rank at ten moments. What is left goes on, or begins anew where there was no checkpoint yet.
-longer=(knot.ply --floor 60 --tolerance 0.012 --checkpoint-seconds 0.05)
-"$relumine" precompute "${longer[@]}" -o longer.prt -q
-num_killed=0
-for delay in 0.6 0.8 1.0 1.2 1.4 1.6 1.8 2.0 2.3 2.6; do
-    start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
-    run=$!
-    sleep "$delay"
-    rank=$(ranks_of "$run" | sort -R | head -n 1)
-    [ -z "$rank" ] || { kill -9 "$rank" 2>/dev/null && num_killed=$((num_killed + 1)); }
-    wait "$run" || true
-done
-start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q
-check "$num_killed ranks killed, then --resume" cmp -s longer.prt killed.prt
-longer=(knot.ply --floor 60 --tolerance 0.05 --bounces 0.004 --checkpoint-seconds 0.05)
-"$relumine" precompute "${longer[@]}" -o longer.prt -q
-rm killed.prt
-num_killed=0
-for delay in 0.8 1.2 1.6 2.0 2.4; do
-    start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
-    run=$!
-    sleep "$delay"
-    rank=$(ranks_of "$run" | sort -R | head -n 1)
-    [ -z "$rank" ] || { kill -9 "$rank" 2>/dev/null && num_killed=$((num_killed + 1)); }
-    wait "$run" || true
-done
-start 3 precompute "${longer[@]}" -o killed.prt --threads 1 --resume -q
-check "$num_killed ranks killed among bounces, then --resume" cmp -s longer.prt killed.prt
+# Kills a rank at each of several moments. What is left goes on, or begins anew where there was no checkpoint yet.
+survives() { # NAME "DELAYS" OPTIONS...: of precompute
+    local name=$1 delays=$2 num_killed=0 delay run rank
+    shift 2
+    "$relumine" precompute "$@" -o longer.prt -q
+    rm -f killed.prt
+    for delay in $delays; do
+        start 3 precompute "$@" --checkpoint-seconds 0.05 -o killed.prt --threads 1 --resume -q >kill.log 2>&1 &
+        run=$!
+        sleep "$delay"
+        rank=$(ranks_of "$run" | sort -R | head -n 1)
+        [ -z "$rank" ] || { kill -9 "$rank" 2>/dev/null && num_killed=$((num_killed + 1)); }
+        wait "$run" || true
+    done
+    start 3 precompute "$@" --checkpoint-seconds 0.05 -o killed.prt --threads 1 --resume -q
+    check "$num_killed ranks killed $name, then --resume" cmp -s longer.prt killed.prt
+}
+survives "among clusters" "0.6 0.8 1.0 1.2 1.4 1.6 1.8 2.0 2.3 2.6" knot.ply --floor 60 --tolerance 0.012
+survives "among bounces" "0.8 1.2 1.6 2.0 2.4" knot.ply --floor 60 --tolerance 0.05 --bounces 0.004
 check "no checkpoint is left" test ! -e killed.prt.checkpoint
 
 refuses() { # NAME CODE TEXT COMMAND...: one line of relumine-mpi, which has the text; nothing written
@@ -165,7 +167,8 @@ refuses "other arguments" 1 "process 1: expected the arguments" \
     -n 1 "$relumine_mpi" precompute knot.ply -o out.prt : -n 1 "$relumine_mpi" precompute squares.obj -o out.prt
 refuses "no folder" 1 "no/such/out.prt" start 3 precompute "${vertices[@]}" -o no/such/out.prt -q
 refuses "another command" 2 "expected precompute" start 3 info vertices.prt
-refuses "lights of a list" 2 "--lights" start 2 relight vertices.prt sun_sky.exr --lights whole.json -o out.npy
+refuses "lights that are none" 1 "whole.json: expected" \
+    start 2 relight vertices.prt sun_sky.exr --lights whole.json -o out.npy -q
 refuses "bounces of a scene without" 1 "vertices.prt: expected a scene made with" \
     start 2 relight vertices.prt sun_sky.exr --bounces 3 -o out.npy
 refuses "frames that are not there" 1 "nothing" start 2 animate vertices.prt 'nothing.####.exr' -o 'out.####.png'
@@ -175,12 +178,10 @@ cp texels.prt other/vertices.prt
 cp sun_sky.exr other
 for command in "relight vertices.prt sun_sky.exr -o out.npy" "verify vertices.prt sun_sky.exr --samples 10"; do
     # shellcheck disable=SC2086 # several words
-    refuses "another scene (${command%% *})" 1 "process 1: vertices.prt: expected the scene and the environment" \
+    refuses "another scene (${command%% *})" 1 "process 1: vertices.prt: expected the scene and the light" \
         mpirun "${as_root[@]}" --oversubscribe --mca btl self,vader \
         --wdir "$folder" -n 1 "$relumine_mpi" $command -q : --wdir "$folder/other" -n 1 "$relumine_mpi" $command -q
 done
-refuses "shared highlights" 1 "glossy.prt: expected a scene without highlights" \
-    start 2 relight glossy.prt sun_sky.exr -o out.npy -q
 refuses "parts" 2 "expected a mesh" start 2 precompute --plan knot.plan --part 1/2 -o out.prt
 refuses "a limit of memory" 1 "no limit of memory" start 2 precompute knot.ply --max-memory 1G -o out.prt
 if mkdir small && mount -t tmpfs -o size=100k none small 2>/dev/null; then

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "prt/clusters/column_store.h"
+
 namespace relumine::prt {
 namespace {
 
@@ -48,10 +50,14 @@ LeafColumn column_of(const std::vector<std::uint8_t>& leaf) {
 }
 
 VisibleCounts counts_of(const Table& table, std::size_t num_receivers) {
-    std::vector<LeafColumn> columns;
-    for (const auto& leaf : table)
-        columns.push_back(column_of(leaf));
-    return counts_from_columns(std::move(columns), num_receivers);
+    ColumnStore columns(num_receivers);
+    std::vector<std::uint32_t> order;
+    // They come in another order than that of the leaves.
+    for (std::size_t i = table.size(); i-- > 0;) {
+        columns.add(column_of(table[i]));
+        order.push_back(static_cast<std::uint32_t>(i));
+    }
+    return columns.take(order);
 }
 
 TEST(VisibleCounts, CountEqualsAPlainTable) {
@@ -70,6 +76,27 @@ TEST(VisibleCounts, CountEqualsAPlainTable) {
                         << "receiver " << receiver << " of " << num_receivers << ", leaf " << leaf
                         << " of " << num_leaves;
         }
+}
+
+TEST(VisibleCounts, ColumnsComeBackAsTheyWere) {
+    std::mt19937 random(5);
+    // Of one run of receivers, and of three.
+    for (const std::size_t num_receivers : {100u, 33000u}) {
+        const Table table = random_table(random, num_receivers, 20);
+        ColumnStore columns(num_receivers);
+        for (const auto& leaf : table)
+            columns.add(column_of(leaf));
+        for (std::size_t i = 0; i < table.size(); ++i) {
+            const LeafColumn expected = column_of(table[i]), column = columns.column(i);
+            EXPECT_EQ(column.visible, expected.visible);
+            EXPECT_EQ(column.mixed, expected.mixed);
+            EXPECT_EQ(column.counts, expected.counts);
+        }
+        const VisibleCounts counts = counts_of(table, num_receivers);
+        for (std::size_t leaf = 0; leaf < table.size(); ++leaf)
+            for (std::size_t receiver = 0; receiver < num_receivers; ++receiver)
+                ASSERT_EQ(counts.count(receiver, leaf), table[leaf][receiver]);
+    }
 }
 
 TEST(VisibleCounts, TilesThenWordsThenBlocksThenLeaves) {

@@ -6,6 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/prt/made_sections.h"
+
 namespace relumine::prt {
 namespace {
 
@@ -31,9 +33,9 @@ BounceMatrix matrix_of_all_kinds() {
 
 TEST(BounceSections, KeepEveryRow) {
     const BounceMatrix matrix = matrix_of_all_kinds();
-    Sections sections;
+    NewSections sections;
     add_bounce_sections(sections, matrix);
-    const SectionReader reader("scene.prt", std::move(sections));
+    const SectionReader reader("scene.prt", scenes::made(sections));
     EXPECT_EQ(read_bounces(reader, NumReceivers), matrix);
 }
 
@@ -43,8 +45,10 @@ TEST(BounceSections, MayBeAbsent) {
 
 TEST(BounceSections, DamageIsRefused) {
     const auto refuses = [](const std::function<void(Sections&)>& damage) {
-        Sections sections;
-        add_bounce_sections(sections, matrix_of_all_kinds());
+        const BounceMatrix matrix = matrix_of_all_kinds();
+        NewSections added;
+        add_bounce_sections(added, matrix);
+        Sections sections = scenes::made(added);
         damage(sections);
         const SectionReader reader("scene.prt", std::move(sections));
         EXPECT_THROW(static_cast<void>(read_bounces(reader, NumReceivers)), std::runtime_error);

@@ -41,7 +41,7 @@ protected:
                  const std::string& reason = "") {
         Sections sections = read_sections(path_);
         change(sections.at(section));
-        write_sections(path_, sections);
+        write_sections(path_, to_write(sections));
         scenes::expect_refused(path_, reason.empty() ? section : reason,
                                [&] { static_cast<void>(load_scene(path_)); });
         save_scene(path_, scene_);
@@ -103,7 +103,7 @@ TEST_F(GlossySections, DamageIsFound) {
 TEST_F(GlossySections, AnEyeIsNeeded) {
     Sections sections = read_sections(path_);
     sections.erase("r_to_eye");
-    write_sections(path_, sections);
+    write_sections(path_, to_write(sections));
     scenes::expect_refused(path_, "eye", [&] { static_cast<void>(load_scene(path_)); });
 }
 

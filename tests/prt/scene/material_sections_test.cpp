@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "prt/glossy/surface_sampling.h"
+#include "tests/prt/made_sections.h"
 #include "tests/prt/textured_square.h"
 
 namespace relumine::prt {
@@ -20,9 +21,9 @@ mesh::TriangleMesh read(Sections sections, const mesh::TriangleMesh& from) {
 }
 
 Sections written(const mesh::TriangleMesh& mesh) {
-    Sections sections;
+    NewSections sections;
     add_material_sections(sections, mesh);
-    return sections;
+    return scenes::made(sections);
 }
 
 void expect_same_colors(const mesh::TriangleMesh& a, const mesh::TriangleMesh& b) {

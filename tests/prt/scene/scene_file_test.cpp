@@ -8,6 +8,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,7 @@
 #include <xxhash.h>
 
 #include "files/output_file.h"
+#include "prt/clusters/column_store.h"
 #include "prt/clusters/lattice.h"
 #include "prt/clusters/visibility_planes.h"
 #include "prt/glossy/glossy_precompute.h"
@@ -176,7 +178,7 @@ protected:
     void refused(const std::string& reason, const std::function<void(Sections&)>& forge) const {
         Sections sections = good_;
         forge(sections);
-        write_sections(file_, sections);
+        write_sections(file_, to_write(sections));
         expect_refused(reason);
     }
     template<typename Element>
@@ -198,7 +200,7 @@ TEST_F(ForgedSceneTest, MissingSections) {
     sections.erase("colors");
     sections.erase("uvs");
     sections["of_the_future"] = std::vector<std::byte>(10);
-    write_sections(file_, sections);
+    write_sections(file_, to_write(sections));
     EXPECT_TRUE(load_scene(file_).mesh.colors.empty());
 }
 
@@ -414,11 +416,11 @@ VisibleCounts counts_of_all_samples(const Scene& scene, const Blockers& blockers
         for (const LatticePoint point : lattice_points(cell))
             points.push_back(point);
     planes.trace(points, 0.1, [](double) {});
-    std::vector<LeafColumn> columns;
+    ColumnStore columns(origins.size());
     for (const Cell& cell : transfer.quadtree.leaves()) {
         const bool is_texel = cell.level == texel_level(scene.settings.face_resolution);
         const auto& weights = is_texel ? CentreWeights : SampleWeights;
-        LeafColumn& column = columns.emplace_back();
+        LeafColumn column;
         const std::size_t num_blocks = transfer.counts.num_blocks();
         column.visible.resize((num_blocks + 63) / 64);
         column.mixed.resize((num_blocks + 63) / 64);
@@ -444,8 +446,11 @@ VisibleCounts counts_of_all_samples(const Scene& scene, const Blockers& blockers
             if (any && !all)
                 column.counts.insert(column.counts.end(), counts.begin(), counts.end());
         }
+        columns.add(column);
     }
-    return counts_from_columns(std::move(columns), origins.size());
+    std::vector<std::uint32_t> order(columns.size());
+    std::iota(order.begin(), order.end(), 0u);
+    return columns.take(order);
 }
 
 /// Puts the words of a block side by side, as version 1 has them.

@@ -86,7 +86,7 @@ void sign(std::vector<std::byte>& bytes) {
 }
 
 TEST_F(SectionFileTest, RoundTrip) {
-    const std::uint64_t size = write_sections(file_, examples());
+    const std::uint64_t size = write_sections(file_, to_write(examples()));
     EXPECT_EQ(size, fs::file_size(file_));
     EXPECT_EQ(read_sections(file_), examples());
     EXPECT_LT(fs::file_size(file_), 12000u) << "zeros should be compressed";
@@ -95,10 +95,34 @@ TEST_F(SectionFileTest, RoundTrip) {
 }
 
 TEST_F(SectionFileTest, SameSectionsSameBytes) {
-    write_sections(file_, examples());
+    write_sections(file_, to_write(examples()));
     const std::vector<std::byte> first = files::read(file_);
-    write_sections(file_, examples());
+    write_sections(file_, to_write(examples()));
     EXPECT_EQ(files::read(file_), first);
+}
+
+TEST_F(SectionFileTest, ViewsAndMadeBytesAreWrittenAsOwnOnes) {
+    // More than a batch of frames, so that contents come and go while others are written.
+    std::mt19937 random(5);
+    std::vector<std::uint32_t> numbers(std::size_t{9} << 20);
+    std::generate(numbers.begin(), numbers.end(),
+                  [&] { return static_cast<std::uint32_t>(random() % 5); });
+    const std::vector<std::byte> bytes(std::as_bytes(std::span(numbers)).begin(),
+                                       std::as_bytes(std::span(numbers)).end());
+    write_sections(file_, {{"a", text("first")}, {"b", bytes}, {"c", bytes}, {"d", text("last")}});
+    const std::vector<std::byte> own = files::read(file_);
+    int num_made = 0;
+    const SectionContent made(bytes.size(), [&] {
+        ++num_made;
+        return bytes;
+    });
+    write_sections(file_, {{"a", text("first")},
+                           {"b", SectionContent::view(numbers)},
+                           {"c", made},
+                           {"d", text("last")}});
+    EXPECT_TRUE(files::read(file_) == own);
+    EXPECT_EQ(num_made, 1);
+    EXPECT_TRUE(read_sections(file_).at("c") == bytes);
 }
 
 TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
@@ -125,7 +149,7 @@ TEST_F(SectionFileTest, LayoutIsTheDocumentedOne) {
 }
 
 TEST_F(SectionFileTest, EveryVersionIsReadAndNamed) {
-    write_sections(file_, examples());
+    write_sections(file_, to_write(examples()));
     for (std::uint32_t version = 1; version <= SceneFileVersion; ++version) {
         scenes::sign_as_version(file_, version);
         std::uint32_t got = 0;
@@ -145,7 +169,7 @@ TEST_F(SectionFileTest, RefusesMoreSectionsThanItReads) {
     for (char a = 'a'; a < 'a' + 9; ++a)
         for (char b = 'a'; b < 'a' + 8; ++b)
             many[{a, b}] = {};
-    EXPECT_THROW(write_sections(file_, many), std::invalid_argument);
+    EXPECT_THROW(write_sections(file_, to_write(many)), std::invalid_argument);
     EXPECT_TRUE(fs::is_empty(folder_));
 }
 
@@ -315,10 +339,12 @@ TEST_F(SectionFileTest, LargeSectionsAreSeveralFrames) {
 
 TEST_F(SectionFileTest, UnwritablePlacesLeaveNothing) {
     const fs::path missing = folder_ / "missing" / "scene.prt";
-    scenes::expect_refused(missing, "cannot write", [&] { write_sections(missing, examples()); });
+    scenes::expect_refused(missing, "cannot write",
+                           [&] { write_sections(missing, to_write(examples())); });
     fs::create_directories(folder_ / "folder.prt");
     const fs::path folder = folder_ / "folder.prt";
-    scenes::expect_refused(folder, "cannot write", [&] { write_sections(folder, examples()); });
+    scenes::expect_refused(folder, "cannot write",
+                           [&] { write_sections(folder, to_write(examples())); });
     EXPECT_EQ(std::distance(fs::recursive_directory_iterator(folder_),
                             fs::recursive_directory_iterator()),
               1);

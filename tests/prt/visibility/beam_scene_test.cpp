@@ -15,6 +15,7 @@
 #include "prt/clusters/lattice.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receiver_order.h"
+#include "prt/visibility/lazy_beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
@@ -72,6 +73,7 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
     const RayScene rays(mesh);
     const BeamScene beams(mesh, rays);
     const BeamScene by_direction(mesh, rays, 0);
+    const LazyBeamScene lazy(mesh, rays);
     std::mt19937 random(seed);
     Tally tally;
     for (int round = 0; round < rounds; ++round) {
@@ -94,6 +96,9 @@ Tally compare(const mesh::TriangleMesh& mesh, const std::vector<glm::vec3>& orig
         const std::vector<std::uint64_t> expected = lit(rays);
         EXPECT_EQ(lit(beams), expected) << "round " << round << " of seed " << seed;
         EXPECT_EQ(lit(by_direction), expected) << "round " << round << " of seed " << seed;
+        EXPECT_EQ(lit(lazy), expected) << "round " << round << " of seed " << seed;
+        if (round == rounds / 2)
+            lazy.prepare(std::uint64_t{1} << 40);
         for (std::size_t i = 0; i < size; ++i) {
             tally.num_rays += static_cast<std::size_t>(std::popcount(asked[i]));
             tally.num_blocked += static_cast<std::size_t>(std::popcount(asked[i] & ~expected[i]));
@@ -198,6 +203,16 @@ TEST(BeamScene, TreatsDegenerateTrianglesAsTheRayTracerDoes) {
                                            {n, n + 1, n + 4}})
         mesh.triangles.push_back(triangle);
     compare_at_vertices(mesh, 12, 1000);
+}
+
+TEST(LazyBeamScene, MakesBeamsOnceTheyPay) {
+    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
+    const RayScene rays(mesh);
+    const LazyBeamScene lazy(mesh, rays);
+    lazy.prepare(mesh.num_triangles());
+    EXPECT_FALSE(lazy.has_beams());
+    lazy.prepare(100 * mesh.num_triangles());
+    EXPECT_TRUE(lazy.has_beams());
 }
 
 TEST(BeamScene, NoTrianglesBlockNothing) {
