@@ -25,14 +25,12 @@ class Columns {
     using Vec = hn::Vec<D>;
     static constexpr std::size_t NumFloats = 3 * MaxLanes;
 
-    static constexpr std::array<std::int32_t, NumFloats> texels() {
-        std::array<std::int32_t, NumFloats> texel_of{};
+public:
+    Columns() {
         for (std::size_t i = 0; i < NumFloats; ++i)
-            texel_of[i] = static_cast<std::int32_t>(i / 3);
-        return texel_of;
+            texel_of_[i] = static_cast<std::int32_t>(i / 3);
     }
 
-public:
     void add_to(TexelSums& sums, const glm::vec3* radiance, const float* weights,
                 std::size_t stride, std::size_t first_x, std::size_t height) const {
         const D d;
@@ -50,8 +48,7 @@ public:
                 add(hn::Mul(spread(q, 1), hn::LoadU(d, l + n)), y, one_1, y_1);
                 add(hn::Mul(spread(q, 2), hn::LoadU(d, l + 2 * n)), y, one_2, y_2);
             }
-            std::array<float, NumFloats + 1> one, y; // the last colour is read with a fourth number
-            one.back() = y.back() = 0.0f;
+            std::array<float, NumFloats> one, y;
             hn::StoreU(one_0, d, one.data());
             hn::StoreU(one_1, d, one.data() + n);
             hn::StoreU(one_2, d, one.data() + 2 * n);
@@ -71,38 +68,26 @@ private:
 
     /// Returns the weights for the given third of the columns' colours.
     Vec spread(Vec weights, std::size_t third) const {
-        static constexpr std::array<std::int32_t, NumFloats> TexelOf = texels();
         const D d;
-        return hn::TableLookupLanes(weights,
-                                    hn::SetTableIndices(d, TexelOf.data() + third * hn::Lanes(d)));
+        return hn::TableLookupLanes(
+            weights, hn::SetTableIndices(d, texel_of_.data() + third * hn::Lanes(d)));
     }
 
     static void add_columns(const float* one, const float* y, std::size_t num_columns,
                             double first_x, double first_y, TexelSums& sums) {
-        constexpr std::size_t NumChannels = 3;
-        const hn::CappedTag<double, 4> d;
-        const hn::Rebind<float, decltype(d)> floats;
-        std::array<double, 4> of_one, of_x, of_y;
-        for (std::size_t channel = 0; channel < NumChannels; channel += hn::Lanes(d)) {
-            auto sum = hn::Zero(d), sum_x = hn::Zero(d), sum_y = hn::Zero(d);
-            for (std::size_t i = 0; i < num_columns; ++i) {
-                const std::size_t at = NumChannels * i + channel;
-                const auto column = hn::PromoteTo(d, hn::LoadU(floats, one + at));
-                sum = hn::Add(sum, column);
-                sum_x = hn::MulAdd(column, hn::Set(d, static_cast<double>(i)), sum_x);
-                sum_y = hn::Add(sum_y, hn::PromoteTo(d, hn::LoadU(floats, y + at)));
-            }
-            hn::StoreU(sum, d, of_one.data() + channel);
-            hn::StoreU(sum_x, d, of_x.data() + channel);
-            hn::StoreU(sum_y, d, of_y.data() + channel);
+        glm::dvec3 of_one(0.0), of_x(0.0), of_y(0.0);
+        for (std::size_t i = 0; i < num_columns; ++i, one += 3, y += 3) {
+            const glm::dvec3 column(one[0], one[1], one[2]);
+            of_one += column;
+            of_x += column * static_cast<double>(i);
+            of_y += glm::dvec3(y[0], y[1], y[2]);
         }
-        for (int channel = 0; channel < 3; ++channel) {
-            const auto c = static_cast<std::size_t>(channel);
-            sums.one[channel] += of_one[c];
-            sums.x[channel] += of_x[c] + of_one[c] * first_x;
-            sums.y[channel] += of_y[c] + of_one[c] * first_y;
-        }
+        sums.one += of_one;
+        sums.x += of_x + of_one * first_x;
+        sums.y += of_y + of_one * first_y;
     }
+
+    std::array<std::int32_t, NumFloats> texel_of_;
 };
 
 TexelSums texel_sums(const glm::vec3* radiance, const float* weights, std::size_t stride,

@@ -213,13 +213,23 @@ def lit_objects(scene):
     return [thing for thing in scene.objects if thing.type == "MESH" and PATH in thing]
 
 
+def path_of(thing):
+    return os.path.normpath(bpy.path.abspath(thing[PATH]))
+
+
+def missing_file(scene):
+    """A scene file that objects are tied to and that is not there, or None."""
+    paths = map(path_of, lit_objects(scene))
+    return next((path for path in paths if not os.path.exists(path)), None)
+
+
 def relight(scene, *, force=False):
     """Brings all objects of the scene up to date. Returns how many changed."""
     changed = {}
     count = 0
     depsgraph = None
     for thing in lit_objects(scene):
-        path = os.path.normpath(bpy.path.abspath(thing[PATH]))
+        path = path_of(thing)
         if not os.path.exists(path):
             continue
         live = _live.get(path)
@@ -250,7 +260,8 @@ def relight_quietly(scene, force=False):
     _at_work = True
     try:
         relight(scene, force=force)
-        scene["relumine_error"] = ""
+        missing = missing_file(scene)
+        scene["relumine_error"] = f"{missing}: cannot read: no such file" if missing else ""
     except (OSError, ValueError, RuntimeError, MemoryError) as error:
         scene["relumine_error"] = str(error)
     finally:

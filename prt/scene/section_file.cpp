@@ -30,9 +30,9 @@ constexpr std::array<char, 8> Magic = {'R', 'E', 'L', 'U', 'M', 'I', 'N', 'E'};
 constexpr std::uint32_t ByteOrderMark = 0x01020304;
 constexpr std::uint32_t MaxSections = 64;
 
-// Level 6 packs the counts of the Stanford bunny 12 % smaller than level 3, in a second. Level 12
-// saves 6 % more and takes five seconds.
-constexpr int CompressionLevel = 6;
+// Level 8 packs the counts of the Stanford bunny 4 % smaller than level 6, in half a second on two
+// cores. Level 10 saves 1 % more and takes half as long again.
+constexpr int CompressionLevel = 8;
 
 // A section is cut into frames of this many bytes, the last one shorter, so that all processors
 // pack and unpack. The counts of the Stanford bunny are 0.5 % larger for it.

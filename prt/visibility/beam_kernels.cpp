@@ -1,6 +1,7 @@
 #include "prt/visibility/beam_kernels.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 
@@ -46,12 +47,13 @@ void test_triangles_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_
     using Vector = hn::Vec<D>;
     const auto axis_m = static_cast<std::size_t>(patch.axis);
     const std::size_t axes[3] = {axis_m, (axis_m + 1) % 3, (axis_m + 2) % 3};
+    const std::array<float, 3> coordinates = {origin.x, origin.y, origin.z};
     Vector corner[3][3], to_corner[3][3];
     Vector reach = hn::Zero(d);
     for (std::size_t k = 0; k < 3; ++k)
         for (std::size_t a = 0; a < 3; ++a) {
             corner[k][a] = hn::Load(d, leaf.corners[3 * k + axes[a]].data() + lane);
-            to_corner[k][a] = hn::Sub(corner[k][a], hn::Set(d, origin[static_cast<int>(axes[a])]));
+            to_corner[k][a] = hn::Sub(corner[k][a], hn::Set(d, coordinates[axes[a]]));
             reach = hn::Max(reach, hn::Abs(to_corner[k][a]));
         }
     const Vector longest = hn::Load(d, leaf.longest.data() + lane);
@@ -81,6 +83,8 @@ void test_triangles_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_
     for (std::size_t k = 0; k < 3; ++k)
         moment[k][0] = hn::Mul(moment[k][0], along);
 
+    // Without a branch for what a ray meets, which a processor cannot guess.
+    std::uint64_t hits = 0;
     for (std::uint64_t rest = touching; rest != 0; rest &= rest - 1) {
         const auto j = static_cast<std::size_t>(std::countr_zero(rest));
         const Vector s = hn::Set(d, patch.s[j]);
@@ -100,12 +104,10 @@ void test_triangles_side_by_side(D d, const TriangleTree::Leaf& leaf, std::size_
             hit = hn::AndNot(edge_on, hit);
             maybe = hn::Or(maybe, hn::And(edge_on, hn::Le(most, certain)));
         }
-        const std::uint64_t bit = std::uint64_t{1} << j;
-        if (!hn::AllFalse(d, hit))
-            rays &= ~bit;
-        else if (!hn::AllFalse(d, maybe))
-            doubts |= bit;
+        hits |= std::uint64_t{!hn::AllFalse(d, hit)} << j;
+        doubts |= std::uint64_t{!hn::AllFalse(d, maybe)} << j;
     }
+    rays &= ~hits;
 }
 
 /// The same for few triangles before many rays: all rays at a time, triangle by triangle.

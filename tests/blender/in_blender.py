@@ -183,6 +183,15 @@ def test():
     close(colors(head), before, "undone")
 
     # Errors are told, not raised.
+    os.rename("scene.prt", "elsewhere.prt")
+    strength = scene.world.node_tree.nodes["Background"].inputs["Strength"]
+    strength.default_value = 3.0
+    bpy.context.view_layer.update()
+    assert "scene.prt: cannot read" in scene["relumine_error"]
+    os.rename("elsewhere.prt", "scene.prt")
+    strength.default_value = 2.5
+    bpy.context.view_layer.update()
+    assert scene["relumine_error"] == ""
     scene.world.node_tree.nodes["Mapping"].inputs["Rotation"].default_value[0] = 1.0
     bpy.context.view_layer.update()
     assert "about X or Y" in scene["relumine_error"]

@@ -167,7 +167,7 @@ refuses "other arguments" 1 "process 1: expected the arguments" \
     -n 1 "$relumine_mpi" precompute knot.ply -o out.prt : -n 1 "$relumine_mpi" precompute squares.obj -o out.prt
 refuses "no folder" 1 "no/such/out.prt" start 3 precompute "${vertices[@]}" -o no/such/out.prt -q
 refuses "another command" 2 "expected precompute" start 3 info vertices.prt
-refuses "lights that are none" 1 "whole.json: expected" \
+refuses "lights that are none" 1 "whole.json:2: expected" \
     start 2 relight vertices.prt sun_sky.exr --lights whole.json -o out.npy -q
 refuses "bounces of a scene without" 1 "vertices.prt: expected a scene made with" \
     start 2 relight vertices.prt sun_sky.exr --bounces 3 -o out.npy
