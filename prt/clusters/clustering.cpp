@@ -420,9 +420,9 @@ Transfer Clustering::result() {
     std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
         return depth_first_key(clusters_[a]) < depth_first_key(clusters_[b]);
     });
-    std::vector<Cell> leaves;
-    for (const std::uint32_t cluster : order)
-        leaves.push_back(clusters_[cluster]);
+    std::vector<Cell> leaves(order.size());
+    std::transform(order.begin(), order.end(), leaves.begin(),
+                   [this](std::uint32_t cluster) { return clusters_[cluster]; });
     return {.quadtree = quadtree_of(leaves),
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),

@@ -17,6 +17,7 @@
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/glossy_sections.h"
+#include "prt/scene/scene_check.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_picker.h"
@@ -179,6 +180,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
         transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
+        check_highlights(*transfer.glossy, path);
         for (const std::uint32_t receiver : result.receivers)
             transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
     }

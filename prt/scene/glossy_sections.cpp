@@ -84,7 +84,10 @@ std::vector<std::uint64_t> read_begin(const SectionReader& reader, std::size_t l
                                       std::size_t num_blocks) {
     const std::string name = name_of(lobe, 'b');
     auto begin = reader.elements<std::uint64_t>(name, num_blocks + 1);
-    if (begin.front() != 0 || !std::is_sorted(begin.begin(), begin.end()))
+    // More would not fit the sections, whose sizes must not overflow.
+    constexpr std::uint64_t MostEntries = std::uint64_t{1} << 48;
+    if (begin.front() != 0 || begin.back() > MostEntries ||
+        !std::is_sorted(begin.begin(), begin.end()))
         reader.fail(name, "ranges of cells");
     return begin;
 }
@@ -114,11 +117,13 @@ LobeCuts read_lobe(const SectionReader& reader, std::size_t lobe, std::size_t nu
 /// Reads the cells of all blocks.
 std::vector<std::uint32_t> stream_cells(const SectionReader& reader, std::size_t lobe,
                                         std::uint64_t num_entries) {
-    std::vector<std::uint32_t> cells(static_cast<std::size_t>(num_entries));
+    std::vector<std::uint32_t> cells;
     std::size_t entry = 0;
     std::uint32_t shift = 0;
     stream_section(reader.path(), name_of(lobe, 'c'), num_entries * sizeof(std::uint32_t),
                    [&](std::span<const std::byte> piece) {
+                       // Pieces come once the section has the right size.
+                       cells.resize(static_cast<std::size_t>(num_entries));
                        for (const std::byte byte : piece) {
                            cells[entry] |= std::to_integer<std::uint32_t>(byte) << shift;
                            if (++entry == cells.size()) {

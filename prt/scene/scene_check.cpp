@@ -231,4 +231,8 @@ void check_scene(const Scene& scene, const std::filesystem::path& path) {
     check_bounces(scene, path);
 }
 
+void check_highlights(const GlossyTransfer& glossy, const std::filesystem::path& path) {
+    check_glossy(Check(path), glossy);
+}
+
 } // namespace relumine::prt

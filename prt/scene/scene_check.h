@@ -16,4 +16,7 @@ namespace relumine::prt {
 /// Throws:  std::runtime_error "path: expected X, got Y" for the first failure.
 void check_scene(const Scene& scene, const std::filesystem::path& path);
 
+/// Checks highlights alone, as check_scene() does.
+void check_highlights(const GlossyTransfer& glossy, const std::filesystem::path& path);
+
 } // namespace relumine::prt

@@ -414,8 +414,8 @@ std::uint64_t SectionContent::size() const {
 
 NewSections to_write(Sections sections) {
     NewSections result;
-    for (auto& [name, bytes] : sections)
-        result.emplace(name, std::move(bytes));
+    for (Sections::value_type& section : sections)
+        result.emplace(section.first, std::move(section.second));
     return result;
 }
 

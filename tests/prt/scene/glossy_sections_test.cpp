@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "prt/parts/scene_part.h"
 #include "prt/scene/scene_file.h"
 #include "tests/prt/damaged_file.h"
 #include "tests/relight/glossy_scene.h"
@@ -44,6 +45,8 @@ protected:
         write_sections(path_, to_write(sections));
         scenes::expect_refused(path_, reason.empty() ? section : reason,
                                [&] { static_cast<void>(load_scene(path_)); });
+        // As one part of one, too, whose sections come piece by piece.
+        scenes::expect_refused(path_, "", [&] { static_cast<void>(load_scene_part(path_, {})); });
         save_scene(path_, scene_);
     }
 

@@ -114,7 +114,7 @@ TEST_F(SectionFileTest, ViewsAndMadeBytesAreWrittenAsOwnOnes) {
     int num_made = 0;
     const SectionContent made(bytes.size(), [&] {
         ++num_made;
-        return bytes;
+        return std::vector<std::byte>(bytes);
     });
     write_sections(file_, {{"a", text("first")},
                            {"b", SectionContent::view(numbers)},
