@@ -39,7 +39,8 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
                          const Camera& camera, const PictureOptions& options,
                          const FadingFloor& floor, std::size_t max_bytes)
     : mesh_(mesh), rays_(rays), camera_(camera), options_(options), floor_(floor),
-      grid_(camera, options.width, options.height, options.samples_per_axis) {
+      grid_(camera, options.width, options.height, options.samples_per_axis),
+      twins_(std::make_unique<const TwinTriangles>(mesh)) {
     const std::size_t num_samples =
         std::size_t{options.width} * options.height * grid_.samples_per_pixel();
     if (num_samples > max_bytes / sizeof(Sample))
@@ -64,11 +65,14 @@ void PictureView::trace(std::uint32_t y, std::uint32_t x_begin, std::uint32_t x_
         for (std::size_t lane = num; lane < prt::PacketSize; ++lane)
             packet.set(lane, {packet.x[0], packet.y[0], packet.z[0]});
         const std::uint32_t found = rays_.closest_hits(camera_.eye, packet, (1u << num) - 1u, hits);
-        for (std::uint32_t lane = 0; lane < num; ++lane, ++done)
-            samples[done] = (found >> lane & 1u) != 0
-                                ? Sample{hits[lane].triangle, hits[lane].barycentric.x,
-                                         hits[lane].barycentric.y}
-                                : Sample{NoTriangle, 0.0f, 0.0f};
+        for (std::uint32_t lane = 0; lane < num; ++lane, ++done) {
+            samples[done] = {NoTriangle, 0.0f, 0.0f};
+            if ((found >> lane & 1u) == 0)
+                continue;
+            const prt::Hit hit =
+                twins_->facing(hits[lane], {packet.x[lane], packet.y[lane], packet.z[lane]});
+            samples[done] = {hit.triangle, hit.barycentric.x, hit.barycentric.y};
+        }
         packet.num_directions = 0;
     };
     for (std::uint32_t x = x_begin; x < x_end; ++x)

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -18,6 +19,7 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/surface_colors.h"
+#include "relight/pictures/twin_triangles.h"
 #include "relight/sharp_lights.h"
 
 namespace relumine::relight {
@@ -124,6 +126,8 @@ private:
     prt::PictureRays grid_;
     /// [height * width * samples per pixel]; empty when they are traced anew.
     std::vector<Sample> samples_;
+    /// The other side of surfaces that the mesh has twice.
+    std::unique_ptr<const TwinTriangles> twins_;
 };
 
 } // namespace relumine::relight

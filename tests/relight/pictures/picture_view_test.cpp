@@ -60,6 +60,34 @@ const glm::vec3& pixel(const Picture& picture, std::uint32_t x, std::uint32_t y)
     return picture.pixels[std::size_t{y} * picture.width + x];
 }
 
+TEST(PictureView, ShowsTheSideThatFacesTheEyeOfASurfaceThatIsThereTwice) {
+    Drawn scene;
+    const std::size_t n = scene.mesh.num_vertices();
+    // The same square once more, seen from behind: other vertices, corners in another order.
+    for (std::size_t i = 0; i < n; ++i) {
+        scene.mesh.positions.push_back(scene.mesh.positions[i]);
+        scene.mesh.normals.emplace_back(0, 0, -1);
+    }
+    scene.mesh.triangles.push_back({5, 4, 7});
+    scene.mesh.triangles.push_back({6, 7, 4});
+    // Bright in front, red towards the right; dark behind.
+    std::vector<glm::vec3> radiance = {{0, 1, 0}, {1, 1, 0}, {0, 1, 0}, {1, 1, 0}};
+    radiance.resize(2 * n, glm::vec3(0.0f));
+    // Whichever comes first.
+    for (int order = 0; order < 2; ++order) {
+        scene.rays = prt::RayScene(scene.mesh);
+        const Picture picture = scene.picture(radiance, FrontCamera,
+                                              {.width = 64, .height = 64, .samples_per_axis = 2});
+        for (std::uint32_t y = 18; y < 46; ++y)
+            for (std::uint32_t x = 18; x < 46; ++x) {
+                const float right = (static_cast<float>(x) + 0.5f - 16.0f) / 32.0f;
+                EXPECT_NEAR(pixel(picture, x, y).g, 1.0f, 1e-4f) << x << ' ' << y;
+                EXPECT_NEAR(pixel(picture, x, y).r, right, 1e-2f) << x << ' ' << y;
+            }
+        std::reverse(scene.mesh.triangles.begin(), scene.mesh.triangles.end());
+    }
+}
+
 void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance) {
     EXPECT_LE(glm::length(a - b), tolerance)
         << a.r << ' ' << a.g << ' ' << a.b << " is not " << b.r << ' ' << b.g << ' ' << b.b;

@@ -1,0 +1,43 @@
+// Triangles that lie on one another and face opposite ways.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "mesh/triangle_mesh.h"
+#include "prt/visibility/ray_scene.h"
+
+namespace relumine::relight {
+
+/// Finds the other side of surfaces that a mesh has twice, with the same corners and one for each
+/// side, as exporters write what is seen from both sides. A ray meets either of the two, as
+/// rounding has it. The one that faces away is dark.
+///
+/// Threads: facing() may run from any number of threads at once.
+class TwinTriangles {
+public:
+    /// The mesh must outlive this object. Nothing is looked for before the first hit on a back.
+    explicit TwinTriangles(const mesh::TriangleMesh& mesh) : mesh_(mesh) {}
+
+    /// Returns the same point on the triangle's twin if the ray meets the triangle from behind and
+    /// it has one, otherwise the hit as it is.
+    ///
+    /// Cost:    O(log triangles) for a hit on a back; the first one sorts all triangles.
+    [[nodiscard]] prt::Hit facing(const prt::Hit& hit, const glm::vec3& direction) const;
+
+private:
+    [[nodiscard]] std::optional<std::uint32_t> twin_of(std::uint32_t triangle) const;
+    [[nodiscard]] std::uint64_t key_of(std::uint32_t triangle) const;
+
+    const mesh::TriangleMesh& mesh_;
+    mutable std::once_flag is_sorted_;
+    /// A key of the corners, the same in any order of theirs, and the triangle; ascending.
+    mutable std::vector<std::pair<std::uint64_t, std::uint32_t>> by_key_;
+};
+
+} // namespace relumine::relight
