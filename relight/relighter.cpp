@@ -670,6 +670,14 @@ const ShadowRays& Relighter::shadow_rays() const {
     return impl_->shadow_rays();
 }
 
+std::span<const SharpLight> picture_lights(const Relighter& relighter) {
+    constexpr std::size_t Most = 64;
+    const bool is_traced =
+        relighter.shadow_rays().blockers != nullptr &&
+        (relighter.environment().resolution == 0 || relighter.sharp_lights().size() <= Most);
+    return is_traced ? relighter.sharp_lights() : std::span<const SharpLight>();
+}
+
 std::vector<glm::vec3> relight(const prt::Transfer& transfer, const cubemap::CubeMap& environment,
                                const ShadowRays& rays) {
     Relighter relighter(transfer, rays);

@@ -135,8 +135,8 @@ Lighting lighting_of(const relight::Relighter& relighter) {
     Lighting lighting{.radiance = relighter.radiance()};
     if (relighter.environment().resolution != 0)
         lighting.environment = &relighter.environment();
-    if (relighter.shadow_rays().blockers != nullptr && !relighter.sharp_lights().empty()) {
-        lighting.lights.assign(relighter.sharp_lights().begin(), relighter.sharp_lights().end());
+    if (const auto lights = relight::picture_lights(relighter); !lights.empty()) {
+        lighting.lights.assign(lights.begin(), lights.end());
         lighting.soft = relighter.soft_radiance();
     }
     return lighting;

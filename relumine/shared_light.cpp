@@ -134,11 +134,12 @@ struct SharedLight::Impl {
     }
 
     Lighting lighting() {
-        const bool has_lights = relighter && relighter->shadow_rays().blockers != nullptr &&
-                                !relighter->sharp_lights().empty();
+        std::span<const relight::SharpLight> lights;
+        if (relighter)
+            lights = relight::picture_lights(*relighter);
         radiance = gathered(relighter ? relighter->radiance() : std::span<const glm::vec3>());
         std::vector<glm::vec3> own_soft;
-        if (has_lights)
+        if (!lights.empty())
             own_soft = relighter->soft_radiance();
         std::vector<glm::vec3> soft = gathered(own_soft);
         if (team.part().index != 0)
@@ -148,8 +149,7 @@ struct SharedLight::Impl {
         Lighting result{.radiance = radiance};
         if (relighter->environment().resolution != 0)
             result.environment = &relighter->environment();
-        if (has_lights) {
-            const std::span<const relight::SharpLight> lights = relighter->sharp_lights();
+        if (!lights.empty()) {
             result.lights.assign(lights.begin(), lights.end());
             result.soft = std::move(soft);
         }

@@ -44,11 +44,15 @@ Moment moment_of(const ViewState& state, const PixelRectangle& size) {
         .camera = {.eye = camera.eye(), .target = camera.target, .fov_degrees = camera.fov_degrees},
         .width = static_cast<std::uint32_t>(std::max(size.width, 1)),
         .height = static_cast<std::uint32_t>(std::max(size.height, 1)),
-        .radiance = relighter.soft_radiance(),
+        .radiance = {},
         .lights = {},
         .backdrop = {}};
-    if (relighter.shadow_rays().blockers != nullptr)
-        moment.lights.assign(relighter.sharp_lights().begin(), relighter.sharp_lights().end());
+    if (const auto lights = relight::picture_lights(relighter); !lights.empty()) {
+        moment.radiance = relighter.soft_radiance();
+        moment.lights.assign(lights.begin(), lights.end());
+    } else {
+        moment.radiance.assign(relighter.radiance().begin(), relighter.radiance().end());
+    }
     if (state.scene_look.background)
         moment.backdrop = backdrop_of(state);
     return moment;

@@ -1,6 +1,7 @@
 #include "relight/sharp_lights.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <random>
 #include <tuple>
@@ -61,6 +62,32 @@ TEST(SharpLights, TheSunIsOne) {
     EXPECT_TRUE(std::is_sorted(lights.begin(), lights.end(),
                                [](const auto& a, const auto& b) { return a.cluster < b.cluster; }));
     EXPECT_TRUE(sharp_lights(environment, 0.0f).empty()) << "an exact precompute needs none";
+}
+
+TEST(SharpLights, PicturesTraceFewOfAnEnvironmentAndAllOfAList) {
+    const scenes::RelitScene& scene = scenes::relit_scene();
+    ShadowRays rays = scene.shadow_rays();
+    rays.tolerance = 0.2f; // as if clusters were few: most lamps are too small for theirs
+    Relighter relighter(scene.transfer, rays);
+    relighter.set_environment(sky_with_sun(128, cubemap::Face::PositiveX, 40, 50, 1e5f));
+    ASSERT_FALSE(relighter.sharp_lights().empty());
+    EXPECT_EQ(picture_lights(relighter).size(), relighter.sharp_lights().size());
+    // Suns all over the sky.
+    cubemap::CubeMap lamps(128, glm::vec3(0.3f));
+    for (const cubemap::Face face : cubemap::AllFaces)
+        for (std::uint32_t i = 0; i < 25; ++i)
+            lamps.at(face, 12 + 25 * (i % 5), 12 + 25 * (i / 5)) = glm::vec3(1e4f);
+    relighter.set_environment(lamps);
+    ASSERT_GT(relighter.sharp_lights().size(), 64u);
+    EXPECT_TRUE(picture_lights(relighter).empty());
+    std::vector<lights::DistantLight> list(100);
+    for (std::size_t i = 0; i < list.size(); ++i) {
+        const double angle = 0.01 * static_cast<double>(i);
+        list[i] = {.direction = glm::dvec3(std::sin(angle), std::cos(angle), 0.0),
+                   .irradiance = glm::dvec3(0.1)};
+    }
+    relighter.set_lights(list);
+    EXPECT_EQ(picture_lights(relighter).size(), list.size());
 }
 
 TEST(SharpLights, ASunIsAsSharpAsTracing) {
