@@ -33,6 +33,10 @@ constexpr std::size_t MinBatchPoints = 128;
 /// second.
 constexpr std::uint64_t SamplesPerThreadAndStep = std::uint64_t{1} << 26;
 
+/// Processes that share the work wait for each other at the end of a step, and a patch costs one of
+/// them more and another one less. The more patches, the more of that evens out.
+constexpr std::uint64_t SharedSamplesPerThreadAndStep = std::uint64_t{1} << 28;
+
 /// Returns the limit on ||T_C - T_l||^2 for a cluster, T times pi [JN, Eq. 11].
 double allowed_squared_distance(const PrecomputeOptions& options, std::size_t num_receivers) {
     const auto n = static_cast<double>(num_receivers);
@@ -208,7 +212,7 @@ std::uint64_t Clustering::patches_per_step() const {
         return *context_.samples_per_step / (order_.size() * DirectionPatch::Size);
     const std::size_t num_receivers =
         std::max<std::size_t>(order_.size() / reduction_.part().count, 1);
-    return SamplesPerThreadAndStep *
+    return (reduction_.has_others() ? SharedSamplesPerThreadAndStep : SamplesPerThreadAndStep) *
            static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()) /
            (num_receivers * DirectionPatch::Size);
 }
