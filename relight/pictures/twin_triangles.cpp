@@ -8,12 +8,22 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/split_mix64.h"
-#include "prt/receivers/mesh_point.h"
 
 namespace relumine::relight {
 
+namespace {
+
+/// Returns a normal of any length.
+glm::vec3 normal_of(const mesh::TriangleMesh& mesh, std::uint32_t triangle) {
+    const mesh::Triangle& corners = mesh.triangles[triangle];
+    const glm::vec3& first = mesh.positions[corners[0]];
+    return glm::cross(mesh.positions[corners[1]] - first, mesh.positions[corners[2]] - first);
+}
+
+} // namespace
+
 prt::Hit TwinTriangles::facing(const prt::Hit& hit, const glm::vec3& direction) const {
-    if (!(glm::dot(prt::face_normal(mesh_, hit.triangle), direction) > 0.0f))
+    if (!(glm::dot(normal_of(mesh_, hit.triangle), direction) > 0.0f))
         return hit;
     const std::optional<std::uint32_t> twin = twin_of(hit.triangle);
     if (!twin)
@@ -56,7 +66,7 @@ std::optional<std::uint32_t> TwinTriangles::twin_of(std::uint32_t triangle) cons
         std::sort(by_key_.begin(), by_key_.end());
     });
     const mesh::Triangle& own = mesh_.triangles[triangle];
-    const glm::vec3 normal = prt::face_normal(mesh_, triangle);
+    const glm::vec3 normal = normal_of(mesh_, triangle);
     const auto is_corner = [&](std::uint32_t corner) {
         return std::any_of(own.begin(), own.end(), [&](std::uint32_t other) {
             return mesh_.positions[other] == mesh_.positions[corner];
@@ -67,7 +77,7 @@ std::optional<std::uint32_t> TwinTriangles::twin_of(std::uint32_t triangle) cons
          entry != by_key_.end() && entry->first == key; ++entry) {
         const mesh::Triangle& other = mesh_.triangles[entry->second];
         if (std::all_of(other.begin(), other.end(), is_corner) &&
-            glm::dot(prt::face_normal(mesh_, entry->second), normal) < 0.0f)
+            glm::dot(normal_of(mesh_, entry->second), normal) < 0.0f)
             return entry->second;
     }
     return std::nullopt;
