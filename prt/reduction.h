@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,14 @@ struct Part {
 
     bool operator==(const Part&) const = default;
 };
+
+/// Returns elements as the bytes that processes send each other.
+template<typename Element>
+[[nodiscard]] std::vector<std::byte> to_send(std::span<Element> elements) {
+    static_assert(std::is_trivially_copyable_v<Element>);
+    const auto bytes = std::as_bytes(elements);
+    return {bytes.begin(), bytes.end()};
+}
 
 /// Figures of all processes. Integers have the same sum in any order, so each process gets the same
 /// result, and it is the same for any number of processes.

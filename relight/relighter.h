@@ -184,9 +184,9 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
-/// Returns the lights that a picture traces at every point it shows: the sharp lights. None of an
-/// environment that has more than 64 of them, where clusters are few: together they cast soft
-/// shadows, and a picture would take half a minute.
+/// Returns the sharp lights, for a picture to trace at every point. Returns none for an environment
+/// with more than 64 sharp lights, as a scene of few clusters has: the shadows of so many lights
+/// are soft, and the picture would take half a minute.
 [[nodiscard]] std::span<const SharpLight> picture_lights(const Relighter& relighter);
 
 /// Returns the radiance of all receivers under an environment, in one call, as

@@ -90,8 +90,7 @@ void assist(prt::Team& team, const std::stop_token& stop) {
     light.counts = std::move(transfer.counts);
     const ProcessFigures figures = work.figures(statistics);
     static_cast<void>(prt::gather_light(team, std::move(light)));
-    const auto bytes = std::as_bytes(std::span(&figures, 1));
-    static_cast<void>(team.gather({bytes.begin(), bytes.end()}));
+    static_cast<void>(team.gather(prt::to_send(std::span(&figures, 1))));
 }
 
 void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics) {

@@ -18,14 +18,8 @@ namespace relumine {
 
 namespace {
 
-template<typename Element>
-std::vector<std::byte> copy_of(std::span<Element> elements) {
-    const auto bytes = std::as_bytes(elements);
-    return {bytes.begin(), bytes.end()};
-}
-
 void require_same_hash(prt::Team& team, const std::filesystem::path& path, std::uint64_t own) {
-    const std::vector<std::byte> bytes = copy_of(std::span(&own, 1));
+    const std::vector<std::byte> bytes = prt::to_send(std::span(&own, 1));
     if (team.broadcast(bytes) != bytes)
         throw std::runtime_error(
             fmt::format("{}: expected the scene and the light of the first process, got others",
@@ -73,7 +67,7 @@ struct SharedLight::Impl {
 
     /// The part's values by the receivers' order, in the first process.
     std::vector<glm::vec3> gathered(std::span<const glm::vec3> own) {
-        const std::vector<std::vector<std::byte>> of_all = team.gather(copy_of(own));
+        const std::vector<std::vector<std::byte>> of_all = team.gather(prt::to_send(own));
         const std::vector<std::uint32_t>& order = lit.scene().transfer.order;
         std::vector<glm::vec3> values;
         for (std::uint32_t process = 0; process < of_all.size(); ++process) {

@@ -29,11 +29,10 @@ std::vector<Value> in_slices(prt::Reduction* reduction, std::span<const Index> i
     const std::size_t begin = begin_of(part.index);
     const std::vector<Value> own =
         compute(indices.subspan(begin, begin_of(part.index + 1) - begin));
-    const auto bytes = std::as_bytes(std::span(own));
     std::vector<Value> values(indices.size());
     std::size_t at = 0;
     for (const std::vector<std::byte>& slice :
-         reduction->all_gather({bytes.begin(), bytes.end()})) {
+         reduction->all_gather(prt::to_send(std::span(own)))) {
         if (slice.size() > (values.size() - at) * sizeof(Value))
             throw std::runtime_error("expected a value of each index");
         if (!slice.empty())

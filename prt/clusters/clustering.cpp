@@ -33,8 +33,8 @@ constexpr std::size_t MinBatchPoints = 128;
 /// second.
 constexpr std::uint64_t SamplesPerThreadAndStep = std::uint64_t{1} << 26;
 
-/// Processes that share the work wait for each other at the end of a step, and a patch costs one of
-/// them more and another one less. The more patches, the more of that evens out.
+/// The same where processes share the work and wait for each other at the end of a step. A patch
+/// costs one process more than another; over many patches the differences even out.
 constexpr std::uint64_t SharedSamplesPerThreadAndStep = std::uint64_t{1} << 28;
 
 /// Returns the limit on ||T_C - T_l||^2 for a cluster, T times pi [JN, Eq. 11].
@@ -206,7 +206,7 @@ void Clustering::take_batch() {
         });
 }
 
-/// Returns the patches that make SamplesPerThreadAndStep on this process's receivers.
+/// Returns the patches of a step on this process's receivers.
 std::uint64_t Clustering::patches_per_step() const {
     if (context_.samples_per_step)
         return *context_.samples_per_step / (order_.size() * DirectionPatch::Size);

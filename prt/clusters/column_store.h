@@ -35,7 +35,7 @@ private:
     struct Run {
         std::size_t first_block = 0;
         std::size_t num_blocks = 0;
-        /// [size()] a column's words of `visible`, those of `mixed`, and its counts.
+        /// [size()] for each column its words of `visible`, its words of `mixed` and its counts.
         std::vector<const std::byte*> entries = {};
         std::uint64_t num_bytes = 0;
         std::vector<std::unique_ptr<std::byte[]>> chunks = {};

@@ -39,8 +39,7 @@ void share_by_place(Reduction& reduction, std::span<Value> values) {
     std::vector<Value> own;
     for (const std::uint32_t place : places_of(reduction.part(), values.size()))
         own.push_back(values[place]);
-    const auto bytes = std::as_bytes(std::span(own));
-    const auto of_all = reduction.all_gather({bytes.begin(), bytes.end()});
+    const auto of_all = reduction.all_gather(to_send(std::span(own)));
     for (std::uint32_t index = 0; index < of_all.size(); ++index) {
         const std::vector<std::uint32_t> places =
             places_of({index, reduction.part().count}, values.size());

@@ -57,8 +57,8 @@ namespace relumine::prt {
                                         PrecomputeStatistics* statistics = nullptr);
 
 /// Computes the highlights of a part's receivers, as precompute_glossy() does for all. `shared` has
-/// the counts of the part; its order and normals are those of all receivers. It is the same
-/// afterwards.
+/// the counts of the part, and the order and the normals of all receivers. Afterwards it is as
+/// before.
 ///
 /// Throws:  as precompute_glossy() does; `shared` has no counts then.
 [[nodiscard]] GlossyTransfer part_highlights(const Receivers& receivers, Transfer& shared,

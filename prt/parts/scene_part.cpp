@@ -80,7 +80,7 @@ VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCou
     return counts;
 }
 
-/// Takes the sections whose names begin so out of those of a scene.
+/// Moves the sections whose names begin with `prefix` out of a scene's sections.
 Sections taken(Sections& sections, std::string_view prefix) {
     Sections taken;
     for (auto section = sections.begin(); section != sections.end();) {

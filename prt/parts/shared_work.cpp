@@ -21,12 +21,6 @@ void add_array(files::ByteWriter& writer, const std::vector<Element>& elements) 
 }
 
 template<typename Element>
-std::vector<std::byte> bytes_of(std::span<Element> elements) {
-    const auto bytes = std::as_bytes(elements);
-    return {bytes.begin(), bytes.end()};
-}
-
-template<typename Element>
 void take_array(files::ByteReader& reader, std::vector<Element>& elements) {
     elements = reader.next_all<Element>(static_cast<std::size_t>(reader.next<std::uint64_t>()));
 }
@@ -42,7 +36,7 @@ void gather_array(Team& team, std::vector<PartLight>& lights, const Access& arra
     using Element = typename std::remove_reference_t<decltype(own)>::value_type;
     const bool is_first = team.part().index == 0;
     const std::uint64_t size = own.size();
-    const std::vector<std::vector<std::byte>> sizes = team.gather(bytes_of(std::span(&size, 1)));
+    const std::vector<std::vector<std::byte>> sizes = team.gather(to_send(std::span(&size, 1)));
     for (std::size_t i = 1; i < sizes.size(); ++i) {
         std::uint64_t of_other = 0;
         std::memcpy(&of_other, sizes[i].data(), sizeof of_other);
@@ -58,7 +52,7 @@ void gather_array(Team& team, std::vector<PartLight>& lights, const Access& arra
         const std::span<const Element> rest = std::span(std::as_const(own)).subspan(begin);
         const std::vector<std::vector<std::byte>> of_all =
             team.gather(is_first ? std::vector<std::byte>()
-                                 : bytes_of(rest.first(std::min(PieceSize, rest.size()))));
+                                 : to_send(rest.first(std::min(PieceSize, rest.size()))));
         for (std::size_t i = 1; i < of_all.size(); ++i) {
             auto& array = array_of(lights[i]);
             const std::size_t before = array.size();

@@ -52,7 +52,7 @@ LeafColumn column_of(const std::vector<std::uint8_t>& leaf) {
 VisibleCounts counts_of(const Table& table, std::size_t num_receivers) {
     ColumnStore columns(num_receivers);
     std::vector<std::uint32_t> order;
-    // They come in another order than that of the leaves.
+    // Columns come in another order than leaves.
     for (std::size_t i = table.size(); i-- > 0;) {
         columns.add(column_of(table[i]));
         order.push_back(static_cast<std::uint32_t>(i));
