@@ -1,3 +1,9 @@
+# g++ searches its own memory for garbage as often as its use doubles, which takes an eighth of the time of a
+# translation unit. Below 1 GB, it leaves that: the largest unit needs 0.7 instead of 0.6 GB.
+if(PROJECT_IS_TOP_LEVEL)
+    add_compile_options($<$<COMPILE_LANG_AND_ID:CXX,GNU>:--param=ggc-min-heapsize=1000000>)
+endif()
+
 # One library per folder:
 #
 #   relumine_library(NAME [INTERNAL]

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include "files/joined.h"
 #include "files/nearest_name.h"
 
 namespace relumine::files {
@@ -224,7 +224,7 @@ void JsonReader::known(const JsonValue::Object& members, std::span<const std::st
                        std::string_view what) const {
     for (const auto& [name, value] : members) {
         if (std::find(names.begin(), names.end(), name) == names.end())
-            refuse(value.line, fmt::format("in {} only {}", what, fmt::join(names, ", ")),
+            refuse(value.line, fmt::format("in {} only {}", what, files::joined(names, ", ")),
                    fmt::format("\"{}\"{}", name, did_you_mean(name, names)));
     }
 }

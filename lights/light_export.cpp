@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <span>
 #include <stdexcept>
@@ -35,8 +34,6 @@ constexpr std::array<FormatName, AllLightFormats.size()> FormatNames = {{
 const FormatName& names_of(LightFormat format) {
     return FormatNames.at(static_cast<std::size_t>(format));
 }
-
-using Out = std::back_insert_iterator<std::string>;
 
 /// Returns a name for a comment: ASCII, without anything that could end a comment or a string.
 std::string harmless(const std::string& name) {
@@ -104,8 +101,7 @@ std::string csv_text(const LightList& list) {
         "direction_x,direction_y,direction_z,irradiance_r,irradiance_g,irradiance_b,solid_angle\n",
         title(list), Unit, Axes);
     for (const auto& [d, e, solid_angle] : list.lights)
-        fmt::format_to(Out(text), "{},{},{},{},{},{},{}\n", d.x, d.y, d.z, e.r, e.g, e.b,
-                       solid_angle);
+        text += fmt::format("{},{},{},{},{},{},{}\n", d.x, d.y, d.z, e.r, e.g, e.b, solid_angle);
     return text;
 }
 
@@ -123,8 +119,7 @@ std::string pbrt_text(const LightList& list) {
         "# surface shows L / pi. No \"illuminance\": it would replace the strengths given here.\n",
         title(list), Unit);
     for (const auto& [d, e, solid_angle] : list.lights)
-        fmt::format_to(
-            Out(text),
+        text += fmt::format(
             "LightSource \"distant\" \"point3 from\" [ {} {} {} ] \"point3 to\" [ 0 0 0 ] \"rgb "
             "L\" [ {} {} {} ]\n",
             d.x, 0.0 - d.z, d.y, e.r, e.g, e.b);
@@ -140,11 +135,10 @@ std::string mitsuba_text(const LightList& list) {
                                    "it. -->\n<scene version=\"3.0.0\">\n",
                                    title(list), Unit, Axes);
     for (const auto& [d, e, solid_angle] : list.lights)
-        fmt::format_to(Out(text),
-                       "    <emitter type=\"directional\"><vector name=\"direction\" x=\"{}\" "
-                       "y=\"{}\" z=\"{}\"/>"
-                       "<rgb name=\"irradiance\" value=\"{}, {}, {}\"/></emitter>\n",
-                       0.0 - d.x, 0.0 - d.y, 0.0 - d.z, e.r, e.g, e.b);
+        text += fmt::format("    <emitter type=\"directional\"><vector name=\"direction\" x=\"{}\" "
+                            "y=\"{}\" z=\"{}\"/>"
+                            "<rgb name=\"irradiance\" value=\"{}, {}, {}\"/></emitter>\n",
+                            0.0 - d.x, 0.0 - d.y, 0.0 - d.z, e.r, e.g, e.b);
     return text + "</scene>\n";
 }
 
@@ -170,8 +164,7 @@ std::string usd_text(const LightList& list, const ExportOptions& options) {
                 ? std::clamp(angular_diameter(light.solid_angle) * 180.0 / std::numbers::pi,
                              SmallestAngle, LargestAngle)
                 : SmallestAngle;
-        fmt::format_to(
-            Out(text),
+        text += fmt::format(
             "    def DistantLight \"Light_{}\"\n    {{\n"
             "        float inputs:angle = {}\n        color3f inputs:color = ({}, {}, {})\n"
             "        float inputs:intensity = {}\n        bool inputs:normalize = 1\n"
@@ -197,10 +190,10 @@ std::string blender_text(const LightList& list, const ExportOptions& options) {
         "# direction to the light x, y, z; irradiance r, g, b; angle\nLIGHTS = [\n",
         title(list), Unit, Axes);
     for (const DistantLight& light : list.lights)
-        fmt::format_to(Out(text), "    ({}, {}, {}, {}, {}, {}, {}),\n", light.direction.x,
-                       light.direction.y, light.direction.z, light.irradiance.r, light.irradiance.g,
-                       light.irradiance.b,
-                       options.soft ? angular_diameter(light.solid_angle) : 0.0);
+        text += fmt::format("    ({}, {}, {}, {}, {}, {}, {}),\n", light.direction.x,
+                            light.direction.y, light.direction.z, light.irradiance.r,
+                            light.irradiance.g, light.irradiance.b,
+                            options.soft ? angular_diameter(light.solid_angle) : 0.0);
     text += "]\n\n"
             "collection = bpy.data.collections.new(\"Relumine lights\")\n"
             "bpy.context.scene.collection.children.link(collection)\n"

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
+#include "files/joined.h"
 #include "files/output_file.h"
 #include "mesh/text_reader.h"
 
@@ -48,7 +48,7 @@ float scalar(const TextReader& reader, double max) {
 }
 
 std::string rest_of(std::span<const std::string_view> words) {
-    return fmt::format("{}", fmt::join(words, " "));
+    return files::joined(words, " ");
 }
 
 bool is_number(std::string_view word) {

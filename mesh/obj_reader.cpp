@@ -16,9 +16,9 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <glm/geometric.hpp>
 
+#include "files/joined.h"
 #include "mesh/mtl_reader.h"
 #include "mesh/polygon_soup.h"
 #include "mesh/text_reader.h"
@@ -148,7 +148,7 @@ void ObjReader::read_face() {
 }
 
 std::string ObjReader::rest_of_statement() const {
-    return fmt::format("{}", fmt::join(words_.begin() + 1, words_.end(), " "));
+    return files::joined(std::span(words_).subspan(1), " ");
 }
 
 /// Reads one name with blanks, or several names. Both occur.

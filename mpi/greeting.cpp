@@ -1,9 +1,9 @@
 #include "mpi/greeting.h"
+#include "files/joined.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <hwy/targets.h>
 
 namespace relumine::mpi {
@@ -49,8 +49,8 @@ std::string difference(const Greeting& first, const Greeting& own) {
     if (own.instruction_set != first.instruction_set)
         return differ("instruction set", first.instruction_set, own.instruction_set);
     if (own.arguments != first.arguments)
-        return differ("arguments", fmt::format("{}", fmt::join(first.arguments, " ")),
-                      fmt::format("{}", fmt::join(own.arguments, " ")));
+        return differ("arguments", files::joined(first.arguments, " "),
+                      files::joined(own.arguments, " "));
     return "";
 }
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include "app/command_line/command_line.h"
 #include "app/commands.h"
 #include "app/program.h"
 #include "app/session.h"
+#include "files/joined.h"
 #include "mpi/communicator.h"
 #include "mpi/greeting.h"
 
@@ -75,7 +75,7 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
             throw app::UsageError(arguments[0],
                                   fmt::format("expected {}: the other commands are those of "
                                               "`relumine`, without mpirun",
-                                              fmt::join(Commands, ", ")));
+                                              files::joined(Commands, ", ")));
         const std::string text = program.run(arguments);
         if (is_first)
             std::fputs(text.c_str(), stdout);

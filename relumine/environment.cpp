@@ -7,11 +7,11 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/convention.h"
 #include "cubemap/resample/resample.h"
+#include "files/joined.h"
 
 namespace relumine {
 
@@ -55,7 +55,7 @@ cubemap::EnvironmentImage as_convention_has_it(cubemap::EnvironmentImage image,
         for (const cubemap::Layout layout : from.layouts)
             names.push_back(cubemap::name(layout));
         throw std::runtime_error(fmt::format("{}: expected a {} in the convention of {}, got a {}",
-                                             name, fmt::join(names, " or "), from.name,
+                                             name, files::joined(names, " or "), from.name,
                                              cubemap::name(image.layout)));
     }
     // Programs other than OpenEXR's own do not look at the attribute.

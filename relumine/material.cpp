@@ -1,4 +1,5 @@
 #include "relumine/material.h"
+#include "files/joined.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,7 +9,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace relumine {
 
@@ -42,13 +42,12 @@ prt::SurfaceOverride surface_override(std::span<const SurfaceMaterial> materials
                 mesh.groups.empty()
                     ? fmt::format("expected no group, since the mesh has none, got '{}'",
                                   material.group)
-                    : fmt::format("expected a group of the mesh ({}{}), got '{}'",
-                                  fmt::join(mesh.groups.begin(),
-                                            mesh.groups.begin() +
-                                                static_cast<std::ptrdiff_t>(
-                                                    std::min<std::size_t>(mesh.groups.size(), 8)),
-                                            ", "),
-                                  mesh.groups.size() > 8 ? ", ..." : "", material.group));
+                    : fmt::format(
+                          "expected a group of the mesh ({}{}), got '{}'",
+                          files::joined(std::span(mesh.groups)
+                                            .first(std::min<std::size_t>(mesh.groups.size(), 8)),
+                                        ", "),
+                          mesh.groups.size() > 8 ? ", ..." : "", material.group));
         by_group[static_cast<std::size_t>(found - mesh.groups.begin())] = material;
     }
     return [by_group = std::move(by_group)](const mesh::TriangleMesh& of, std::uint32_t triangle,

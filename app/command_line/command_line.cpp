@@ -12,9 +12,9 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/command_table.h"
+#include "files/joined.h"
 #include "files/nearest_name.h"
 
 namespace relumine::app {
@@ -296,7 +296,7 @@ Option Option::one_of(const std::vector<std::string>& choices) {
                        : fmt::format("expected {}, got '{}'{}", one_of_text(choices), text,
                                      files::did_you_mean(text, choices));
         },
-        fmt::format("{{{}}}", fmt::join(choices, ","))));
+        fmt::format("{{{}}}", files::joined(choices, ","))));
     data_->value = OptionTable::Value::Choice;
     data_->choices = choices;
     return *this;
@@ -537,7 +537,8 @@ CommandTable CommandLine::table() const {
 std::string one_of_text(const std::vector<std::string>& choices) {
     if (choices.size() < 2)
         return choices.empty() ? std::string() : choices.front();
-    return fmt::format("{} or {}", fmt::join(choices.begin(), choices.end() - 1, ", "),
+    return fmt::format("{} or {}",
+                       files::joined(std::span(choices).first(choices.size() - 1), ", "),
                        choices.back());
 }
 

@@ -1,4 +1,5 @@
 #include "app/command_line/completion.h"
+#include "files/joined.h"
 
 #include <string_view>
 #include <vector>
@@ -55,8 +56,7 @@ std::string function_name(const std::string& words) {
 std::string bash_value(const OptionTable& option) {
     switch (option.value) {
     case Value::Choice:
-        return fmt::format("kind=words words={}",
-                           shell_quoted(fmt::to_string(fmt::join(option.choices, " "))));
+        return fmt::format("kind=words words={}", shell_quoted(files::joined(option.choices, " ")));
     case Value::File:
         return "kind=files";
     case Value::Folder:
@@ -88,16 +88,15 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
             if (argument == "kind=none")
                 argument = bash_value(option);
         } else if (option.value != Value::None && !option.value_is_optional) {
-            values += fmt::format("        {}) {} ;;\n", fmt::join(option.names, " | "),
+            values += fmt::format("        {}) {} ;;\n", files::joined(option.names, " | "),
                                   bash_value(option));
         }
     }
     if (!command.commands.empty())
-        argument =
-            fmt::format("kind=words words={}",
-                        shell_quoted(fmt::to_string(fmt::join(names_of(command.commands), " "))));
+        argument = fmt::format("kind=words words={}",
+                               shell_quoted(files::joined(names_of(command.commands), " ")));
     script += fmt::format("    {})\n        options={}\n", shell_quoted(words),
-                          shell_quoted(fmt::to_string(fmt::join(options, " "))));
+                          shell_quoted(files::joined(options, " ")));
     script += fmt::format("        case $before in\n{}        *) {} ;;\n        esac ;;\n", values,
                           argument);
     for (const CommandTable& below : command.commands)
@@ -114,7 +113,7 @@ std::string zsh_value(const OptionTable& option) {
     case Value::None:
         return "";
     case Value::Choice:
-        return fmt::format(":{}:({})", label, fmt::join(option.choices, " "));
+        return fmt::format(":{}:({})", label, files::joined(option.choices, " "));
     case Value::File:
         return fmt::format(":{}:_files", label);
     case Value::Folder:
@@ -137,7 +136,7 @@ void zsh_function(const CommandTable& command, const std::string& words, std::st
             fmt::format("{}{}", option.value_is_optional ? ":" : "", zsh_value(option));
         // All names of one option exclude each other, unless it may be repeated.
         const std::string excluded =
-            option.repeats ? "*" : fmt::format("({})", fmt::join(option.names, " "));
+            option.repeats ? "*" : fmt::format("({})", files::joined(option.names, " "));
         for (const std::string& name : option.names)
             script += fmt::format(
                 " \\\n        {}",
@@ -180,7 +179,7 @@ std::string fish_value(const OptionTable& option) {
     case Value::None:
         return "";
     case Value::Choice:
-        return fmt::format(" -xa {}", fish_quoted(fmt::to_string(fmt::join(option.choices, " "))));
+        return fmt::format(" -xa {}", fish_quoted(files::joined(option.choices, " ")));
     case Value::File:
         return option.value_is_optional ? " -F" : " -rF";
     case Value::Folder:
@@ -206,7 +205,7 @@ void fish_lines(const CommandTable& command, const std::string& program, const s
     if (!command.commands.empty())
         no_command = fmt::format("{}not __fish_seen_subcommand_from {}",
                                  condition.empty() ? "" : condition + "; and ",
-                                 fmt::join(names_of(command.commands), " "));
+                                 files::joined(names_of(command.commands), " "));
     const std::string prefix = fmt::format(
         "complete -c {} -n {}", program, fish_quoted(no_command.empty() ? condition : no_command));
     for (const CommandTable& below : command.commands)

@@ -1,4 +1,5 @@
 #include "app/command_line/man_page.h"
+#include "files/joined.h"
 
 #include <algorithm>
 #include <sstream>
@@ -82,7 +83,7 @@ std::string paragraph(const OptionTable& option) {
     }
     std::string text = sentence(option.description);
     if (!option.choices.empty())
-        text += fmt::format(" One of: {}.", fmt::join(option.choices, ", "));
+        text += fmt::format(" One of: {}.", files::joined(option.choices, ", "));
     if (!option.range.empty())
         text += fmt::format(" From {}.", option.range);
     if (!option.default_value.empty() && option.value != OptionTable::Value::None)

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
@@ -18,6 +17,7 @@
 #include "cubemap/doctor/sun.h"
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/environment.h"
+#include "files/joined.h"
 #include "relight/pictures/environment_picture.h"
 
 namespace relumine::app {
@@ -82,7 +82,7 @@ void say_light(const Findings& found, const Session& session) {
         sides.push_back(
             fmt::format("{} {:.4g}", AxisNames[axis], cubemap::luminance(s.axis_irradiance[axis])));
     session.say(fmt::format("irradiance          {} (luminance, on surfaces that face so)",
-                            fmt::join(sides, ", ")));
+                            files::joined(sides, ", ")));
     if (!found.search.sun) {
         session.say(fmt::format("sun                 none: {}", found.search.why_none));
         return;

@@ -82,13 +82,7 @@ void AnimateOptions::add_to(Command& command) {
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
     if (output.path.empty())
         return std::nullopt;
-    auto pattern = cubemap::FramePattern::parse(output.path);
-    if (!pattern)
-        throw UsageError("--output",
-                         fmt::format("expected a place for the frame's number as in lit.%04d.png, "
-                                     "got '{}'",
-                                     output.path));
-    return pattern;
+    return frame_names(output.path);
 }
 
 void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {

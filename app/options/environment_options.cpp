@@ -1,4 +1,5 @@
 #include "app/options/environment_options.h"
+#include "files/joined.h"
 
 #include <iterator>
 #include <memory>
@@ -6,7 +7,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 namespace relumine::app {
 
@@ -152,14 +152,14 @@ std::string layouts_of(const cubemap::Convention& convention) {
     std::vector<std::string_view> names;
     for (const cubemap::Layout layout : convention.layouts)
         names.push_back(cubemap::option_name(layout));
-    return fmt::format("{}", fmt::join(names, ", "));
+    return files::joined(names, ", ");
 }
 
 cubemap::Layout parse_layout(const std::string& name) {
     if (const auto layout = cubemap::layout_named(name))
         return *layout;
-    throw std::invalid_argument(
-        fmt::format("layout: expected one of {}, got {}", fmt::join(layout_names(), ", "), name));
+    throw std::invalid_argument(fmt::format("layout: expected one of {}, got {}",
+                                            files::joined(layout_names(), ", "), name));
 }
 
 } // namespace relumine::app

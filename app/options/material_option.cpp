@@ -9,9 +9,9 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/command_line/command_line.h"
+#include "files/joined.h"
 
 namespace relumine::app {
 
@@ -89,7 +89,7 @@ void Parser::read_values(std::string_view rest, const Model& model) {
         if (const std::size_t equals = word.find('='); equals != std::string_view::npos) {
             const std::string_view key = word.substr(0, equals);
             if (std::find(keys.begin(), keys.end(), key) == keys.end())
-                fail(fmt::format("{} of {}", fmt::join(keys, ", "), model.name), key);
+                fail(fmt::format("{} of {}", files::joined(keys, ", "), model.name), key);
             if (values_.contains(key))
                 fail(fmt::format("{} once", key), text_);
             current = &values_[key];
@@ -123,8 +123,12 @@ std::optional<glm::vec3> Parser::color(std::string_view key) const {
         return std::nullopt;
     if (values.size() == 1)
         return glm::vec3(values[0]);
-    if (values.size() != 3)
-        fail(fmt::format("1 or 3 numbers of {}", key), fmt::format("{}", fmt::join(values, ",")));
+    if (values.size() != 3) {
+        std::vector<std::string> texts;
+        for (const float value : values)
+            texts.push_back(fmt::format("{}", value));
+        fail(fmt::format("1 or 3 numbers of {}", key), files::joined(texts, ","));
+    }
     return glm::vec3(values[0], values[1], values[2]);
 }
 

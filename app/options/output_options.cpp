@@ -310,6 +310,16 @@ void require_environment_name(const std::string& option, const std::string& path
     require_extension(option, path, {".exr", ".hdr"});
 }
 
+cubemap::FramePattern frame_names(const std::string& path) {
+    const auto pattern = cubemap::FramePattern::parse(path);
+    if (!pattern)
+        throw UsageError("--output",
+                         fmt::format("expected a place for the frame's number as in lit.%04d.png, "
+                                     "got '{}'",
+                                     path));
+    return *pattern;
+}
+
 void check_output(const std::string& path, const std::vector<std::string>& inputs) {
     for (const std::string& input : inputs) {
         std::error_code missing;

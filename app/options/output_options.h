@@ -8,6 +8,7 @@
 
 #include "app/command_line/command_line.h"
 #include "app/scenes/lit_scene.h"
+#include "cubemap/image/frame_pattern.h"
 #include "relumine/output.h"
 
 namespace relumine::app {
@@ -83,6 +84,9 @@ void require_extension(const std::string& option, const std::string& path,
 
 /// The same for environments: .exr or .hdr.
 void require_environment_name(const std::string& option, const std::string& path);
+
+/// The names of frames, from --output. Throws UsageError where `path` has no place for a number.
+[[nodiscard]] cubemap::FramePattern frame_names(const std::string& path);
 
 /// Throws std::runtime_error when `path` cannot be written or is one of the inputs, under whatever
 /// name.

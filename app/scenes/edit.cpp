@@ -10,7 +10,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/printf.h>
 #include <glm/geometric.hpp>
 
 #include "app/commands.h"
@@ -77,27 +76,11 @@ cubemap::LightLayers layers_of(const EditArguments& options) {
     return layers;
 }
 
-/// `OUT.%04d.png` with the frame's number.
-std::string numbered(const std::string& pattern, int frame) {
-    std::string name;
-    try {
-        name = fmt::sprintf(pattern, frame);
-    } catch (const std::exception&) { // not a pattern for one number
-        name = pattern;
-    }
-    if (name == pattern)
-        throw UsageError("--output",
-                         fmt::format("expected a number like %04d in the name, as the layers have "
-                                     "frames, got '{}'",
-                                     pattern));
-    return name;
-}
-
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const EditArguments& options, const cubemap::LightLayers& layers) {
     OutputOptions output = options.output;
     if (options.who.empty() && options.lit_by.empty() && !layers.frames.empty())
-        output.path = numbered(output.path, 0);
+        output.path = frame_names(output.path).name(0);
     if (!options.who.empty()) {
         require_extension("--output", output.path, {".exr", ".png"});
         static_cast<void>(parse_vec3("--who", options.who));
@@ -151,7 +134,7 @@ private:
         painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
         OutputOptions output = options_.output;
         if (options_.lit_by.empty() && !layers_.frames.empty())
-            output.path = numbered(output.path, 0);
+            output.path = frame_names(output.path).name(0);
         output.check_fits(lit_.scene());
     }
 
@@ -207,7 +190,7 @@ private:
             record(fmt::format("frame {}", frame),
                    editor_.set_layers(cubemap::layers_at(layers_, frame)));
             bounce();
-            painter_->save(numbered(options_.output.path, frame), lit_.lighting());
+            painter_->save(frame_names(options_.output.path).name(frame), lit_.lighting());
             session_.poll();
         }
     }

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "app/session.h"
+#include "files/joined.h"
 #include "files/nearest_name.h"
 
 namespace relumine::app {
@@ -27,8 +27,8 @@ cubemap::Region lit_by_region(const std::string& text,
             "--lit-by",
             fmt::format("expected a layer ({}) or X,Y,Z,RADIUS with a RADIUS in degrees, got "
                         "'{}'{}{}",
-                        names.empty() ? "there is none" : fmt::format("{}", fmt::join(names, ", ")),
-                        text, why, files::did_you_mean(text, names)));
+                        names.empty() ? "there is none" : files::joined(names, ", "), text, why,
+                        files::did_you_mean(text, names)));
     };
     const std::size_t last_comma = text.rfind(',');
     if (last_comma == std::string::npos)

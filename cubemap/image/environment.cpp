@@ -9,12 +9,12 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
 #include "cubemap/resample/resample.h"
+#include "files/joined.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -88,8 +88,8 @@ void interpret(const ImageFile& file, const LoadOptions& options, const std::str
     image.sampling = file.envmap == image.layout ? Sampling::Borders : Sampling::TexelCentres;
     why += image.sampling == Sampling::Borders ? ", samples on the borders"
                                                : ", samples at texel centres";
-    image.assumptions =
-        fmt::format("{}{}{}", why, file.remarks.empty() ? "" : ", ", fmt::join(file.remarks, ", "));
+    image.assumptions = fmt::format("{}{}{}", why, file.remarks.empty() ? "" : ", ",
+                                    files::joined(file.remarks, ", "));
 }
 
 BadPixels find_bad_pixels(const EnvironmentImage& image) {

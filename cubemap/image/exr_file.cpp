@@ -20,13 +20,13 @@
 #include <ImfThreading.h>
 #include <ImfTileDescription.h>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 
 #include "cubemap/image/exr_header.h"
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
+#include "files/joined.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -112,8 +112,7 @@ std::string names_of(const Imf::ChannelList& list) {
     std::vector<std::string> names;
     for (auto channel = list.begin(); channel != list.end(); ++channel)
         names.emplace_back(channel.name());
-    return names.empty() ? "none"
-                         : fmt::format("{:.200}", fmt::format("{}", fmt::join(names, ", ")));
+    return names.empty() ? "none" : fmt::format("{:.200}", files::joined(names, ", "));
 }
 
 struct Window {

@@ -8,10 +8,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "cubemap/layers/layer_fields.h"
 #include "cubemap/layers/layer_list.h"
+#include "files/joined.h"
 #include "files/json_value.h"
 #include "files/nearest_name.h"
 #include "files/output_file.h"
@@ -96,7 +96,8 @@ private:
                 return candidate;
             names.push_back(name(candidate));
         }
-        json_.refuse(value.line, fmt::format("{} to be one of {}", what, fmt::join(names, ", ")),
+        json_.refuse(value.line,
+                     fmt::format("{} to be one of {}", what, files::joined(names, ", ")),
                      fmt::format("\"{}\"{}", text, files::did_you_mean(text, names)));
     }
 

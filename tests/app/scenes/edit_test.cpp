@@ -132,7 +132,7 @@ TEST_F(Edit, FramesBecomeNumberedFiles) {
          {std::pair{"frame.001.npy", 1.0}, {"frame.002.npy", 2.0}, {"frame.003.npy", 4.0}})
         EXPECT_NEAR(npy_values(read(name))[0][0], 1.0 + gain, 0.01 * (1.0 + gain)) << name;
     misuse({"edit", "scene.prt", "white.hdr", "layers.json", "-o", "frame.%s.npy"},
-           "--output: expected a number like %04d");
+           "--output: expected a place for the frame's number");
 }
 
 TEST_F(Edit, WhoShowsTheLightOfThatPoint) {
