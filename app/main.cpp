@@ -1,12 +1,11 @@
 #include <cstdio>
-#include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
-#include <tbb/global_control.h>
-
 #include "app/command_line/command_line.h"
 #include "app/program.h"
+#include "files/parallel.h"
 
 int main(int argc, char** argv) {
     using namespace relumine;
@@ -17,11 +16,10 @@ int main(int argc, char** argv) {
                              RELUMINE_VERSION);
     app::add_commands(program, session);
 
-    std::unique_ptr<tbb::global_control> thread_limit;
+    std::optional<files::ThreadLimit> thread_limit;
     program.before_run([&] {
         if (session.num_threads > 0)
-            thread_limit = std::make_unique<tbb::global_control>(
-                tbb::global_control::max_allowed_parallelism, session.num_threads);
+            thread_limit.emplace(session.num_threads);
     });
     const auto run = [&] {
         std::fputs(program.run({argv + 1, argv + argc}).c_str(), stdout);

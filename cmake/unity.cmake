@@ -50,9 +50,9 @@ endfunction()
 # What most sources include is parsed once for all libraries and the program (g++; CMAKE_DISABLE_PRECOMPILE_HEADERS
 # turns it off). Sources still include all they use: `./dev lint` reads headers alone, without these.
 set(relumine_common_headers
-    <algorithm> <array> <atomic> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <mutex> <numeric> <optional> <span>
-    <sstream> <stdexcept> <stop_token> <string> <utility> <variant> <vector> <fmt/format.h> <glm/geometric.hpp> <glm/mat3x3.hpp> <glm/vec2.hpp> <glm/vec3.hpp>
-    <tbb/blocked_range.h> <tbb/parallel_for.h>)
+    <algorithm> <array> <atomic> <cmath> <cstdint> <filesystem> <functional> <map> <memory> <mutex> <numeric> <optional>
+    <span> <sstream> <stdexcept> <stop_token> <string> <utility> <variant> <vector> <fmt/format.h> <glm/geometric.hpp>
+    <glm/mat3x3.hpp> <glm/vec2.hpp> <glm/vec3.hpp>)
 
 # relumine_precompile(NAME HEADERS ...): makes a target whose precompiled headers others take.
 function(relumine_precompile name)

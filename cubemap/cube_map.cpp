@@ -8,7 +8,8 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -44,7 +45,7 @@ const glm::vec3& over_the_edge(const CubeMap& map, Face face, std::int64_t x, st
 template<typename RowSum>
 glm::dvec3 sum_over_rows(std::uint32_t resolution, const RowSum& row_sum) {
     std::vector<glm::dvec3> sums(std::size_t{NumFaces} * resolution);
-    tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t row) {
+    files::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t row) {
         sums[row] =
             row_sum(AllFaces[row / resolution], static_cast<std::uint32_t>(row % resolution));
     });
@@ -76,7 +77,7 @@ std::vector<double> texel_solid_angles(std::uint32_t resolution) {
     };
     // One eighth is computed and mirrored to the rest, so the result is exactly symmetric.
     const std::uint32_t half = (resolution + 1) / 2;
-    tbb::parallel_for(std::uint32_t{0}, half, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, half, [&](std::uint32_t y) {
         for (std::uint32_t x = y; x < half; ++x) {
             const double n = resolution;
             const double angle = solid_angle(x / n, y / n, (x + 1) / n, (y + 1) / n);

@@ -6,11 +6,10 @@
 #include <stdexcept>
 
 #include <glm/matrix.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/spherical_overlap.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -36,7 +35,7 @@ Angle angle_of(double degrees) {
 template<typename Worker>
 CubeMap filled(std::uint32_t resolution, const Worker& worker) {
     CubeMap result(resolution);
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, resolution), [&](const auto& rows) {
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, resolution), [&](const auto& rows) {
         auto texel_of = worker();
         for (const Face face : AllFaces) {
             for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {

@@ -6,9 +6,9 @@
 
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/cube_map.h"
+#include "files/parallel.h"
 
 namespace relumine::data_gen {
 
@@ -20,7 +20,7 @@ cubemap::CubeMap sampled(std::uint32_t resolution, const Radiance& radiance,
                          const NumSub& num_sub) {
     cubemap::CubeMap map(resolution);
     const double texel = 1.0 / resolution;
-    tbb::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {
+    files::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {
         const cubemap::Face face = cubemap::AllFaces[row / resolution];
         const std::uint32_t y = row % resolution;
         for (std::uint32_t x = 0; x < resolution; ++x) {

@@ -1,9 +1,9 @@
 #include "files/packed_parts.h"
 
-#include <tbb/parallel_for.h>
 #include <zstd.h>
 
 #include "files/compression.h"
+#include "files/parallel.h"
 
 namespace relumine::files {
 
@@ -18,8 +18,8 @@ constexpr int CompressionLevel = 1;
 std::vector<std::byte> pack(std::size_t num_parts,
                             const std::function<std::vector<std::byte>(std::size_t)>& part) {
     std::vector<std::vector<std::byte>> parts(num_parts);
-    tbb::parallel_for(std::size_t{0}, num_parts,
-                      [&](std::size_t i) { parts[i] = compressed(part(i), CompressionLevel); });
+    files::parallel_for(std::size_t{0}, num_parts,
+                        [&](std::size_t i) { parts[i] = compressed(part(i), CompressionLevel); });
     std::size_t num_bytes = sizeof(std::uint64_t) * (1 + num_parts);
     for (const std::vector<std::byte>& bytes : parts)
         num_bytes += bytes.size();

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <span>
 
-#include <tbb/parallel_for.h>
-
 #include "cubemap/split_mix64.h"
+#include "files/parallel.h"
 
 namespace relumine::lights {
 
@@ -84,8 +83,8 @@ public:
 private:
     void sum_rows() {
         std::vector<double> rows(grid_.height());
-        tbb::parallel_for(std::uint32_t{0}, grid_.height(),
-                          [&](std::uint32_t y) { rows[y] = row_sum(y); });
+        files::parallel_for(std::uint32_t{0}, grid_.height(),
+                            [&](std::uint32_t y) { rows[y] = row_sum(y); });
         for (std::size_t y = 0; y < rows.size(); ++y)
             marginal_[y + 1] = marginal_[y] + rows[y];
     }
@@ -143,7 +142,7 @@ std::vector<ImportanceSample> importance_samples(const LatLongGrid& grid, std::s
         return row * num_lights / num_rows;
     };
     std::vector<ImportanceSample> samples(num_lights);
-    tbb::parallel_for(std::size_t{0}, num_rows, [&](std::size_t row) {
+    files::parallel_for(std::size_t{0}, num_rows, [&](std::size_t row) {
         const std::size_t first = first_of_row(row);
         const std::size_t num_strata = first_of_row(row + 1) - first;
         const double top = static_cast<double>(first) / static_cast<double>(num_lights);
@@ -175,7 +174,7 @@ std::vector<ImportanceSample> independent_samples(const LatLongGrid& grid, std::
     const Distribution distribution(grid);
     const double share = distribution.marginal().back() / static_cast<double>(num_lights);
     std::vector<ImportanceSample> samples(num_lights);
-    tbb::parallel_for(std::size_t{0}, num_lights, [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, num_lights, [&](std::size_t i) {
         const Distribution::Place place =
             distribution.place(random(seed, 2 * i), random(seed, 2 * i + 1));
         ImportanceSample& sample = samples[i];

@@ -7,10 +7,9 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/split_mix64.h"
+#include "files/parallel.h"
 #include "lights/nearest_centre.h"
 
 namespace relumine::lights {
@@ -60,7 +59,7 @@ public:
         const std::size_t num_tasks = (points_.size() + PointsPerTask - 1) / PointsPerTask;
         std::vector<std::size_t> changed(num_tasks, 0);
         std::vector<std::size_t> searched(num_tasks, 0);
-        tbb::parallel_for(std::size_t{0}, num_tasks, [&](std::size_t task) {
+        files::parallel_for(std::size_t{0}, num_tasks, [&](std::size_t task) {
             std::vector<float> bounds;
             const std::size_t end = std::min((task + 1) * PointsPerTask, points_.size());
             for (std::size_t i = task * PointsPerTask; i < end; ++i) {
@@ -87,7 +86,7 @@ public:
         std::fill(moves_.begin(), moves_.end(), 0.0);
         reseed();
         sort_members();
-        tbb::parallel_for(std::size_t{0}, result_.centres.size(), [&](std::size_t cluster) {
+        files::parallel_for(std::size_t{0}, result_.centres.size(), [&](std::size_t cluster) {
             const std::span<const std::uint32_t> members(members_.data() + begin_[cluster],
                                                          begin_[cluster + 1] - begin_[cluster]);
             if (members.empty())

@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
+#include "files/parallel.h"
 
 namespace relumine::lights {
 
@@ -22,7 +22,7 @@ bool is_radiance(const glm::vec3& value) {
 void check_radiance(std::span<const glm::vec3> pixels, std::size_t width) {
     const std::size_t height = pixels.size() / width;
     std::vector<char> good(height, 1);
-    tbb::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
+    files::parallel_for(std::size_t{0}, height, [&](std::size_t y) {
         const auto row = pixels.subspan(y * width, width);
         good[y] = std::all_of(row.begin(), row.end(), is_radiance) ? 1 : 0;
     });

@@ -1,7 +1,8 @@
 #include "lights/region_cuts.h"
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::lights {
 
@@ -62,8 +63,8 @@ DistantLight light_of(const LatLongGrid& grid, const PixelRectangle& region) {
 std::vector<DistantLight> lights_of(const LatLongGrid& grid,
                                     const std::vector<PixelRectangle>& regions) {
     std::vector<DistantLight> result(regions.size());
-    tbb::parallel_for(std::size_t{0}, regions.size(),
-                      [&](std::size_t i) { result[i] = light_of(grid, regions[i]); });
+    files::parallel_for(std::size_t{0}, regions.size(),
+                        [&](std::size_t i) { result[i] = light_of(grid, regions[i]); });
     return result;
 }
 

@@ -7,9 +7,7 @@
 #include <cstdint>
 #include <memory>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
+#include "files/parallel.h"
 #include "lights/lat_long_grid.h"
 
 namespace relumine::lights {
@@ -51,7 +49,7 @@ SummedAreaTable<T>::SummedAreaTable(std::uint32_t width, std::uint32_t height,
     : stride_(std::size_t{width} + 1),
       table_(std::make_unique_for_overwrite<T[]>(stride_ * (std::size_t{height} + 1))) {
     std::fill_n(table_.get(), stride_, T(0.0));
-    tbb::parallel_for(std::uint32_t{0}, height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, height, [&](std::uint32_t y) {
         T* row = table_.get() + (std::size_t{y} + 1) * stride_;
         row[0] = T(0.0);
         row_values(y, row + 1);
@@ -59,18 +57,16 @@ SummedAreaTable<T>::SummedAreaTable(std::uint32_t width, std::uint32_t height,
             row[x] += row[x - 1];
     });
     // Columns are added in strips of 4 KiB per row, so the row above is still in the cache.
-    constexpr std::size_t Grain = 4096 / sizeof(T);
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, stride_, Grain),
-        [&](const tbb::blocked_range<std::size_t>& columns) {
-            for (std::size_t y = 1; y <= height; ++y) {
-                const T* above = table_.get() + (y - 1) * stride_;
-                T* row = table_.get() + y * stride_;
-                for (std::size_t x = columns.begin(); x < columns.end(); ++x)
-                    row[x] += above[x];
-            }
-        },
-        tbb::simple_partitioner{});
+    constexpr std::size_t Width = 4096 / sizeof(T);
+    files::parallel_for(std::size_t{0}, (stride_ + Width - 1) / Width, [&](std::size_t strip) {
+        const std::size_t begin = strip * Width, end = std::min(begin + Width, stride_);
+        for (std::size_t y = 1; y <= height; ++y) {
+            const T* above = table_.get() + (y - 1) * stride_;
+            T* row = table_.get() + y * stride_;
+            for (std::size_t x = begin; x < end; ++x)
+                row[x] += above[x];
+        }
+    });
 }
 
 } // namespace relumine::lights

@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <memory>
 #include <new>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 
 #include "app/command_line/command_line.h"
 #include "app/commands.h"
 #include "app/program.h"
 #include "app/session.h"
 #include "files/joined.h"
+#include "files/parallel.h"
 #include "mpi/communicator.h"
 #include "mpi/greeting.h"
 
@@ -53,11 +53,10 @@ int run(const std::vector<std::string>& arguments, app::Session& session, Commun
             .between(0.0, 1e9)
             .show_default();
 
-    std::unique_ptr<tbb::global_control> thread_limit;
+    std::optional<files::ThreadLimit> thread_limit;
     program.before_run([&] {
         if (session.num_threads > 0)
-            thread_limit = std::make_unique<tbb::global_control>(
-                tbb::global_control::max_allowed_parallelism, session.num_threads);
+            thread_limit.emplace(session.num_threads);
         // The first process speaks for all.
         session.quiet = session.quiet || !is_first;
         session.json = session.json && is_first;

@@ -10,8 +10,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -45,11 +45,11 @@ void require_radiance(std::span<const glm::vec3> texels) {
     if (texels.size() <= Grain && are_surely_good(texels))
         return; // rows of an edit: not worth a task
     std::atomic<bool> good = true;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, texels.size(), Grain),
-                      [&](const auto& part) {
-                          if (!are_surely_good(texels.subspan(part.begin(), part.size())))
-                              good = false;
-                      });
+    files::parallel_for(files::IndexRange<std::size_t>(0, texels.size(), Grain),
+                        [&](const auto& part) {
+                            if (!are_surely_good(texels.subspan(part.begin(), part.size())))
+                                good = false;
+                        });
     if (good)
         return;
     const auto bad = std::find_if_not(texels.begin(), texels.end(), is_good);

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "relight/texel_kernel.h"
 
 namespace relumine::relight {
@@ -135,8 +135,8 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
 std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
                                                  std::span<const prt::Cell> cells) const {
     std::vector<VectorIrradiance> result(cells.size());
-    tbb::parallel_for(std::size_t{0}, cells.size(),
-                      [&](std::size_t i) { result[i] = sum(environment, cells[i]); });
+    files::parallel_for(std::size_t{0}, cells.size(),
+                        [&](std::size_t i) { result[i] = sum(environment, cells[i]); });
     return result;
 }
 

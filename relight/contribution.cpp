@@ -6,8 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <tbb/parallel_for.h>
-
+#include "files/parallel.h"
 #include "relight/light_packets.h"
 
 namespace relumine::relight {
@@ -136,14 +135,14 @@ cubemap::CubeMap contribution_map(const Relighter& relighter,
     const std::span<const SharpLight> sharp = relighter.sharp_lights();
     std::vector<glm::dvec3> from_cluster(cells.size(), glm::dvec3(0.0));
     std::vector<glm::dvec3> from_sharp(sharp.size(), glm::dvec3(0.0));
-    tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t cluster) {
+    files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t cluster) {
         for (const auto& [receiver, factor] : counted) {
             const std::size_t place = place_of[receiver];
             from_cluster[cluster] += factor * relighter.from_cluster(place, cluster);
         }
     });
     const ShadowRays& rays = relighter.shadow_rays();
-    tbb::parallel_for(std::size_t{0}, sharp.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, sharp.size(), [&](std::size_t i) {
         const LightPackets packets(sharp.subspan(i, 1)); // one for each light, to tell them apart
         for (const auto& [receiver, factor] : counted)
             from_sharp[i] += factor * packets.radiance(rays.positions[receiver],

@@ -10,13 +10,12 @@
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
 #include "cubemap/resample/pixel_parts.h"
 #include "cubemap/split_mix64.h"
+#include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/precompute.h"
 
@@ -139,7 +138,7 @@ public:
         const std::size_t num_tasks = (sums_.size() + ReceiversPerTask - 1) / ReceiversPerTask;
         std::mutex mutex;
         std::size_t rows_done = 0;
-        tbb::parallel_for(std::size_t{0}, num_tasks, [&](std::size_t task) {
+        files::parallel_for(std::size_t{0}, num_tasks, [&](std::size_t task) {
             const std::size_t begin = task * ReceiversPerTask;
             const std::size_t end = std::min(begin + ReceiversPerTask, sums_.size());
             for (std::size_t row = 0; row < num_rows; ++row) {
@@ -195,7 +194,7 @@ public:
         // Four rows of groups make rows of tiles of 4 x 4 rays.
         rows_per_panel_ = (parts_.panel_height() + TileSize * group_ - 1) / (TileSize * group_);
         rows_.resize(rows_per_panel_ * parts_.num_panels());
-        tbb::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t row) { add_row(row); });
+        files::parallel_for(std::size_t{0}, rows_.size(), [&](std::size_t row) { add_row(row); });
     }
 
     [[nodiscard]] const std::vector<std::vector<Tile>>& rows() const { return rows_; }

@@ -10,10 +10,8 @@
 #include <utility>
 #include <variant>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "cubemap/layers/region_turn.h"
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -31,7 +29,7 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
     const std::uint32_t r = before.resolution;
     const std::uint32_t rows = (r + EditTileSize - 1) / EditTileSize;
     std::vector<std::vector<cubemap::TexelRectangle>> of_row(cubemap::NumFaces * std::size_t{rows});
-    tbb::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, of_row.size(), [&](std::size_t i) {
         const cubemap::Face face = cubemap::AllFaces[i / rows];
         const auto y = static_cast<std::uint32_t>(i % rows) * EditTileSize;
         for (std::uint32_t x = 0; x < r; x += EditTileSize) {
@@ -370,12 +368,12 @@ UpdateReport LightEditor::go_to(std::size_t mark) {
 void LightEditor::publish() {
     const std::span<const glm::vec3> radiance = relighter_.radiance();
     back_.resize(radiance.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), CopyGrain),
-                      [&](const auto& part) {
-                          std::copy(radiance.begin() + static_cast<std::ptrdiff_t>(part.begin()),
-                                    radiance.begin() + static_cast<std::ptrdiff_t>(part.end()),
-                                    back_.begin() + static_cast<std::ptrdiff_t>(part.begin()));
-                      });
+    files::parallel_for(files::IndexRange<std::size_t>(0, radiance.size(), CopyGrain),
+                        [&](const auto& part) {
+                            std::copy(radiance.begin() + static_cast<std::ptrdiff_t>(part.begin()),
+                                      radiance.begin() + static_cast<std::ptrdiff_t>(part.end()),
+                                      back_.begin() + static_cast<std::ptrdiff_t>(part.begin()));
+                        });
     const std::unique_lock lock(published_mutex_);
     std::swap(published_, back_);
 }

@@ -7,8 +7,8 @@
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -133,14 +133,14 @@ std::vector<glm::dvec3> radiance_under(std::span<const lights::DistantLight> lig
         throw std::invalid_argument("expected indices of receivers");
     const LightPackets packets(lights);
     std::vector<glm::dvec3> radiance(receiver_indices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, radiance.size(), ReceiversPerPart),
-                      [&](const auto& some) {
-                          for (std::size_t i = some.begin(); i < some.end(); ++i) {
-                              const std::uint32_t receiver = receiver_indices[i];
-                              radiance[i] = packets.radiance(rays.positions[receiver],
-                                                             normals[receiver], rays);
-                          }
-                      });
+    files::parallel_for(files::IndexRange<std::size_t>(0, radiance.size(), ReceiversPerPart),
+                        [&](const auto& some) {
+                            for (std::size_t i = some.begin(); i < some.end(); ++i) {
+                                const std::uint32_t receiver = receiver_indices[i];
+                                radiance[i] = packets.radiance(rays.positions[receiver],
+                                                               normals[receiver], rays);
+                            }
+                        });
     return radiance;
 }
 

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "relight/non_negative_fit.h"
 
 namespace relumine::relight {
@@ -95,7 +95,7 @@ double LightPursuit::error() const {
 void LightPursuit::push_back(std::size_t candidate, const glm::dvec3& irradiance) {
     std::vector<float> products = matrix_.products(matrix_.column(candidate));
     std::vector<float> row = products;
-    tbb::parallel_for(candidates(), [&](const auto& some) {
+    files::parallel_for(candidates(), [&](const auto& some) {
         for (const std::vector<float>& other : basis_) {
             const float common = other[candidate];
             for (std::size_t j = some.begin(); j < some.end(); ++j)
@@ -130,7 +130,7 @@ void LightPursuit::pop_front() {
         const float length = std::hypot(a, b);
         const float cosine = length > 0.0f ? a / length : 1.0f;
         const float sine = length > 0.0f ? b / length : 0.0f;
-        tbb::parallel_for(candidates(), [&](const auto& some) {
+        files::parallel_for(candidates(), [&](const auto& some) {
             float* first = basis_[k - 1].data();
             float* second = basis_[k].data();
             for (std::size_t j = some.begin(); j < some.end(); ++j) {
@@ -151,7 +151,7 @@ void LightPursuit::fit() {
     for (std::size_t l = 0; l < n; ++l)
         for (std::size_t k = 0; k < n; ++k) // products_[l] of k and products_[k] of l are equal
             gram[l * n + k] = static_cast<double>(products_[l][chosen_[k].candidate]);
-    tbb::parallel_for(0, 3, [&](int channel) {
+    files::parallel_for(0, 3, [&](int channel) {
         std::vector<double> targets(n);
         std::vector<double> x(n);
         for (std::size_t k = 0; k < n; ++k) {
@@ -165,7 +165,7 @@ void LightPursuit::fit() {
 }
 
 void LightPursuit::correlate() {
-    tbb::parallel_for(candidates(), [&](const auto& some) {
+    files::parallel_for(candidates(), [&](const auto& some) {
         for (std::size_t c = 0; c < 3; ++c) {
             float* correlations = correlations_[c].data();
             std::copy_n(targets_[c].data() + some.begin(), some.size(),
@@ -204,7 +204,7 @@ glm::dvec3 LightPursuit::target(std::size_t candidate) const {
     return {targets_[0][candidate], targets_[1][candidate], targets_[2][candidate]};
 }
 
-tbb::blocked_range<std::size_t> LightPursuit::candidates() const {
+files::IndexRange<std::size_t> LightPursuit::candidates() const {
     return {0, norms_.size(), CandidatesPerTask};
 }
 

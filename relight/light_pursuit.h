@@ -9,8 +9,8 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
-#include <tbb/blocked_range.h>
 
+#include "files/parallel.h"
 #include "relight/transfer_matrix.h"
 
 namespace relumine::relight {
@@ -58,7 +58,7 @@ private:
     [[nodiscard]] double gain(std::size_t candidate) const;
     [[nodiscard]] std::size_t best_candidate() const;
     [[nodiscard]] glm::dvec3 target(std::size_t candidate) const;
-    [[nodiscard]] tbb::blocked_range<std::size_t> candidates() const;
+    [[nodiscard]] files::IndexRange<std::size_t> candidates() const;
 
     const TransferMatrix& matrix_;
     /// [candidates] t_j.t_j

@@ -4,8 +4,8 @@
 #include <array>
 
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -67,8 +67,8 @@ void LightPyramid::sum_levels() {
             light_.data() + std::size_t{prt::num_cells_above(level + 1)} * NumChannels;
         const std::size_t num_parents =
             prt::num_cells_above(level + 1) - prt::num_cells_above(level);
-        tbb::parallel_for(
-            tbb::blocked_range<std::size_t>(0, num_parents, 4096), [&](const auto& some) {
+        files::parallel_for(
+            files::IndexRange<std::size_t>(0, num_parents, 4096), [&](const auto& some) {
                 for (std::size_t i = some.begin() * NumChannels; i < some.end() * NumChannels;
                      ++i) {
                     const float* child =
@@ -111,8 +111,8 @@ void LightPyramid::set_deepest(const cubemap::CubeMap& environment, const LightB
                 place[channel] = static_cast<float>(light[channel]);
         }
     };
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, std::size_t{n} * cubemap::NumFaces, RowsPerTask),
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, std::size_t{n} * cubemap::NumFaces, RowsPerTask),
         [&](const auto& rows) {
             for (std::size_t row = rows.begin(); row < rows.end(); ++row)
                 set_row(row);

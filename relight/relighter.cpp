@@ -14,9 +14,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "relight/block_kernels.h"
 #include "relight/cluster_lights.h"
 #include "relight/glossy_kernels.h"
@@ -298,15 +297,15 @@ RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> l
 }
 
 void Relighter::Impl::resum() {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, lights_.spread.size()),
-                      [&](const auto& words) {
-                          const std::size_t end = std::min(words.end() * 64, sums_.size());
-                          for (std::size_t cluster = words.begin() * 64; cluster < end; ++cluster)
-                              lights_.set(cluster, light_of(cluster));
-                      });
+    files::parallel_for(files::IndexRange<std::size_t>(0, lights_.spread.size()),
+                        [&](const auto& words) {
+                            const std::size_t end = std::min(words.end() * 64, sums_.size());
+                            for (std::size_t cluster = words.begin() * 64; cluster < end; ++cluster)
+                                lights_.set(cluster, light_of(cluster));
+                        });
     lights_.sum_prefix();
     const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
-    tbb::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
+    files::parallel_for(std::size_t{0}, transfer_.counts.num_tiles(), [&](std::size_t tile) {
         light_tile(scene, tile, lights_, light_);
         for (std::size_t block = transfer_.counts.tile_begin(tile);
              block < transfer_.counts.tile_begin(tile + 1); ++block) {
@@ -441,7 +440,7 @@ UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rec
                                        changed_);
     sort_unique(changed_);
     const std::size_t num_changed = changed_.size();
-    tbb::parallel_for(std::size_t{0}, num_changed, [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, num_changed, [&](std::size_t i) {
         const std::uint32_t cluster = changed_[i];
         sums_[cluster] = binning_->sum(environment_, transfer_.quadtree.leaves()[cluster]);
         powers_[cluster] = sums_[cluster].power();
@@ -490,7 +489,7 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
     };
     touched_.resize(num_tiles);
     dimmed_.assign(num_tiles, 0);
-    tbb::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+    files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
         touched_[tile] = update_tile(scene, tile, changes_, light_);
         for_blocks(tile, touched_[tile], [&](std::size_t block) {
             if (has_dimmed(light_[block]))
@@ -504,7 +503,7 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
         lights_.sum_prefix();
 
     std::atomic<std::size_t> num_blocks = 0;
-    tbb::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+    files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
         if (dimmed_[tile] != 0)
             light_tile(scene, tile, lights_, light_, dimmed_[tile]);
         if (sharp_changed || transfer_.glossy)
@@ -587,8 +586,8 @@ void Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
 
 std::vector<glm::vec3> Relighter::Impl::soft_radiance() const {
     std::vector<glm::vec3> radiance(radiance_.size());
-    tbb::parallel_for(std::size_t{0}, light_.size(),
-                      [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
+    files::parallel_for(std::size_t{0}, light_.size(),
+                        [&](std::size_t block) { write_radiance(block, false, radiance, {}); });
     for (std::size_t i = 0; i < bounced_.size(); ++i)
         radiance[i] += bounced_[i];
     return radiance;

@@ -6,13 +6,14 @@
 #include <cstring>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "relight/tile_words.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "files/parallel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::relight::HWY_NAMESPACE {
@@ -156,7 +157,7 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
     TileWords result;
     result.words.resize(counts.num_tiles() * num_words);
     std::vector<std::vector<std::uint64_t>> across_of_tiles(counts.num_tiles());
-    tbb::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
+    files::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
         const std::size_t begin = counts.tile_begin(tile);
         const std::size_t end = counts.tile_begin(tile + 1);
         std::vector<std::uint64_t>& all_across = across_of_tiles[tile];

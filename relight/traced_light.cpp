@@ -7,8 +7,8 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "relight/light_packets.h"
 
 namespace relumine::relight {
@@ -68,7 +68,7 @@ std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
 
     constexpr std::size_t BlocksPerGroup = prt::ReceiverGroup::MaxSize / prt::BlockSize;
     const std::size_t num_groups = (diffuse_.size() + BlocksPerGroup - 1) / BlocksPerGroup;
-    tbb::parallel_for(std::size_t{0}, num_groups, [&](std::size_t index) {
+    files::parallel_for(std::size_t{0}, num_groups, [&](std::size_t index) {
         const std::size_t first = index * prt::ReceiverGroup::MaxSize;
         const std::size_t size =
             std::min(prt::ReceiverGroup::MaxSize, transfer_.num_receivers() - first);

@@ -6,8 +6,8 @@
 #include <numeric>
 
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -17,7 +17,7 @@ TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::
       elements_(num_directions_ * num_receivers_) {
     const ShadowRays& rays = relighter.shadow_rays();
     const prt::Transfer& transfer = relighter.transfer();
-    tbb::parallel_for(
+    files::parallel_for(
         std::size_t{0}, (directions.size() + prt::PacketSize - 1) / prt::PacketSize,
         [&](std::size_t p) {
             const std::size_t begin = p * prt::PacketSize;
@@ -47,11 +47,11 @@ TransferMatrix::TransferMatrix(const Relighter& relighter, std::span<const glm::
 
 std::vector<float> TransferMatrix::products(std::span<const float> vector) const {
     std::vector<float> result(num_directions_);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, num_directions_, 64),
-                      [&](const auto& some) {
-                          for (std::size_t j = some.begin(); j < some.end(); ++j)
-                              result[j] = dot(column(j), vector);
-                      });
+    files::parallel_for(files::IndexRange<std::size_t>(0, num_directions_, 64),
+                        [&](const auto& some) {
+                            for (std::size_t j = some.begin(); j < some.end(); ++j)
+                                result[j] = dot(column(j), vector);
+                        });
     return result;
 }
 

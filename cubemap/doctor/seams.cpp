@@ -8,10 +8,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/doctor/bright_spot.h"
 #include "cubemap/image/image_layout.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -125,7 +125,7 @@ private:
         // Bands of rows are summed in parallel, and the bands in order.
         constexpr std::size_t BandHeight = 64;
         std::vector<std::vector<double>> bands((height_ + BandHeight - 1) / BandHeight);
-        tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
+        files::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
             std::vector<double>& sums = bands[band];
             sums.assign(width_, 0.0);
             const std::size_t end = std::min((band + 1) * BandHeight, height_);

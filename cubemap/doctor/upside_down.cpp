@@ -5,9 +5,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/luminance.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -17,7 +17,7 @@ double light_from_below(const CubeMap& map) {
         double all = 0.0, below = 0.0;
     };
     std::vector<Sums> rows(std::size_t{NumFaces} * resolution);
-    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t i) {
         const auto face = static_cast<Face>(i / resolution);
         const auto y = static_cast<std::uint32_t>(i % resolution);
         const glm::vec3* texels = &map.at(face, 0, y);

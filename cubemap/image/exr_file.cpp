@@ -20,14 +20,13 @@
 #include <ImfThreading.h>
 #include <ImfTileDescription.h>
 #include <fmt/format.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/image/exr_header.h"
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
 #include "files/joined.h"
 #include "files/output_file.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -228,7 +227,7 @@ private:
         const std::uint32_t band_height =
             header.hasTileDescription() ? std::max(256U, header.tileDescription().ySize) : 256U;
         const std::uint32_t num_bands = (window_.height + band_height - 1) / band_height;
-        tbb::parallel_for(0U, num_bands, [&](std::uint32_t band) {
+        files::parallel_for(0U, num_bands, [&](std::uint32_t band) {
             MemoryInput stream(bytes_);
             Imf::MultiPartInputFile file(stream, 0);
             Imf::InputPart part(file, part_);
@@ -390,8 +389,7 @@ int num_writers(const Picture& picture) {
     if (picture.pixels.size() <= Small)
         return 0;
     static const int num_threads = [] {
-        const auto allowed = static_cast<int>(
-            tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+        const auto allowed = static_cast<int>(files::num_threads());
         if (allowed > 1)
             Imf::setGlobalThreadCount(allowed);
         return allowed > 1 ? allowed : 0;

@@ -7,11 +7,10 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/resample/footprint.h"
 #include "cubemap/resample/projection.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -216,7 +215,7 @@ std::vector<PixelPlace> projected_places(const ImageShape& shape) {
     const double area = 1.0 / (static_cast<double>(shape.width) * shape.height);
     // Gauss-Legendre with three points in each direction is exact to 1e-9 of such a small pixel.
     constexpr std::uint32_t SmallPixels = 32;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, shape.height), [&](const auto& rows) {
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, shape.height), [&](const auto& rows) {
         ProjectionFootprints pieces(picture, shape.width, shape.height);
         for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
             for (std::uint32_t x = 0; x < shape.width; ++x) {

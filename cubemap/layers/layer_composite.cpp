@@ -6,10 +6,9 @@
 #include <variant>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range2d.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/layers/texel_range.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -172,21 +171,19 @@ void composite_rectangle(const CubeMap& base, std::span<const PreparedLayer> lay
     const auto end_tile = [](std::uint32_t texel) {
         return (texel + TileSize - 1) / TileSize;
     };
-    const tbb::blocked_range2d<std::uint32_t> tiles(rectangle.y0 / TileSize, end_tile(rectangle.y1),
-                                                    rectangle.x0 / TileSize,
-                                                    end_tile(rectangle.x1));
-    tbb::parallel_for(tiles, [&](const tbb::blocked_range2d<std::uint32_t>& some) {
-        for (std::uint32_t row = some.rows().begin(); row < some.rows().end(); ++row) {
-            for (std::uint32_t column = some.cols().begin(); column < some.cols().end(); ++column) {
-                const TexelRange tile(column * TileSize, row * TileSize, TileSize, base.resolution);
-                const TexelRange part = tile.within(rectangle);
-                for (std::uint32_t y = part.y0; y < part.y1 && &base != &target; ++y)
-                    std::copy_n(&base.at(rectangle.face, part.x0, y), part.x1 - part.x0,
-                                &target.at(rectangle.face, part.x0, y));
-                for (const PreparedLayer& layer : layers)
-                    apply(layer, grid, tile, rectangle, target);
-            }
-        }
+    const std::uint32_t first_row = rectangle.y0 / TileSize, first_column = rectangle.x0 / TileSize;
+    const std::uint32_t num_rows = end_tile(rectangle.y1) - first_row,
+                        num_columns = end_tile(rectangle.x1) - first_column;
+    files::parallel_for(std::uint32_t{0}, num_rows * num_columns, [&](std::uint32_t index) {
+        const std::uint32_t row = first_row + index / num_columns,
+                            column = first_column + index % num_columns;
+        const TexelRange tile(column * TileSize, row * TileSize, TileSize, base.resolution);
+        const TexelRange part = tile.within(rectangle);
+        for (std::uint32_t y = part.y0; y < part.y1 && &base != &target; ++y)
+            std::copy_n(&base.at(rectangle.face, part.x0, y), part.x1 - part.x0,
+                        &target.at(rectangle.face, part.x0, y));
+        for (const PreparedLayer& layer : layers)
+            apply(layer, grid, tile, rectangle, target);
     });
 }
 

@@ -12,13 +12,13 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 #include <glm/matrix.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/resample/pixel_links.h"
 #include "cubemap/resample/pixel_points.h"
 #include "cubemap/resample/resample.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resize_lat_long.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -177,7 +177,7 @@ constexpr std::size_t ChunkSize = 1 << 14;
 /// Calls `work(chunk, begin, end)` for chunks of pixels, in parallel.
 template<typename Work>
 void for_each_chunk(std::size_t size, const Work& work) {
-    tbb::parallel_for(std::size_t{0}, (size + ChunkSize - 1) / ChunkSize, [&](std::size_t chunk) {
+    files::parallel_for(std::size_t{0}, (size + ChunkSize - 1) / ChunkSize, [&](std::size_t chunk) {
         work(chunk, chunk * ChunkSize, std::min((chunk + 1) * ChunkSize, size));
     });
 }

@@ -4,10 +4,9 @@
 #include <span>
 
 #include <glm/matrix.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/resample/pixel_shares.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -121,7 +120,7 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
 
 std::vector<glm::vec3> PixelLinks::to_target(const std::vector<glm::vec3>& pixels) const {
     std::vector<glm::vec3> result(starts_.size() - 1);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
+    files::parallel_for(files::IndexRange<std::size_t>(0, result.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             glm::dvec3 sum(0.0);
             double weights = 0.0;
@@ -137,7 +136,7 @@ std::vector<glm::vec3> PixelLinks::to_target(const std::vector<glm::vec3>& pixel
 
 std::vector<glm::vec3> PixelLinks::to_source(const std::vector<glm::vec3>& pixels) const {
     std::vector<glm::vec3> result(num_source_pixels_, glm::vec3(0.0f));
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, result.size()), [&](const auto& range) {
+    files::parallel_for(files::IndexRange<std::size_t>(0, result.size()), [&](const auto& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
             glm::dvec3 sum(0.0);
             for (std::size_t k = source_starts_[i]; k < source_starts_[i + 1]; ++k)

@@ -11,11 +11,10 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/projection.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -50,7 +49,7 @@ void for_each_pixel_points(const ImageShape& shape, const Visit& visit) {
         if (count > 0)
             visit(pixel, std::span<const glm::dvec3>(directions).first(count));
     };
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, height), [&](const auto& range) {
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, height), [&](const auto& range) {
         for (std::uint32_t y = range.begin(); y != range.end(); ++y) {
             if (faces) {
                 for (const Face face : AllFaces) {

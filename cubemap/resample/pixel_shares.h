@@ -10,8 +10,6 @@
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/image_layout.h"
@@ -20,6 +18,7 @@
 #include "cubemap/resample/pixel_symmetry.h"
 #include "cubemap/resample/projection.h"
 #include "cubemap/spherical_overlap.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap::detail {
 
@@ -187,7 +186,7 @@ void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn,
     std::vector<std::vector<PixelShare>> shares(BandHeight);
     for (std::uint32_t band = 0; band < num_rows; band += BandHeight) {
         const std::uint32_t end = std::min(band + BandHeight, num_rows);
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(band, end), [&](const auto& rows) {
+        files::parallel_for(files::IndexRange<std::uint32_t>(band, end), [&](const auto& rows) {
             RowsOfShares finder(shape, turn, resolution, symmetries);
             for (std::uint32_t y = rows.begin(); y != rows.end(); ++y)
                 finder.find(y, shares[y - band]);
@@ -204,25 +203,25 @@ inline void fill_from_shares(const CubeMap& map, EnvironmentImage& image) {
     const std::vector<PixelSymmetry> symmetries =
         pixel_symmetries(shape, glm::dmat3(1.0), map.resolution);
     std::fill(image.pixels.begin(), image.pixels.end(), glm::vec3(0.0f));
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, PixelFootprints(shape).num_rows()),
-                      [&](const auto& rows) {
-                          RowsOfShares finder(shape, glm::dmat3(1.0), map.resolution, symmetries);
-                          std::vector<PixelShare> shares;
-                          for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
-                              finder.find(y, shares);
-                              for (std::size_t i = 0; i < shares.size();) {
-                                  const std::uint32_t pixel = shares[i].pixel;
-                                  glm::dvec3 sum(0.0);
-                                  double weights = 0.0;
-                                  for (; i < shares.size() && shares[i].pixel == pixel; ++i) {
-                                      sum += glm::dvec3(map.texels[shares[i].texel]) *
-                                             shares[i].solid_angle;
-                                      weights += shares[i].solid_angle;
-                                  }
-                                  image.pixels[pixel] = sum / weights;
-                              }
-                          }
-                      });
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, PixelFootprints(shape).num_rows()),
+                        [&](const auto& rows) {
+                            RowsOfShares finder(shape, glm::dmat3(1.0), map.resolution, symmetries);
+                            std::vector<PixelShare> shares;
+                            for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
+                                finder.find(y, shares);
+                                for (std::size_t i = 0; i < shares.size();) {
+                                    const std::uint32_t pixel = shares[i].pixel;
+                                    glm::dvec3 sum(0.0);
+                                    double weights = 0.0;
+                                    for (; i < shares.size() && shares[i].pixel == pixel; ++i) {
+                                        sum += glm::dvec3(map.texels[shares[i].texel]) *
+                                               shares[i].solid_angle;
+                                        weights += shares[i].solid_angle;
+                                    }
+                                    image.pixels[pixel] = sum / weights;
+                                }
+                            }
+                        });
 }
 
 } // namespace relumine::cubemap::detail

@@ -5,13 +5,12 @@
 #include <stdexcept>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/pixel_shares.h"
 #include "cubemap/resample/resample_lat_long.h"
 #include "cubemap/resample/resample_projection.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -62,7 +61,7 @@ void resample_faces(const std::vector<double>& source_borders,
                     const Write& write) {
     const auto found = overlaps(source_borders, destination_borders);
     const auto resolution = static_cast<std::uint32_t>(found.size());
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, resolution), [&](const auto& rows) {
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, resolution), [&](const auto& rows) {
         for (const Face face : AllFaces) {
             for (std::uint32_t y = rows.begin(); y != rows.end(); ++y) {
                 for (std::uint32_t x = 0; x < resolution; ++x) {

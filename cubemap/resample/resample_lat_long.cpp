@@ -32,11 +32,10 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/grid_cut.h"
 #include "cubemap/image/image_layout.h"
+#include "files/parallel.h"
 
 namespace relumine::cubemap::detail {
 
@@ -484,8 +483,8 @@ void fill_side(const EnvironmentImage& image, Face face, Sampling sampling, Cube
     const std::vector<double> heights = row_heights(image, face);
     const std::vector<double> borders = cell_borders(resolution, sampling);
     Symmetry symmetry(image, map);
-    tbb::parallel_for(
-        tbb::blocked_range<std::uint32_t>(0, (resolution + 1) / 2), [&](const auto& rows) {
+    files::parallel_for(
+        files::IndexRange<std::uint32_t>(0, (resolution + 1) / 2), [&](const auto& rows) {
             LevelLine top, bottom;
             Shares shares;
             bottom.make(strips, 2.0 * borders[rows.begin()] - 1.0, heights);
@@ -574,7 +573,7 @@ void fill_poles(const EnvironmentImage& image, Sampling sampling, CubeMap& map) 
     Symmetry symmetry(image, map);
     const bool has_quarters = symmetry.num_turns() == 4;
     const std::uint32_t num_rows = has_quarters ? (resolution + 1) / 2 : resolution;
-    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, num_rows), [&](const auto& row_range) {
+    files::parallel_for(files::IndexRange<std::uint32_t>(0, num_rows), [&](const auto& row_range) {
         GridLines columns(column_borders, true), rows(heights, false);
         GridCutter cutter;
         Coverage coverage;

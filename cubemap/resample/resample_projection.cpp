@@ -3,9 +3,6 @@
 #include <span>
 #include <vector>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include "cubemap/resample/footprint.h"
 #include "cubemap/resample/pixel_shares.h"
 #include "cubemap/resample/projection.h"

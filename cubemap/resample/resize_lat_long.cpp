@@ -9,7 +9,8 @@
 #include <vector>
 
 #include <glm/vec3.hpp>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::cubemap {
 
@@ -100,7 +101,7 @@ EnvironmentImage resize_lat_long(const EnvironmentImage& image, const ImageShape
 
     // First the columns, on the source's rows.
     std::vector<glm::vec3> wide(static_cast<std::size_t>(target.width) * image.height);
-    tbb::parallel_for(std::uint32_t{0}, image.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, image.height, [&](std::uint32_t y) {
         const glm::vec3* from = image.pixels.data() + std::size_t{y} * image.width;
         glm::vec3* to = wide.data() + std::size_t{y} * target.width;
         for (std::uint32_t x = 0; x < target.width; ++x) {
@@ -116,7 +117,7 @@ EnvironmentImage resize_lat_long(const EnvironmentImage& image, const ImageShape
     result.layout = target.layout;
     result.sampling = target.sampling;
     result.pixels.resize(static_cast<std::size_t>(target.width) * target.height);
-    tbb::parallel_for(std::uint32_t{0}, target.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, target.height, [&](std::uint32_t y) {
         std::vector<glm::dvec3> sums(target.width, glm::dvec3(0.0));
         for (const auto& [source, weight] : rows.of(y)) {
             const glm::vec3* from = wide.data() + std::size_t{source} * target.width;

@@ -6,7 +6,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -100,10 +101,10 @@ float spectral_radius(const BounceMatrix& matrix) {
     double norm = std::sqrt(static_cast<double>(n - first));
     double radius = 0.0;
     for (int iteration = 0; iteration < NumPowerIterations; ++iteration) {
-        tbb::parallel_for(first, n, [&](std::size_t place) {
+        files::parallel_for(first, n, [&](std::size_t place) {
             gathered[place] = static_cast<float>(sum_of(matrix.emitters[place], x));
         });
-        tbb::parallel_for(first, n, [&](std::size_t place) {
+        files::parallel_for(first, n, [&](std::size_t place) {
             product[place] = static_cast<float>(static_cast<double>(matrix.weights[place]) *
                                                 sum_of(matrix.averaged[place], gathered));
         });

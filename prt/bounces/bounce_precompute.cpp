@@ -11,9 +11,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
 #include "files/packed_parts.h"
+#include "files/parallel.h"
 #include "prt/bounces/bounce_sampler.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/precompute.h"
@@ -94,18 +94,19 @@ private:
         };
         while (num_done < most_blocks_) {
             const std::size_t end = std::min(num_done + blocks_per_step, most_blocks_);
-            tbb::parallel_for(std::min(num_done, blocks_.size()), std::min(end, blocks_.size()),
-                              [&](std::size_t block) {
-                                  if (options_.stop.stop_requested())
-                                      return;
-                                  work(block);
-                                  const std::scoped_lock lock(mutex);
-                                  ++num_reported;
-                                  if (options_.on_progress && num_reported % 64 == 0)
-                                      options_.on_progress(progress_before +
-                                                           0.5 * static_cast<double>(num_reported) /
-                                                               static_cast<double>(blocks_.size()));
-                              });
+            files::parallel_for(std::min(num_done, blocks_.size()), std::min(end, blocks_.size()),
+                                [&](std::size_t block) {
+                                    if (options_.stop.stop_requested())
+                                        return;
+                                    work(block);
+                                    const std::scoped_lock lock(mutex);
+                                    ++num_reported;
+                                    if (options_.on_progress && num_reported % 64 == 0)
+                                        options_.on_progress(
+                                            progress_before +
+                                            0.5 * static_cast<double>(num_reported) /
+                                                static_cast<double>(blocks_.size()));
+                                });
             const bool is_stopped = any_is_stopped();
             if (is_stopped && options_.checkpoint != nullptr && num_saved != num_done &&
                 options_.checkpoint->is_worthwhile())
@@ -203,7 +204,7 @@ private:
     /// their noise would stand as a line beside even walls, the more the less sky they see.
     void choose_factors(const PlaceLists& averaged, std::vector<std::uint32_t>& factors) {
         const double allowed = static_cast<double>(options_.tolerance * options_.tolerance);
-        tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
+        files::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t block) {
             const std::size_t begin = begin_of(block), end = begin_of(block + 1);
             double error = 0.0;
             for (std::size_t i = begin; i < end; ++i)

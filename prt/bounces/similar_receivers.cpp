@@ -6,7 +6,8 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -90,7 +91,7 @@ PlaceLists similar_receivers(std::span<const glm::vec3> positions,
                              std::span<const std::uint32_t> wanted) {
     const PointTree tree(positions);
     std::vector<std::vector<std::uint32_t>> lists(wanted.size());
-    tbb::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, wanted.size(), [&](std::size_t i) {
         const std::size_t place = wanted[i];
         // The nearest so far, the farthest of them first; equal distances by place.
         std::vector<std::pair<float, std::uint32_t>> nearest;

@@ -11,9 +11,8 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
+#include "files/parallel.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/clusters/lattice.h"
 #include "prt/free_memory.h"
@@ -213,8 +212,7 @@ std::uint64_t Clustering::patches_per_step() const {
     const std::size_t num_receivers =
         std::max<std::size_t>(order_.size() / reduction_.part().count, 1);
     return (reduction_.has_others() ? SharedSamplesPerThreadAndStep : SamplesPerThreadAndStep) *
-           static_cast<std::uint64_t>(tbb::this_task_arena::max_concurrency()) /
-           (num_receivers * DirectionPatch::Size);
+           files::num_threads() / (num_receivers * DirectionPatch::Size);
 }
 
 /// Sets the part of the progress that tracing the batch takes: time, not cells.
@@ -264,7 +262,7 @@ std::vector<std::uint8_t> Clustering::find_clusters(std::span<const Cell> cells)
         return is_cluster;
     }
     std::vector<std::int64_t> sums(cells.size() * SamplesPerCell);
-    tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
         progress_.poll();
         if (is_single_texel(cells[i]))
             return; // nothing to compare
@@ -303,7 +301,7 @@ void Clustering::decide_batch() {
             std::span<const Cell>(batch_).first(std::min(max_slice, batch_.size()));
         const std::vector<std::uint8_t> is_cluster = find_clusters(slice);
         std::vector<LeafColumn> columns(slice.size());
-        tbb::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
+        files::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
             progress_.poll();
             if (is_cluster[i] != 0)
                 columns[i] = column(slice[i]);

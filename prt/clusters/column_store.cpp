@@ -4,8 +4,7 @@
 #include <bit>
 #include <cstring>
 
-#include <tbb/parallel_for.h>
-
+#include "files/parallel.h"
 #include "prt/free_memory.h"
 
 namespace relumine::prt {
@@ -129,7 +128,7 @@ void ColumnStore::join(const Run& run, std::span<const std::uint32_t> order,
 
     // Transposes the bits. Every task owns a tile.
     static_assert(VisibleCounts::TileBlocks == 64);
-    tbb::parallel_for(std::size_t{0}, run.num_words(), [&](std::size_t tile) {
+    files::parallel_for(std::size_t{0}, run.num_words(), [&](std::size_t tile) {
         const std::size_t begin = run.first_block + tile * VisibleCounts::TileBlocks;
         for (std::size_t leaf = 0; leaf < order.size(); ++leaf) {
             const std::byte* const entry = run.entries[order[leaf]];
@@ -149,7 +148,7 @@ void ColumnStore::join(const Run& run, std::span<const std::uint32_t> order,
 
     // Scatters each column's counts to their blocks. A (leaf, block) pair has one place, so leaves
     // can run in parallel.
-    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t leaf) {
+    files::parallel_for(std::size_t{0}, order.size(), [&](std::size_t leaf) {
         const std::byte* const entry = run.entries[order[leaf]];
         const std::byte* source = entry + 2 * run.num_words() * sizeof(std::uint64_t);
         for (std::size_t tile = 0; tile < run.num_words(); ++tile)

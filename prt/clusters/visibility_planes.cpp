@@ -9,9 +9,8 @@
 #include <utility>
 
 #include <glm/common.hpp>
-#include <tbb/blocked_range2d.h>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "prt/clusters/horizon.h"
 #include "prt/visibility/bit_matrix.h"
 
@@ -134,14 +133,9 @@ void VisibilityPlanes::trace_step(std::span<TracedPatch> patches,
             words.resize(num_words);
             plane = words.data();
         });
-        tbb::parallel_for(tbb::blocked_range2d<std::size_t>(0, num_rows, 1, 0, num_columns, 1),
-                          [&](const tbb::blocked_range2d<std::size_t>& tasks) {
-                              for (std::size_t row = tasks.rows().begin(); row < tasks.rows().end();
-                                   ++row)
-                                  for (std::size_t column = tasks.cols().begin();
-                                       column < tasks.cols().end(); ++column)
-                                      trace_task(row, column);
-                          });
+        files::parallel_for(std::size_t{0}, num_rows * num_columns, [&](std::size_t task) {
+            trace_task(task / num_columns, task % num_columns);
+        });
     } catch (...) {
         for_each_direction([&](LatticePoint point, std::uint64_t*) { planes_.erase(point); });
         throw;

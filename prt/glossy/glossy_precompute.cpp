@@ -16,10 +16,9 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include "files/packed_parts.h"
+#include "files/parallel.h"
 #include "prt/clusters/cell_index.h"
 #include "prt/free_memory.h"
 #include "prt/glossy/brdf.h"
@@ -285,7 +284,7 @@ void GlossyPrecompute::work(std::size_t blocks_per_step) {
         std::vector<EntriesOfBlock> step(std::min(blocks_per_step, num_blocks - begin));
         const std::uint64_t rays_before = num_rays_;
         try {
-            tbb::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
+            files::parallel_for(std::size_t{0}, step.size(), [&](std::size_t i) {
                 // One process must not leave the others waiting.
                 if (!reduction_.has_others() && options_.stop.stop_requested())
                     throw Cancelled();
@@ -350,7 +349,7 @@ std::uint64_t GlossyPrecompute::estimate() {
     const std::size_t num_blocks = transfer_.counts.num_blocks();
     const std::size_t num_trials = std::min(num_blocks, TrialBlocks);
     std::atomic<std::uint64_t> count = 0;
-    tbb::parallel_for(std::size_t{0}, num_trials, [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, num_trials, [&](std::size_t i) {
         if (options_.stop.stop_requested())
             throw Cancelled();
         count += num_entries(refine((2 * i + 1) * num_blocks / (2 * num_trials)));
@@ -403,8 +402,7 @@ GlossyTransfer precompute_glossy(const Receivers& receivers, const Blockers& blo
     check(receivers, transfer, options);
     const auto start = std::chrono::steady_clock::now();
     GlossyStatistics local;
-    const std::size_t blocks_per_step =
-        BlocksPerThreadAndStep * static_cast<std::size_t>(tbb::this_task_arena::max_concurrency());
+    const std::size_t blocks_per_step = BlocksPerThreadAndStep * files::num_threads();
     GlossyTransfer glossy =
         GlossyPrecompute(receivers, blockers, transfer, options).run(blocks_per_step, local);
     local.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

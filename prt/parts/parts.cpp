@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/precompute_context.h"
 #include "prt/receivers/receiver_order.h"
@@ -155,7 +155,7 @@ std::size_t num_sampled_receivers(std::size_t num_receivers) {
 std::vector<std::uint32_t> sampled_receivers(const Transfer& plan) {
     const Sample blocks(plan.num_receivers());
     std::vector<std::uint32_t> result(plan.num_receivers());
-    tbb::parallel_for(std::size_t{0}, result.size(), [&](std::size_t place) {
+    files::parallel_for(std::size_t{0}, result.size(), [&](std::size_t place) {
         const std::size_t block = blocks.block_for(place);
         const std::size_t begin = blocks.begin(block);
         const auto alike = [&](std::size_t sampled) {

@@ -8,7 +8,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -50,7 +51,7 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
                                                 MaxLayoutPlaces, result.layout.num_samples()));
 
     std::vector<std::vector<Seen>> rows(view.height);
-    tbb::parallel_for(std::uint32_t{0}, view.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, view.height, [&](std::uint32_t y) {
         auto sample =
             static_cast<std::uint32_t>(std::size_t{y} * view.width * picture.samples_per_pixel());
         for (std::uint32_t x = 0; x < view.width; ++x)
@@ -71,7 +72,7 @@ PixelReceivers pixel_receivers(const mesh::TriangleMesh& mesh, const RayScene& r
     receivers.to_eye.resize(first.back());
     receivers.points.resize(first.back());
     result.layout.samples.resize(first.back());
-    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
+    files::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t y) {
         std::size_t receiver = first[y];
         for (const Seen& seen : rows[y]) {
             const glm::vec3 position = value_at(mesh, mesh.positions, seen.point);

@@ -8,8 +8,8 @@
 #include <span>
 
 #include <glm/common.hpp>
-#include <tbb/parallel_invoke.h>
 
+#include "files/parallel.h"
 #include "prt/clusters/visible_counts.h"
 #include "prt/visibility/blockers.h"
 
@@ -79,17 +79,12 @@ void sort_into_groups(std::span<Place> places) {
         }
     }
     halve(places, middle, best_axis);
-    const auto low = [&] {
-        sort_into_groups(places.first(middle));
-    };
-    const auto high = [&] {
-        sort_into_groups(places.subspan(middle));
-    };
+    const std::array halves = {places.first(middle), places.subspan(middle)};
     if (places.size() > MinTask) {
-        tbb::parallel_invoke(low, high);
+        files::parallel_for(0, 2, [&](int half) { sort_into_groups(halves[half]); });
     } else {
-        low();
-        high();
+        sort_into_groups(halves[0]);
+        sort_into_groups(halves[1]);
     }
 }
 

@@ -9,7 +9,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -236,7 +237,7 @@ TexelReceivers texel_receivers(const mesh::TriangleMesh& mesh, const AtlasSize& 
     Receivers& receivers = result.receivers;
     receivers.positions.resize(receivers.points.size());
     receivers.normals.resize(receivers.points.size());
-    tbb::parallel_for(std::size_t{0}, receivers.points.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, receivers.points.size(), [&](std::size_t i) {
         receivers.positions[i] = smooth_position(mesh, receivers.points[i]);
         receivers.normals[i] = shading_normal(mesh, receivers.points[i]);
     });

@@ -7,12 +7,12 @@
 #include <numeric>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/cube_map.h"
 #include "cubemap/face.h"
 #include "cubemap/luminance.h"
 #include "cubemap/resample/resample.h"
+#include "files/parallel.h"
 #include "prt/clusters/cluster_kernels.h"
 #include "prt/clusters/horizon.h"
 #include "prt/receivers/receiver_order.h"
@@ -137,7 +137,7 @@ CoarseDirections::trace(const Receivers& receivers, const Blockers& blockers, fl
     std::vector<Bits> result(order.size());
     const std::size_t num_groups =
         (order.size() + ReceiverGroup::MaxSize - 1) / ReceiverGroup::MaxSize;
-    tbb::parallel_for(std::size_t{0}, num_groups, [&](std::size_t group) {
+    files::parallel_for(std::size_t{0}, num_groups, [&](std::size_t group) {
         progress.poll();
         const std::size_t first = group * ReceiverGroup::MaxSize;
         const std::size_t size = std::min(order.size() - first, ReceiverGroup::MaxSize);

@@ -8,9 +8,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "mesh/half_edge/curved_surface.h"
 #include "mesh/half_edge/split_mesh.h"
 #include "prt/refinement/coarse_transfer.h"
@@ -203,7 +202,7 @@ private:
             append_pairs(edge, pairs);
         }
         std::vector<float> bounds(pairs.size());
-        tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+        files::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
             const CoarseDirections::Point high = vertex(pairs[i].ends.high);
             bounds[i] = directions_.difference(vertex(pairs[i].ends.low), {&high, 1}, 1.0f,
                                                CoarseDirections::Signs::Dropped) /
@@ -244,7 +243,7 @@ private:
             }
             const std::vector<Bits> bits = trace(receivers, ends);
             std::vector<float> errors(pairs.size());
-            tbb::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
+            files::parallel_for(std::size_t{0}, pairs.size(), [&](std::size_t i) {
                 const std::array<CoarseDirections::Point, 2> both = {vertex(pairs[i].ends.low),
                                                                      vertex(pairs[i].ends.high)};
                 errors[i] =

@@ -6,8 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include <tbb/parallel_for.h>
-
+#include "files/parallel.h"
 #include "prt/clusters/cluster_kernels.h"
 #include "prt/clusters/horizon.h"
 #include "prt/clusters/lattice.h"
@@ -53,7 +52,7 @@ void count_above_horizon(VisibleCounts& counts, const Quadtree& quadtree,
         std::transform(points.begin(), points.end(), directions.emplace_back().begin(), direction);
     }
     std::vector<std::vector<std::uint8_t>> of_tiles(counts.num_tiles());
-    tbb::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
+    files::parallel_for(std::size_t{0}, counts.num_tiles(), [&](std::size_t tile) {
         const std::size_t first = counts.tile_begin(tile);
         const std::size_t width = counts.tile_begin(tile + 1) - first;
         for (std::size_t i = 0; i < width * counts.words_per_block(); ++i) {

@@ -12,12 +12,12 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 #include <xxhash.h>
 #include <zstd.h>
 
 #include "files/compression.h"
 #include "files/output_file.h"
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -85,8 +85,8 @@ public:
             return std::find(left_out.begin(), left_out.end(), name(entry)) != left_out.end();
         });
         std::vector<std::vector<std::byte>> contents(table.size());
-        tbb::parallel_for(std::size_t{0}, table.size(),
-                          [&](std::size_t i) { contents[i] = content(table[i]); });
+        files::parallel_for(std::size_t{0}, table.size(),
+                            [&](std::size_t i) { contents[i] = content(table[i]); });
         Sections result;
         for (std::size_t i = 0; i < table.size(); ++i)
             result.emplace(name(table[i]), std::move(contents[i]));
@@ -211,7 +211,7 @@ private:
         if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
             return content_piecewise(entry, Cheap);
         std::vector<std::byte> result(entry.size);
-        tbb::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
+        files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
             const Frame& frame = frames[i];
             const std::size_t size = ZSTD_decompress(result.data() + frame.begin, frame.size,
                                                      frame.stored.data(), frame.stored.size());
@@ -336,7 +336,7 @@ private:
     }
 
     void write_batch() {
-        tbb::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t i) {
+        files::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t i) {
             batch_[i].stored = files::compressed(batch_[i].content, CompressionLevel);
         });
         for (const Frame& frame : batch_) {

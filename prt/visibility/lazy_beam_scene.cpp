@@ -1,6 +1,6 @@
 #include "prt/visibility/lazy_beam_scene.h"
 
-#include <tbb/task_arena.h>
+#include "files/parallel.h"
 
 namespace relumine::prt {
 
@@ -40,8 +40,7 @@ void LazyBeamScene::prepare(std::uint64_t num_rays) const {
     if (beams_ || num_rays_ < RaysPerTriangle * mesh_.num_triangles())
         return;
     // Isolated: a thread that waits inside must not take up work that asks for this lock.
-    tbb::this_task_arena::isolate(
-        [&] { beams_ = std::make_unique<const BeamScene>(mesh_, exact_); });
+    files::run_isolated([&] { beams_ = std::make_unique<const BeamScene>(mesh_, exact_); });
     ready_ = beams_.get();
 }
 

@@ -1,12 +1,12 @@
 // relumine._core, the compiled part of the Python package. Its users are the Python sources beside
 // it, which check arguments and say what everything means.
-#include <memory>
+#include <optional>
 
 #include <pybind11/pybind11.h>
-#include <tbb/global_control.h>
 #include <tbb/info.h>
 
 #include "arrays.h"
+#include "files/parallel.h"
 #include "relumine/relumine.h"
 #include "run.h"
 #include "scene.h"
@@ -17,11 +17,10 @@ namespace {
 
 /// 0: all.
 void set_threads(unsigned count) {
-    static std::unique_ptr<tbb::global_control> control;
+    static std::optional<files::ThreadLimit> control;
     control.reset();
     if (count != 0)
-        control = std::make_unique<tbb::global_control>(
-            tbb::global_control::max_allowed_parallelism, count);
+        control.emplace(count);
 }
 
 } // namespace

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "relight/bounces/bounce_kernel.h"
 #include "relight/bounces/coarse_bounces.h"
 
@@ -221,11 +221,11 @@ private:
     /// Tasks begin at whole groups.
     template<typename Function>
     static void for_rows(std::size_t first, std::size_t last, const Function& function) {
-        tbb::parallel_for(std::size_t{0}, (last - first + RowsPerTask - 1) / RowsPerTask,
-                          [&](std::size_t task) {
-                              const std::size_t begin = first + task * RowsPerTask;
-                              function(begin, std::min(last, begin + RowsPerTask));
-                          });
+        files::parallel_for(std::size_t{0}, (last - first + RowsPerTask - 1) / RowsPerTask,
+                            [&](std::size_t task) {
+                                const std::size_t begin = first + task * RowsPerTask;
+                                function(begin, std::min(last, begin + RowsPerTask));
+                            });
     }
 
     /// Calls function(row, group) for the rows begin .. end - 1.

@@ -4,10 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-
 #include "files/packed_parts.h"
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -69,19 +67,22 @@ CoarseBounces::Rows CoarseBounces::rows_of_groups(std::size_t num_rows, std::siz
                                                   const AddRow& add_row) {
     const std::size_t num_groups = (num_rows + group_size - 1) / group_size;
     Rows rows(num_groups);
-    tbb::enumerable_thread_specific<RowSums> scratch(num_groups);
-    tbb::parallel_for(std::size_t{0}, num_groups, [&](std::size_t group) {
-        if (!has_group(group))
-            return;
-        RowSums& sums = scratch.local();
-        const std::size_t begin = group * group_size;
-        const std::size_t end = std::min(begin + group_size, num_rows);
-        for (std::size_t row = begin; row < end; ++row)
-            add_row(row, sums);
-        for (const std::uint32_t emitter : sums.groups())
-            rows[group].push_back(
-                {.group = emitter, .weight = sums.of(emitter) / static_cast<float>(end - begin)});
-        sums.clear();
+    const files::IndexRange<std::size_t> groups(0, num_groups, 64);
+    files::parallel_for(groups, [&](const auto& some) {
+        RowSums sums(num_groups);
+        for (std::size_t group = some.begin(); group != some.end(); ++group) {
+            if (!has_group(group))
+                continue;
+            const std::size_t begin = group * group_size;
+            const std::size_t end = std::min(begin + group_size, num_rows);
+            for (std::size_t row = begin; row < end; ++row)
+                add_row(row, sums);
+            for (const std::uint32_t emitter : sums.groups())
+                rows[group].push_back(
+                    {.group = emitter,
+                     .weight = sums.of(emitter) / static_cast<float>(end - begin)});
+            sums.clear();
+        }
     });
     return rows;
 }
@@ -204,7 +205,7 @@ void CoarseBounces::Level::multiply() {
         for (std::size_t c = 0; c < 4; ++c)
             sent[i].rgb[c] = given[i].rgb[c] + albedo[i].rgb[c] * sum[i].rgb[c];
     constexpr std::size_t GroupsPerTask = 64;
-    tbb::parallel_for(
+    files::parallel_for(
         std::size_t{0}, (num_groups() + GroupsPerTask - 1) / GroupsPerTask, [&](std::size_t task) {
             const std::size_t end = std::min(num_groups(), (task + 1) * GroupsPerTask);
             for (std::size_t group = task * GroupsPerTask; group < end; ++group) {

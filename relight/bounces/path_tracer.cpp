@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/luminance.h"
 #include "cubemap/split_mix64.h"
+#include "files/parallel.h"
 #include "prt/precompute.h"
 #include "prt/receivers/mesh_point.h"
 
@@ -204,7 +204,7 @@ trace_bounces(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
     std::vector<TracedBounces> result(receiver_indices.size());
     std::size_t num_done = 0;
     std::mutex progress;
-    tbb::parallel_for(std::size_t{0}, receiver_indices.size(), [&](std::size_t i) {
+    files::parallel_for(std::size_t{0}, receiver_indices.size(), [&](std::size_t i) {
         const std::uint32_t index = receiver_indices[i];
         const glm::vec3& normal = receivers.normals[index];
         if (options.stop.stop_requested() || normal == glm::vec3(0.0f))

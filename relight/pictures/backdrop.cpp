@@ -11,10 +11,10 @@
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/resample/projection.h"
 #include "cubemap/resample/resample.h"
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -120,7 +120,7 @@ cubemap::CubeMap blurred(const cubemap::CubeMap& map, double degrees) {
         source = halved(source);
     const std::vector<glm::dvec3> spread = gaussian_spread(sigma);
     cubemap::CubeMap result(resolution);
-    tbb::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {
+    files::parallel_for(std::uint32_t{0}, 6 * resolution, [&](std::uint32_t row) {
         const auto face = static_cast<cubemap::Face>(row / resolution);
         const std::uint32_t y = row % resolution;
         for (std::uint32_t x = 0; x < resolution; ++x) {

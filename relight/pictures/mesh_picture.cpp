@@ -7,8 +7,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/framing.h"
@@ -56,7 +56,7 @@ private:
         for (const std::uint32_t i : diagnosis.wrongly_wound)
             colors[i] = Orange;
         const prt::PictureRays rays(camera_, MeshPictureWidth, MeshPictureHeight, SamplesPerAxis);
-        tbb::parallel_for(std::uint32_t{0}, MeshPictureHeight, [&](std::uint32_t y) {
+        files::parallel_for(std::uint32_t{0}, MeshPictureHeight, [&](std::uint32_t y) {
             for (std::uint32_t x = 0; x < MeshPictureWidth; ++x) {
                 glm::vec3 sum(0.0f);
                 for (std::uint32_t i = 0; i < rays.samples_per_pixel(); ++i) {

@@ -7,11 +7,10 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/image/image_file.h"
 #include "files/output_file.h"
+#include "files/parallel.h"
 #include "relight/pictures/png_file.h"
 
 namespace relumine::relight {
@@ -27,8 +26,8 @@ std::uint8_t srgb_byte(float linear) {
 /// Exposes the picture and puts its colours through a tone curve.
 Picture curved(const Picture& picture, float scale, ToneCurve tone) {
     Picture result = picture;
-    tbb::parallel_for(
-        tbb::blocked_range<std::size_t>(0, result.pixels.size(), 4096), [&](const auto& pixels) {
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, result.pixels.size(), 4096), [&](const auto& pixels) {
             for (std::size_t i = pixels.begin(); i < pixels.end(); ++i) {
                 // The curve is for the colour itself, not for its covered part.
                 const float alpha = result.alpha.empty() ? 1.0f : result.alpha[i];
@@ -42,7 +41,7 @@ Picture curved(const Picture& picture, float scale, ToneCurve tone) {
 std::vector<std::byte> png_of(const Picture& picture, float scale) {
     const std::size_t num_channels = picture.alpha.empty() ? 3 : 4;
     std::vector<std::uint8_t> bytes(picture.pixels.size() * num_channels);
-    tbb::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {
         for (std::size_t i = std::size_t{y} * picture.width;
              i < (std::size_t{y} + 1) * picture.width; ++i) {
             // The colours of PNG are not multiplied by alpha.

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/receivers/mesh_point.h"
 #include "relight/light_packets.h"
@@ -47,7 +47,7 @@ PictureView::PictureView(const mesh::TriangleMesh& mesh, const prt::RayScene& ra
         return;
     samples_.resize(num_samples);
     const std::size_t per_row = std::size_t{options.width} * grid_.samples_per_pixel();
-    tbb::parallel_for(std::uint32_t{0}, options.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, options.height, [&](std::uint32_t y) {
         if (!options_.stop.stop_requested())
             trace(y, 0, options_.width, std::span(samples_).subspan(y * per_row, per_row));
     });
@@ -335,7 +335,7 @@ Picture PictureView::drawn(const MeshLight& light, const Backdrop* backdrop) con
         picture.alpha.resize(picture.pixels.size());
     const std::uint32_t num_columns = (options_.width + TileSize - 1) / TileSize;
     const std::uint32_t num_rows = (options_.height + TileSize - 1) / TileSize;
-    tbb::parallel_for(std::uint32_t{0}, num_columns * num_rows, [&](std::uint32_t tile) {
+    files::parallel_for(std::uint32_t{0}, num_columns * num_rows, [&](std::uint32_t tile) {
         if (!options_.stop.stop_requested())
             Tile(*this, light, packets)
                 .draw(tile % num_columns * TileSize, tile / num_columns * TileSize, backdrop,

@@ -9,8 +9,9 @@
 #include <cstdlib>
 #include <new>
 
-#include <tbb/parallel_for.h>
 #include <zlib.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -115,7 +116,7 @@ std::vector<std::byte> encode_png(std::uint32_t width, std::uint32_t height,
         std::size_t size = 0;
     };
     std::vector<Band> bands((height + RowsPerBand - 1) / RowsPerBand);
-    tbb::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
+    files::parallel_for(std::size_t{0}, bands.size(), [&](std::size_t band) {
         const std::size_t first = band * RowsPerBand;
         const std::size_t end = std::min<std::size_t>(first + RowsPerBand, height);
         Filters filters;

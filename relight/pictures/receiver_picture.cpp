@@ -5,7 +5,8 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 
@@ -31,7 +32,7 @@ Picture averaged(const prt::PixelLayout& layout, std::span<const glm::vec3> radi
     if (with_alpha)
         picture.alpha.resize(num_pixels);
     const auto per_pixel = static_cast<std::uint32_t>(layout.samples_per_pixel());
-    tbb::parallel_for(std::uint32_t{0}, layout.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, layout.height, [&](std::uint32_t y) {
         std::size_t pixel = std::size_t{y} * layout.width;
         const auto first =
             std::lower_bound(layout.samples.begin(), layout.samples.end(), pixel * per_pixel);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include <glm/common.hpp>
-#include <tbb/parallel_for.h>
 
 #include "cubemap/luminance.h"
+#include "files/parallel.h"
 #include "lights/lat_long_grid.h"
 #include "relight/pictures/tone_map.h"
 
@@ -56,7 +56,7 @@ Picture environment_picture(const lights::LatLongGrid& grid, const MapScale& sca
     const ToneMap tone_map = tone_map_of(grid);
     Picture picture{scale.size(grid.width()), scale.size(grid.height()), {}};
     picture.pixels.resize(std::size_t{picture.width} * picture.height);
-    tbb::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {
+    files::parallel_for(std::uint32_t{0}, picture.height, [&](std::uint32_t y) {
         for (std::uint32_t x = 0; x < picture.width; ++x) {
             const std::uint32_t first_x = x * scale.shrink / scale.grow;
             const std::uint32_t first_y = y * scale.shrink / scale.grow;

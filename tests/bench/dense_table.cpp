@@ -6,14 +6,14 @@
 #include <numbers>
 
 #include <glm/geometric.hpp>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "tests/bench/dense_table.cpp"
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+
+#include "files/parallel.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::bench::HWY_NAMESPACE {
@@ -59,7 +59,7 @@ DenseTable dense_table(const prt::Transfer& transfer) {
     for (const prt::Cell& cell : transfer.quadtree.leaves())
         directions.emplace_back(cubemap::direction(cell.face, (cell.x + 0.5) * cell.size(),
                                                    (cell.y + 0.5) * cell.size()));
-    tbb::parallel_for(std::size_t{0}, table.num_blocks, [&](std::size_t block) {
+    files::parallel_for(std::size_t{0}, table.num_blocks, [&](std::size_t block) {
         const std::size_t begin = block * prt::BlockSize;
         const std::size_t end = std::min(begin + prt::BlockSize, transfer.num_receivers());
         std::uint8_t* value = table.values.data() + block * table.num_clusters * prt::BlockSize;
@@ -78,19 +78,19 @@ DenseTable dense_table(const prt::Transfer& transfer) {
 void relight(const DenseTable& table, std::span<const glm::vec3> light,
              std::vector<glm::vec3>& radiance) {
     radiance.resize(table.num_blocks * prt::BlockSize);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, table.num_blocks, 16),
-                      [&](const auto& blocks) {
-                          for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
-                              std::array<float, 3 * prt::BlockSize> sums;
-                              HWY_DYNAMIC_DISPATCH(sum_block)
-                              (table.values.data() + block * table.num_clusters * prt::BlockSize,
-                               light.data(), table.num_clusters, sums.data());
-                              for (std::size_t i = 0; i < prt::BlockSize; ++i)
-                                  radiance[block * prt::BlockSize + i] =
-                                      table.scale * glm::vec3(sums[i], sums[prt::BlockSize + i],
-                                                              sums[2 * prt::BlockSize + i]);
-                          }
-                      });
+    files::parallel_for(
+        files::IndexRange<std::size_t>(0, table.num_blocks, 16), [&](const auto& blocks) {
+            for (std::size_t block = blocks.begin(); block < blocks.end(); ++block) {
+                std::array<float, 3 * prt::BlockSize> sums;
+                HWY_DYNAMIC_DISPATCH(sum_block)
+                (table.values.data() + block * table.num_clusters * prt::BlockSize, light.data(),
+                 table.num_clusters, sums.data());
+                for (std::size_t i = 0; i < prt::BlockSize; ++i)
+                    radiance[block * prt::BlockSize + i] =
+                        table.scale *
+                        glm::vec3(sums[i], sums[prt::BlockSize + i], sums[2 * prt::BlockSize + i]);
+            }
+        });
 }
 
 } // namespace relumine::bench

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/parallel_for.h>
 
+#include "files/parallel.h"
 #include "relight/glossy_kernels.h"
 #include "relight/light_pyramid.h"
 #include "relumine/relumine.h"
@@ -68,7 +68,7 @@ std::pair<double, double> lobes_alone(const prt::Transfer& transfer, const cubem
     pyramid.set(map, relight::LightBinning(map.resolution), {});
     std::vector<relight::GlossyLight> light(transfer.counts.num_blocks());
     const double seconds = bench::median_seconds([&] {
-        tbb::parallel_for(std::size_t{0}, light.size(), [&](std::size_t block) {
+        files::parallel_for(std::size_t{0}, light.size(), [&](std::size_t block) {
             for (std::size_t lobe = 0; lobe < prt::NumGlossyLobes; ++lobe)
                 relight::light_block(transfer.glossy->lobes[lobe], block, pyramid.light(),
                                      light[block][lobe]);

@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include <tbb/parallel_for.h>
-
+#include "files/parallel.h"
 #include "tests/bench/times.h"
 
 namespace relumine::bench {
@@ -22,7 +21,7 @@ inline double memory_bandwidth(bool tiny = false) {
     const std::vector<std::uint64_t> words(num_words, 1);
     std::atomic<std::uint64_t> total = 0;
     const double seconds = median_seconds([&] {
-        tbb::parallel_for(std::size_t{0}, NumParts, [&](std::size_t part) {
+        files::parallel_for(std::size_t{0}, NumParts, [&](std::size_t part) {
             const std::uint64_t* word = words.data() + part * (num_words / NumParts);
             std::uint64_t sum = 0;
             for (std::size_t i = 0; i < num_words / NumParts; ++i)

@@ -17,9 +17,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include "data_gen/scenes.h"
+#include "files/parallel.h"
 #include "prt/clusters/lattice.h"
 #include "prt/precompute.h"
 #include "prt/visibility/beam_scene.h"
@@ -65,7 +65,7 @@ private:
             transfer[l].resize(n);
             directions[l] = prt::direction(points[l]);
         }
-        tbb::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
+        files::parallel_for(std::size_t{0}, n, [&](std::size_t i) {
             const glm::vec3& normal = receivers_.normals[i];
             const glm::vec3 origin =
                 prt::ray_origin(receivers_.positions[i], normal, options_.bias);

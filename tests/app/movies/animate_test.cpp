@@ -8,6 +8,8 @@
 #include <limits>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "tests/app/command.h"
 #include "tests/app/small_files.h"
 
