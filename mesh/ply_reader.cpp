@@ -102,13 +102,16 @@ private:
 /// Refuses a header that declares more than the body can hold, before memory is allocated.
 void check_sizes(const Header& header, std::size_t num_bytes, bool is_binary) {
     for (const Element& element : header.elements) {
+        if (element.count > 0 && element.properties.empty())
+            throw std::runtime_error(fmt::format(
+                "expected properties of {} elements '{}', got none", element.count, element.name));
         // Least size of one element in bytes. An empty list has only its length; an ASCII number is
         // a digit and a space.
         std::size_t least = 0;
         for (const Property& property : element.properties)
             least +=
                 is_binary ? ply_format::size_of(property.size_type.value_or(property.type)) : 2;
-        if (least > 0 && element.count > (num_bytes + 1) / least)
+        if (element.count > 0 && element.count > (num_bytes + 1) / least)
             throw std::runtime_error(fmt::format(
                 "expected {} elements '{}' of {} bytes or more each, got {} bytes in all",
                 element.count, element.name, least, num_bytes));

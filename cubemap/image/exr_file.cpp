@@ -232,17 +232,20 @@ private:
             Imf::MultiPartInputFile file(stream, 0);
             Imf::InputPart part(file, part_);
             // The data window's coordinates address the frame buffer, so its base lies before the
-            // pixels.
+            // pixels. It may lie before all memory, where pointers must not be reckoned with.
             const auto stride = static_cast<std::ptrdiff_t>(sizeof(glm::vec3));
             const std::ptrdiff_t row_stride = stride * window_.width;
-            char* base = reinterpret_cast<char*>(image.pixels.data()) - window_.x * stride -
-                         window_.y * row_stride;
+            const auto base = reinterpret_cast<std::uintptr_t>(image.pixels.data()) -
+                              static_cast<std::uintptr_t>(window_.x * stride) -
+                              static_cast<std::uintptr_t>(window_.y * row_stride);
             Imf::FrameBuffer buffer;
             const std::size_t num_channels = channels_.kind == Channels::Kind::Luminance ? 1 : 3;
             for (std::size_t i = 0; i < num_channels; ++i)
-                buffer.insert(channels_.names[i], Imf::Slice(Imf::FLOAT, base + i * sizeof(float),
-                                                             static_cast<std::size_t>(stride),
-                                                             static_cast<std::size_t>(row_stride)));
+                buffer.insert(channels_.names[i],
+                              Imf::Slice(Imf::FLOAT,
+                                         reinterpret_cast<char*>(base + i * sizeof(float)),
+                                         static_cast<std::size_t>(stride),
+                                         static_cast<std::size_t>(row_stride)));
             part.setFrameBuffer(buffer);
             const std::uint32_t first = band * band_height;
             const std::uint32_t last = std::min(first + band_height, window_.height) - 1;

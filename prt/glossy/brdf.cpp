@@ -88,8 +88,14 @@ glm::vec3 reflect(const Surface& surface, const Lobes<glm::vec3>& lobes) {
     case Highlight::Ggx:
         break;
     }
-    return surface.albedo * (one - surface.specular) * (lobes.diffuse - lobes.diffuse_grazing) +
-           surface.specular * (lobes.specular - lobes.specular_grazing) + lobes.specular_grazing;
+    // The grazing part of a lobe is no more than the lobe. Each is summed over cells of its own, so
+    // sums may say otherwise by their errors.
+    const glm::vec3 none(0.0f);
+    const glm::vec3 diffuse = glm::max(lobes.diffuse - lobes.diffuse_grazing, none);
+    const glm::vec3 specular = glm::max(lobes.specular - lobes.specular_grazing, none);
+    // Colours may exceed 1 by what they were rounded.
+    return surface.albedo * glm::max(one - surface.specular, none) * diffuse +
+           surface.specular * specular + lobes.specular_grazing;
 }
 
 } // namespace relumine::prt

@@ -149,6 +149,9 @@ void set(Words& line, const app::OptionTable& option, const std::string& value) 
         if (const auto at = std::find(line.begin(), line.end(), name); at != line.end())
             line.erase(at, at + 2);
     line.push_back(fmt::format("{}={}", option.names.back(), value));
+    if (option.names.back() ==
+        "--refine") // a mesh as fine as an error of 0 asks for takes too long
+        line.emplace_back("--max-vertices=40");
 }
 
 /// Removes what a line has written. What a .npy file holds is finite.

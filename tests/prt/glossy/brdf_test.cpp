@@ -483,5 +483,14 @@ TEST(Brdf, SharpnessIsClamped) {
     EXPECT_NEAR(blinn_phong_norm(0.0f), std::numbers::inv_pi_v<float>, 1e-7f);
 }
 
+// Lobes are summed each for itself, so their grazing parts may come out larger than themselves.
+TEST(Brdf, GrazingPartsTakeNoMoreThanThereIs) {
+    const Lobes<glm::vec3> lobes{.diffuse = glm::vec3(0.5f),
+                                 .diffuse_grazing = glm::vec3(0.6f),
+                                 .specular = glm::vec3(2.0f),
+                                 .specular_grazing = glm::vec3(3.0f)};
+    EXPECT_EQ(reflect(ggx_surface(0.3f), lobes), glm::vec3(3.0f));
+}
+
 } // namespace
 } // namespace relumine::prt
