@@ -60,7 +60,7 @@ function(relumine_precompile name)
     file(CONFIGURE OUTPUT ${source} CONTENT "// Something to compile besides the headers.\n")
     add_library(${name} OBJECT EXCLUDE_FROM_ALL ${source})
     target_compile_features(${name} PRIVATE cxx_std_20)
-    target_link_libraries(${name} PRIVATE fmt::fmt glm::glm TBB::tbb)
+    target_link_libraries(${name} PRIVATE fmt::fmt glm::glm)
     target_precompile_headers(${name} PRIVATE ${relumine_common_headers} ${ARGN})
 endfunction()
 
@@ -69,7 +69,7 @@ function(relumine_use_precompiled target name)
     if(NOT CMAKE_CXX_COMPILER_ID STREQUAL GNU)
         return()
     endif()
-    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt> $<BUILD_INTERFACE:TBB::tbb>)
+    target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)
     target_precompile_headers(${target} REUSE_FROM ${name})
     # Kernels read headers between pragmas that choose an instruction set. Precompiled, inline functions would be made
     # for another one, and round otherwise.

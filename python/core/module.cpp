@@ -3,7 +3,6 @@
 #include <optional>
 
 #include <pybind11/pybind11.h>
-#include <tbb/info.h>
 
 #include "arrays.h"
 #include "files/parallel.h"

@@ -16,7 +16,6 @@
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <tbb/global_control.h>
 
 #include "data_gen/scenes.h"
 #include "files/parallel.h"
@@ -190,7 +189,7 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
     const prt::BeamScene beams(mesh, rays);
     fmt::print("tree for the beams     {:8.2f} s\n", tree.seconds());
     if (settings.threads) {
-        const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+        const files::ThreadLimit one(1);
         measure("beams, one thread", receivers, beams, options);
     }
     measure("beams", receivers, beams, options);

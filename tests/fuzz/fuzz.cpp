@@ -7,9 +7,9 @@
 #include <string>
 
 #include <fmt/format.h>
-#include <tbb/global_control.h>
 #include <unistd.h>
 
+#include "files/parallel.h"
 #include "tests/app/small_files.h"
 #include "tests/mesh/texture_files.h"
 
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 /// One thread: libFuzzer counts the code that an input reaches, which must not depend on who is
 /// faster.
-const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+const files::ThreadLimit one_thread(1);
 
 void write(const fs::path& path, std::string_view content) {
     std::ofstream file(path, std::ios::binary | std::ios::trunc);

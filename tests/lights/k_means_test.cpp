@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "lights/nearest_centre.h"
 
 namespace relumine::lights {
@@ -173,7 +173,7 @@ TEST(KMeans, ObjectiveNeverRises) {
 TEST(KMeans, TheSameForAnyNumberOfThreads) {
     const std::vector<ClusterPoint> points = clumps(5000, 9);
     const KMeans many = k_means(points, {.num_clusters = 64});
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     const KMeans alone = k_means(points, {.num_clusters = 64});
     EXPECT_EQ(many.cluster_of, alone.cluster_of);
     EXPECT_EQ(many.objective, alone.objective);

@@ -6,11 +6,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <glm/geometric.hpp>
 
 #include "cubemap/cube_map.h"
+#include "files/parallel.h"
 #include "tests/lights/test_maps.h"
 
 namespace relumine::lights {
@@ -112,7 +112,7 @@ TEST_P(EveryMethod, ConstantMapsGiveEvenLights) {
 TEST_P(EveryMethod, RepeatsItselfForAnyNumberOfThreads) {
     const auto image = wild(300, 150);
     const Placement many = place(GetParam(), image, 100, 5);
-    tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    files::ThreadLimit one(1);
     const Placement single = place(GetParam(), image, 100, 5);
     EXPECT_EQ(many.regions, single.regions);
     ASSERT_EQ(many.lights.size(), single.lights.size());

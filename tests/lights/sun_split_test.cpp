@@ -7,11 +7,11 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/resample.h"
 #include "data_gen/environments.h"
+#include "files/parallel.h"
 #include "tests/lights/disc_light.h"
 #include "tests/real_data.h"
 
@@ -179,7 +179,7 @@ TEST(SunSplit, SameForAnyNumberOfThreads) {
     const cubemap::EnvironmentImage image =
         cubemap::to_image(map, cubemap::Layout::LatLong, 512, 256);
     const auto all = split_sun(image);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     const auto single = split_sun(image);
     ASSERT_TRUE(all && single);
     EXPECT_EQ(all->sun.direction, single->sun.direction);

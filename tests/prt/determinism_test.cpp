@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 #include <xxhash.h>
 
 #include "files/output_file.h"
+#include "files/parallel.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
@@ -97,8 +97,7 @@ TEST_P(Determinism, TheSameBytesForAnyNumberOfThreadsAndASecondRun) {
     const std::vector<std::byte> first = file();
     for (const int num_threads : {1, 2, 8, 8}) {
         // More than the processor has, if need be.
-        const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(num_threads));
+        const files::ThreadLimit allowed(static_cast<std::size_t>(num_threads));
         tbb::task_arena arena(num_threads);
         EXPECT_TRUE(arena.execute([&] { return file(); }) == first) << num_threads;
     }

@@ -12,9 +12,9 @@
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/cube_map.h"
+#include "files/parallel.h"
 #include "prt/clusters/lattice.h"
 #include "prt/receivers/receiver_order.h"
 #include "prt/visibility/ray_scene.h"
@@ -352,8 +352,7 @@ TEST(Precompute, AnyNumberOfThreadsGivesTheSameBits) {
     const SmallScene scene;
     std::optional<Transfer> first;
     for (const std::size_t num_threads : {1u, 2u, 3u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                          num_threads);
+        const files::ThreadLimit threads(num_threads);
         const Transfer transfer = scene.transfer();
         if (first)
             expect_same(transfer, *first);

@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "relight/texel_kernel.h"
 #include "tests/prt/every_target.h"
 #include "tests/prt/scenes.h"
@@ -231,8 +231,7 @@ TEST(LightBinning, AnyNumberOfThreadsGivesTheSameBits) {
     const LightBinning binning(30);
     std::vector<VectorIrradiance> first;
     for (const std::size_t num_threads : {1u, 2u, 3u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                          num_threads);
+        const files::ThreadLimit threads(num_threads);
         const auto sums = binning.sums(environment, tree.leaves());
         if (!first.empty()) {
             EXPECT_EQ(sums, first);

@@ -10,8 +10,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/relight/arrays.h"
@@ -177,8 +177,7 @@ TEST(Exact, AnyNumberOfThreadsGivesTheSameBitsAndProgressEndsAtOne) {
     const scenes::RelitScene& scene = scenes::relit_scene();
     std::vector<std::vector<glm::dvec3>> results;
     for (const std::size_t num_threads : {1u, 2u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                          num_threads);
+        const files::ThreadLimit threads(num_threads);
         std::vector<double> fractions;
         ExactOptions options{.bias = scene.options.bias};
         options.on_progress = [&](double fraction) {

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "lights/place_lights.h"
 #include "relight/exact.h"
 #include "relight/light_packets.h"
@@ -209,7 +209,7 @@ TEST(TransferLights, AFewRealLightsAreFound) {
 TEST(TransferLights, SameForAnyNumberOfThreads) {
     const Comparison comparison(scenes::smooth_environment(32));
     const std::vector<DistantLight> two = transfer_lights(comparison.relighter, 12);
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit control(1);
     const std::vector<DistantLight> one = transfer_lights(comparison.relighter, 12);
     ASSERT_EQ(one.size(), two.size());
     for (std::size_t i = 0; i < one.size(); ++i) {

@@ -12,8 +12,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "relight/block_kernels.h"
 #include "relight/light_editor.h"
 #include "tests/prt/analytic_blockers.h"
@@ -419,8 +419,7 @@ TEST(RelighterUpdate, AnyNumberOfThreadsGivesTheSameBits) {
     for (const ShadowRays& rays : {ShadowRays{}, relit_scene().shadow_rays()}) {
         std::vector<std::vector<glm::vec3>> results;
         for (const std::size_t num_threads : {1u, 2u, 3u}) {
-            const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                              num_threads);
+            const files::ThreadLimit threads(num_threads);
             Relighter relighter(relit_scene().transfer, rays);
             relighter.set_environment(scenes::random_environment(32, 15, 1e5f));
             std::vector<glm::vec3> result = copy(relighter.radiance());

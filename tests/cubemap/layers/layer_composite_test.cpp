@@ -10,9 +10,9 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/layers/texel_range.h"
+#include "files/parallel.h"
 #include "tests/cubemap/layer_places.h"
 #include "tests/cubemap/test_images.h"
 
@@ -178,7 +178,7 @@ TEST(LayerComposite, DoesNotDependOnTheNumberOfThreads) {
     const CubeMap base = random_map(200, 5);
     const std::vector<LightLayer> layers = random_layers(20, 6);
     const auto with_threads = [&](std::size_t number) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, number);
+        const files::ThreadLimit control(number);
         return composite(base, layers);
     };
     EXPECT_TRUE(same_bits(with_threads(1), with_threads(2)));

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/resample/resample.h"
+#include "files/parallel.h"
 #include "tests/cubemap/sunny_sky.h"
 #include "tests/cubemap/test_images.h"
 
@@ -257,7 +257,7 @@ TEST(Convert, IsTheSameForAnyNumberOfThreads) {
     fill_randomly(image.pixels, 10);
     const ImageShape target{Layout::Octahedral, Sampling::TexelCentres, 60, 60};
     const std::vector<glm::vec3> many = convert(image, target).pixels;
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     EXPECT_EQ(convert(image, target).pixels, many);
 }
 

@@ -6,10 +6,10 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/image/image_layout.h"
 #include "cubemap/resample/pixel_shares.h"
+#include "files/parallel.h"
 #include "tests/cubemap/test_images.h"
 
 namespace relumine::cubemap {
@@ -317,7 +317,7 @@ TEST(Resample, OneThreadAndTwoGiveTheSameBits) {
                           irradiance(map, {0.0, 1.0, 0.0})};
     };
     const auto many = all();
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     EXPECT_TRUE(all() == many);
 }
 

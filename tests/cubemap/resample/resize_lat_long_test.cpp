@@ -8,9 +8,9 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/cube_map.h"
+#include "files/parallel.h"
 #include "tests/cubemap/test_images.h"
 
 namespace relumine::cubemap {
@@ -105,7 +105,7 @@ TEST(ResizeLatLong, IsTheSameForAnyNumberOfThreads) {
     const EnvironmentImage image = noise(40, 20, Sampling::TexelCentres, 5);
     const ImageShape target{Layout::LatLong, Sampling::TexelCentres, 77, 33};
     const auto many = resize_lat_long(image, target, turn_about_y(5.0)).pixels;
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     EXPECT_EQ(resize_lat_long(image, target, turn_about_y(5.0)).pixels, many);
 }
 

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "prt/clusters/cell_index.h"
 #include "prt/glossy/brdf.h"
 #include "prt/precompute_context.h"
@@ -181,7 +181,7 @@ TEST(GlossyPrecompute, LambertHasNoCells) {
 TEST(GlossyPrecompute, TheSameBitsForAnyNumberOfThreads) {
     const scenes::GlossyScene& scene = scenes::glossy_scene();
     for (const std::size_t threads : {1u, 3u}) {
-        const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+        const files::ThreadLimit control(threads);
         const GlossyTransfer again =
             precompute_glossy(scene.receivers, scene.diffuse.rays, scene.transfer, scene.options);
         for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {

@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -124,7 +124,7 @@ TEST(PixelReceivers, TheSameForAnyNumberOfThreads) {
     const PixelView view{
         .camera = {.eye = {4, 3, 5}}, .width = 60, .height = 40, .samples_per_axis = 2};
     const PixelReceivers all = seen(mesh, view);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     const PixelReceivers alone = seen(mesh, view);
     EXPECT_EQ(all.receivers.positions, alone.receivers.positions);
     EXPECT_EQ(all.receivers.normals, alone.receivers.normals);

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "prt/clusters/visible_counts.h"
 #include "tests/prt/scenes.h"
 
@@ -110,7 +110,7 @@ TEST(ReceiverOrder, StandsAnyCoordinates) {
 TEST(ReceiverOrder, IsTheSameOnOneThread) {
     const Receivers receivers = random_receivers(20000, 5, 0.01f);
     const std::vector<std::uint32_t> parallel = spatial_order(receivers);
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     EXPECT_EQ(spatial_order(receivers), parallel);
 }
 

@@ -8,9 +8,9 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include "cubemap/cube_map.h"
+#include "files/parallel.h"
 #include "mesh/half_edge/edge_uses.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
@@ -357,7 +357,7 @@ TEST(Refine, SameBytesForAnyNumberOfThreads) {
     const auto expect_same = [](const mesh::TriangleMesh& mesh, const RefineOptions& options) {
         mesh::TriangleMesh one;
         {
-            const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+            const files::ThreadLimit single(1);
             one = refined(mesh, options);
         }
         const mesh::TriangleMesh many = refined(mesh, options);

@@ -7,7 +7,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 namespace {
@@ -220,7 +221,7 @@ TEST(BounceLight, EqualLightGivesEqualBitsWhateverCameBeforeOnAnyNumberOfThreads
     const auto albedo = random_colors(Size, 1.0f), direct = random_colors(Size, 5.0f);
     std::vector<std::vector<glm::vec3>> results;
     for (const std::size_t num_threads : {1u, 2u, 5u}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, num_threads);
+        const files::ThreadLimit limit(num_threads);
         BounceLight light(matrix, transfer);
         light.set_albedo(albedo);
         if (num_threads == 2)

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/precompute.h"
 #include "relight/bounces/bounce_light.h"
@@ -337,7 +337,7 @@ TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {
     const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
     std::vector<prt::BounceMatrix> matrices;
     for (const std::size_t num_threads : {1u, 2u, 7u}) {
-        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, num_threads);
+        const files::ThreadLimit limit(num_threads);
         matrices.push_back(BouncingScene(mesh).matrix);
     }
     EXPECT_GT(matrices[0].emitters.places.size(), 100u);

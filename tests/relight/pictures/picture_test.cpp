@@ -12,7 +12,6 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION

@@ -8,8 +8,8 @@
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
+#include "files/parallel.h"
 #include "prt/receivers/mesh_point.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/environments.h"
@@ -200,8 +200,7 @@ TEST(PictureView, AnyNumberOfThreadsGivesTheSameBits) {
     const Drawn drawn;
     std::vector<glm::vec3> first;
     for (const std::size_t num_threads : {1u, 2u}) {
-        const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
-                                          num_threads);
+        const files::ThreadLimit threads(num_threads);
         const Picture picture = drawn.picture({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}},
                                               FrontCamera, {.width = 33, .height = 21});
         if (!first.empty()) {

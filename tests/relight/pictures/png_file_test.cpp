@@ -4,7 +4,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
+
+#include "files/parallel.h"
 
 namespace relumine::relight {
 namespace {
@@ -26,7 +27,7 @@ TEST(PngFile, ThreadsDoNotMatterAndTheHeaderIsRight) {
     EXPECT_EQ(number_at(png, 16), Width);
     EXPECT_EQ(number_at(png, 20), Height);
     EXPECT_EQ(number_at(png, png.size() - 8), 0x49454e44u); // IEND
-    const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+    const files::ThreadLimit one(1);
     EXPECT_EQ(encode_png(Width, Height, 4, pixels), png);
 }
 
