@@ -125,6 +125,7 @@ std::optional<glm::vec3> Parser::color(std::string_view key) const {
         return glm::vec3(values[0]);
     if (values.size() != 3) {
         std::vector<std::string> texts;
+        texts.reserve(values.size());
         for (const float value : values)
             texts.push_back(fmt::format("{}", value));
         fail(fmt::format("1 or 3 numbers of {}", key), files::joined(texts, ","));

@@ -232,20 +232,15 @@ private:
             Imf::MultiPartInputFile file(stream, 0);
             Imf::InputPart part(file, part_);
             // The data window's coordinates address the frame buffer, so its base lies before the
-            // pixels. It may lie before all memory, where pointers must not be reckoned with.
-            const auto stride = static_cast<std::ptrdiff_t>(sizeof(glm::vec3));
-            const std::ptrdiff_t row_stride = stride * window_.width;
-            const auto base = reinterpret_cast<std::uintptr_t>(image.pixels.data()) -
-                              static_cast<std::uintptr_t>(window_.x * stride) -
-                              static_cast<std::uintptr_t>(window_.y * row_stride);
+            // pixels, perhaps before all memory. OpenEXR works out where.
             Imf::FrameBuffer buffer;
             const std::size_t num_channels = channels_.kind == Channels::Kind::Luminance ? 1 : 3;
             for (std::size_t i = 0; i < num_channels; ++i)
-                buffer.insert(channels_.names[i],
-                              Imf::Slice(Imf::FLOAT,
-                                         reinterpret_cast<char*>(base + i * sizeof(float)),
-                                         static_cast<std::size_t>(stride),
-                                         static_cast<std::size_t>(row_stride)));
+                buffer.insert(
+                    channels_.names[i],
+                    Imf::Slice::Make(Imf::FLOAT, reinterpret_cast<float*>(image.pixels.data()) + i,
+                                     {window_.x, window_.y}, window_.width, window_.height,
+                                     sizeof(glm::vec3), sizeof(glm::vec3) * window_.width));
             part.setFrameBuffer(buffer);
             const std::uint32_t first = band * band_height;
             const std::uint32_t last = std::min(first + band_height, window_.height) - 1;
