@@ -102,16 +102,13 @@ private:
 /// Refuses a header that declares more than the body can hold, before memory is allocated.
 void check_sizes(const Header& header, std::size_t num_bytes, bool is_binary) {
     for (const Element& element : header.elements) {
-        if (element.count > 0 && element.properties.empty())
-            throw std::runtime_error(fmt::format(
-                "expected properties of {} elements '{}', got none", element.count, element.name));
         // Least size of one element in bytes. An empty list has only its length; an ASCII number is
         // a digit and a space.
         std::size_t least = 0;
         for (const Property& property : element.properties)
             least +=
                 is_binary ? ply_format::size_of(property.size_type.value_or(property.type)) : 2;
-        if (element.count > 0 && element.count > (num_bytes + 1) / least)
+        if (least > 0 && element.count > (num_bytes + 1) / least)
             throw std::runtime_error(fmt::format(
                 "expected {} elements '{}' of {} bytes or more each, got {} bytes in all",
                 element.count, element.name, least, num_bytes));
@@ -213,21 +210,27 @@ void read_vertices(const Element& element, Values& values, PolygonSoup& soup) {
     }
 }
 
+/// Returns the property with the corners of faces or strips.
+std::vector<Property>::const_iterator index_list(const Element& element) {
+    const auto is_index_list = [](const Property& property) {
+        return (property.name == "vertex_indices" || property.name == "vertex_index") &&
+               property.size_type && !ply_format::is_float(property.type);
+    };
+    const auto found =
+        std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
+    if (found == element.properties.end())
+        throw std::runtime_error(
+            fmt::format("expected {} with a list of whole numbers 'vertex_indices', got none",
+                        element.name == "face" ? "faces" : "tristrips"));
+    return found;
+}
+
 /// Reads the elements' lists of vertex indices. Calls `add` with each index and `end` after each
 /// list. -1 is an index, too, where `least` is -1.
 template<class Values, class Add, class End>
 void read_index_lists(const Element& element, std::uint64_t num_vertices, int least, Values& values,
                       const Add& add, const End& end) {
-    const auto is_index_list = [](const Property& property) {
-        return (property.name == "vertex_indices" || property.name == "vertex_index") &&
-               property.size_type && !ply_format::is_float(property.type);
-    };
-    const auto indices =
-        std::find_if(element.properties.begin(), element.properties.end(), is_index_list);
-    if (indices == element.properties.end())
-        throw std::runtime_error(
-            fmt::format("expected {} with a list of whole numbers 'vertex_indices', got none",
-                        element.name == "face" ? "faces" : "tristrips"));
+    const auto indices = index_list(element);
     for (std::uint64_t i = 0; i < element.count; ++i) {
         for (auto property = element.properties.begin(); property != element.properties.end();
              ++property) {
@@ -253,6 +256,8 @@ void read_index_lists(const Element& element, std::uint64_t num_vertices, int le
 template<class Values>
 void read_faces(const Element& element, std::uint64_t num_vertices, Values& values,
                 PolygonSoup& soup) {
+    // Faces without properties take no bytes, however many there are.
+    static_cast<void>(index_list(element));
     soup.face_ends.reserve(soup.face_ends.size() + element.count);
     read_index_lists(
         element, num_vertices, 0, values,
