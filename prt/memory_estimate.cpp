@@ -27,14 +27,13 @@ constexpr std::uint64_t BytesPerReceiver = 80;
 constexpr double JoinedPerColumn = 1.3;
 constexpr double ReceiversPerRun = 16384.0;
 
-/// A file is packed and written in batches of 32 MiB.
+/// A file is packed and written in batches of 32 MiB, which may be made for it.
 constexpr double MostSavedBytes = 64.0 * MiB;
 
 /// Highlights: surfaces and directions to the eye, twice. Blocks are in memory beside the lobe that
-/// they are joined to, and the longest section that is made for the file beside all lobes.
+/// they are joined to. A save takes less.
 constexpr std::uint64_t GlossyBytesPerReceiver = 120;
 constexpr double JoinedPerGlossyByte = 2.2;
-constexpr double SavedPerGlossyByte = 1.4;
 
 /// Bounces: samples, lists of similar receivers and probe lights.
 constexpr std::uint64_t BounceBytesPerReceiver = 450;
@@ -116,18 +115,11 @@ std::uint64_t max_glossy_bytes(const SceneSizes& sizes, std::uint64_t column_byt
                                std::uint64_t max_bytes) {
     SceneSizes without_beams = sizes;
     without_beams.has_beams = false;
-    SceneSizes without_triangles = without_beams;
-    without_triangles.num_triangles = 0;
-    const auto columns = static_cast<double>(column_bytes);
-    const auto left = [&](const SceneSizes& scene, double per_column, double per_byte) {
-        const double used = static_cast<double>(scene_bytes(scene)) +
-                            static_cast<double>(scene.num_receivers * GlossyBytesPerReceiver) +
-                            per_column * columns;
-        return std::max(0.0, static_cast<double>(max_bytes) - used) / per_byte;
-    };
-    return static_cast<std::uint64_t>(
-        std::min(left(without_beams, JoinedPerColumn, JoinedPerGlossyByte),
-                 left(without_triangles, JoinedPerColumn, SavedPerGlossyByte)));
+    const double used = static_cast<double>(scene_bytes(without_beams)) +
+                        static_cast<double>(sizes.num_receivers * GlossyBytesPerReceiver) +
+                        JoinedPerColumn * static_cast<double>(column_bytes);
+    return static_cast<std::uint64_t>(std::max(0.0, static_cast<double>(max_bytes) - used) /
+                                      JoinedPerGlossyByte);
 }
 
 std::uint64_t max_bounce_bytes(const SceneSizes& sizes, std::uint64_t column_bytes,

@@ -13,6 +13,7 @@
 #include "files/json.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
+#include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
@@ -29,6 +30,7 @@ std::vector<std::byte> text_section(const files::Json& json) {
 /// A part as its file has it.
 struct StoredPart {
     SectionReader reader;
+    std::uint32_t version = 0;
     Part part = {};
     /// The hash of the plan
     std::string whole = {};
@@ -36,7 +38,9 @@ struct StoredPart {
 };
 
 StoredPart read_part(const std::filesystem::path& path) {
-    StoredPart stored{.reader = SectionReader(path, read_sections(path))};
+    std::uint32_t version = 0;
+    Sections sections = read_sections(path, &version);
+    StoredPart stored{.reader = SectionReader(path, std::move(sections)), .version = version};
     if (!stored.reader.has("part"))
         throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
                                              stored.reader.has("plan") ? "a plan" : "a scene"));
@@ -80,14 +84,7 @@ PartLight light_of(const StoredPart& stored, std::size_t num_leaves, std::size_t
     VisibleCounts& counts = light.counts;
     counts.num_receivers = stored.num_receivers;
     counts.num_leaves = num_leaves;
-    counts.visible = reader.elements<std::uint64_t>("visible");
-    counts.mixed = reader.elements<std::uint64_t>("mixed");
-    counts.counts = reader.elements<std::uint8_t>("counts");
-    try {
-        counts.index();
-    } catch (const std::invalid_argument&) {
-        reader.fail("counts", "counts that fit the receivers and the tree");
-    }
+    read_counts(reader, stored.version, counts);
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
     light.bounces = read_bounce_samples(reader, counts.num_receivers, num_receivers);

@@ -16,69 +16,16 @@
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
+#include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/scene_check.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
-#include "prt/scene/section_picker.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
 
 namespace {
-
-/// Reads the counts of the part's tiles, and nothing else of the counts stays in memory.
-VisibleCounts counts_of_part(const std::filesystem::path& path, const VisibleCounts& whole,
-                             const Part& part, std::size_t num_own) {
-    constexpr std::uint64_t WordBytes = sizeof(std::uint64_t);
-    const auto words_before = [&](std::size_t tile) {
-        return std::uint64_t{whole.tile_begin(tile)} * whole.words_per_block();
-    };
-    const std::size_t num_tiles = whole.num_tiles();
-    std::vector<SectionPicker::Range> words;
-    for (std::size_t tile = part.index; tile < num_tiles; tile += part.count)
-        words.push_back({words_before(tile) * WordBytes, words_before(tile + 1) * WordBytes});
-    const std::uint64_t num_bytes = words_before(num_tiles) * WordBytes;
-
-    VisibleCounts counts{.num_receivers = num_own, .num_leaves = whole.num_leaves};
-    SectionPicker visible(words);
-    stream_section(path, "visible", num_bytes, [&](auto piece) { visible.take(piece); });
-    counts.visible = visible.elements<std::uint64_t>();
-
-    // Where the counts of a tile begin follows from the mixed pairs of all tiles before.
-    SectionPicker mixed(words);
-    std::vector<std::uint64_t> pairs(num_tiles + 1);
-    std::uint64_t word = 0;
-    std::size_t tile = 0;
-    stream_section(path, "mixed", num_bytes, [&](std::span<const std::byte> piece) {
-        mixed.take(piece);
-        for (std::size_t at = 0; at < piece.size(); at += WordBytes, ++word) {
-            while (word == words_before(tile + 1))
-                ++tile;
-            std::uint64_t bits = 0;
-            std::memcpy(&bits, piece.data() + at, WordBytes);
-            pairs[tile + 1] += static_cast<std::uint64_t>(std::popcount(bits));
-        }
-    });
-    counts.mixed = mixed.elements<std::uint64_t>();
-    for (std::size_t i = 0; i < num_tiles; ++i)
-        pairs[i + 1] += pairs[i];
-
-    std::vector<SectionPicker::Range> entries;
-    for (std::size_t own = part.index; own < num_tiles; own += part.count)
-        entries.push_back({pairs[own] * BlockSize, pairs[own + 1] * BlockSize});
-    SectionPicker values(entries);
-    stream_section(path, "counts", pairs[num_tiles] * BlockSize,
-                   [&](auto piece) { values.take(piece); });
-    counts.counts = values.elements<std::uint8_t>();
-    try {
-        counts.index();
-    } catch (const std::invalid_argument&) {
-        throw std::runtime_error(fmt::format(
-            "{}: expected counts that fit the receivers and the tree, got others", path.string()));
-    }
-    return counts;
-}
 
 /// Moves the sections whose names begin with `prefix` out of a scene's sections.
 Sections taken(Sections& sections, std::string_view prefix) {
@@ -129,7 +76,9 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         throw std::invalid_argument(
             fmt::format("{}: expected a part of 1 to {}", path.string(), MaxParts));
     std::vector<std::string> streamed = long_glossy_sections();
-    streamed.insert(streamed.end(), {"visible", "mixed", "counts", EmitterSection});
+    for (const std::string& name : long_count_sections())
+        streamed.push_back(name);
+    streamed.push_back(EmitterSection);
     std::uint32_t version = 0;
     Sections sections = read_sections(path, &version, streamed);
     const auto refuse = [&](const std::string& expected, const std::string& got) {
@@ -145,6 +94,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         refuse("a scene", "a plan or a part");
     const SectionReader of_bounces(path, taken(sections, "bounce_"));
     const SectionReader of_highlights(path, taken(sections, "g_"));
+    const SectionReader of_counts(path, taken(sections, "count"));
     sections["plan"] = {}; // bounces and counts come later
     ScenePart result{.scene = plan_of(path, std::move(sections))};
     const Scene& whole = result.scene;
@@ -169,15 +119,18 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         if (!whole.receivers.surfaces.empty())
             transfer.surfaces.push_back(whole.receivers.surfaces[receiver]);
     }
-    transfer.counts = counts_of_part(
-        path, {.num_receivers = num_receivers, .num_leaves = transfer.quadtree.num_leaves()}, part,
-        result.receivers.size());
+    const VisibleCounts shape{.num_receivers = num_receivers,
+                              .num_leaves = transfer.quadtree.num_leaves()};
+    std::vector<std::size_t> tiles;
+    for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
+        tiles.push_back(tile);
+    transfer.counts =
+        read_counts_of_tiles(of_counts, version, shape, tiles, result.receivers.size());
     if (has_glossy(of_highlights)) {
         if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
             refuse("directions to the eye and surfaces with highlights", "none");
-        const VisibleCounts shape{.num_receivers = num_receivers};
         std::vector<BlockRange> blocks;
-        for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
+        for (const std::size_t tile : tiles)
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
         transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
         check_highlights(*transfer.glossy, path);

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "prt/scene/small_numbers.h"
+
 namespace relumine::prt {
 
 namespace {
@@ -21,42 +23,6 @@ const std::string Radius = "bounce_radius", Weights = "bounce_weights",
                   OpenParts = "bounce_open", Distances = "bounce_distance",
                   HitCounts = "bounce_rays_hit";
 
-/// Numbers below 2^7 take a byte, below 2^14 two, and so on: seven bits a byte, the lowest first,
-/// the eighth set where more follow.
-void append_number(std::vector<std::uint8_t>& bytes, std::uint32_t number) {
-    for (; number >= 0x80u; number >>= 7u)
-        bytes.push_back(static_cast<std::uint8_t>(number | 0x80u));
-    bytes.push_back(static_cast<std::uint8_t>(number));
-}
-
-/// Reads such numbers one after the other.
-class Numbers {
-public:
-    Numbers(const SectionReader& reader, const std::string& section)
-        : reader_(reader), section_(section), bytes_(reader.elements<std::uint8_t>(section)) {}
-
-    std::uint32_t next() {
-        std::uint64_t number = 0;
-        for (std::uint32_t shift = 0; shift < 35; shift += 7) {
-            if (at_ == bytes_.size())
-                break;
-            const std::uint64_t byte = bytes_[at_++];
-            number |= (byte & 0x7fu) << shift;
-            if (byte < 0x80u && number <= 0xffffffffu)
-                return static_cast<std::uint32_t>(number);
-        }
-        reader_.fail(section_, "lists of receivers");
-    }
-    [[nodiscard]] bool at_end() const { return at_ == bytes_.size(); }
-    [[nodiscard]] std::size_t size() const { return bytes_.size(); }
-
-private:
-    const SectionReader& reader_;
-    const std::string& section_;
-    std::vector<std::uint8_t> bytes_;
-    std::size_t at_ = 0;
-};
-
 void add_lists(NewSections& sections, const std::string& size_name, const std::string& name,
                const PlaceLists& lists) {
     std::vector<std::uint32_t> sizes;
@@ -65,7 +31,7 @@ void add_lists(NewSections& sections, const std::string& size_name, const std::s
         sizes.push_back(static_cast<std::uint32_t>(lists[i].size()));
         std::uint32_t before = 0;
         for (const std::uint32_t place : lists[i]) {
-            append_number(bytes, place - before);
+            append_small(bytes, place - before);
             before = place;
         }
     }
@@ -77,7 +43,7 @@ PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
                       const std::string& name, std::size_t num_lists, std::size_t num_receivers) {
     PlaceLists lists;
     const auto sizes = reader.elements<std::uint32_t>(size_name, num_lists);
-    Numbers numbers(reader, name);
+    SmallNumbers numbers(reader, name, "lists of receivers");
     lists.begin.reserve(num_lists + 1);
     std::uint64_t num_places = 0;
     for (const std::uint32_t size : sizes)
@@ -89,10 +55,10 @@ PlaceLists read_lists(const SectionReader& reader, const std::string& size_name,
     for (const std::uint32_t size : sizes) {
         std::uint32_t place = 0;
         for (std::uint32_t i = 0; i < size; ++i) {
-            const std::uint32_t step = numbers.next();
+            const std::uint64_t step = numbers.next();
             if (step >= num_receivers - place)
                 reader.fail(name, "numbers of receivers");
-            place += step;
+            place += static_cast<std::uint32_t>(step);
             lists.places.push_back(place);
         }
         lists.begin.push_back(lists.places.size());

@@ -1,6 +1,7 @@
 #include "prt/scene/glossy_sections.h"
 
 #include <algorithm>
+#include <bit>
 #include <span>
 #include <string>
 
@@ -19,15 +20,22 @@ std::string name_of(std::size_t lobe, char part) {
     return fmt::format("{}_{}", Names[lobe], part);
 }
 
-/// Stores all first bytes, then all second bytes, and so on: similar numbers then compress four
-/// times better.
-template<typename Number>
-std::vector<std::byte> byte_planes(const std::vector<Number>& numbers) {
-    const std::span<const std::byte> bytes = std::as_bytes(std::span(numbers));
-    std::vector<std::byte> planes(bytes.size());
-    for (std::size_t i = 0; i < bytes.size(); ++i)
-        planes[i % sizeof(Number) * numbers.size() + i / sizeof(Number)] = bytes[i];
-    return planes;
+/// Bytes of a section that holds the first bytes of all numbers, then all second bytes, and so on:
+/// similar numbers then compress four times better. `number(i)` is a number of 32 bits, one of
+/// `size`.
+template<typename NumberOf>
+SectionContent byte_planes(std::size_t size, const NumberOf& number) {
+    return {size * sizeof(std::uint32_t), [=](std::uint64_t begin, std::span<std::byte> piece) {
+                auto plane = static_cast<std::uint32_t>(begin / size);
+                auto i = static_cast<std::size_t>(begin % size);
+                for (std::byte& byte : piece) {
+                    byte = static_cast<std::byte>(number(i) >> (8 * plane));
+                    if (++i == size) {
+                        i = 0;
+                        ++plane;
+                    }
+                }
+            }};
 }
 
 /// Undoes byte_planes().
@@ -48,13 +56,6 @@ std::vector<Number> from_byte_planes(const SectionReader& reader, const std::str
     if (planes.size() % sizeof(Number) != 0)
         reader.fail(name, fmt::format("a multiple of {} bytes", sizeof(Number)));
     return numbers_of<Number>(planes);
-}
-
-/// Returns each cell minus the one before, modulo 2^32: neighbours on the Z curve differ by little.
-std::vector<std::uint32_t> differences(std::vector<std::uint32_t> cells) {
-    for (std::size_t i = cells.size(); i-- > 1;)
-        cells[i] -= cells[i - 1];
-    return cells;
 }
 
 std::vector<std::uint32_t> sums(std::vector<std::uint32_t> cells) {
@@ -190,12 +191,13 @@ void add_glossy_sections(NewSections& sections, const GlossyTransfer& glossy) {
     for (std::size_t lobe = 0; lobe < NumGlossyLobes; ++lobe) {
         const LobeCuts& cuts = glossy.lobes[lobe];
         sections[name_of(lobe, 'b')] = SectionContent::view(cuts.begin);
-        sections[name_of(lobe, 'c')] = {cuts.cells.size() * sizeof(cuts.cells[0]), [&cuts] {
-                                            return byte_planes(differences(cuts.cells));
-                                        }};
-        sections[name_of(lobe, 's')] = {cuts.scales.size() * sizeof(cuts.scales[0]), [&cuts] {
-                                            return byte_planes(cuts.scales);
-                                        }};
+        // Each cell minus the one before, modulo 2^32: neighbours on the Z curve differ by little.
+        sections[name_of(lobe, 'c')] = byte_planes(cuts.cells.size(), [&cuts](std::size_t i) {
+            return cuts.cells[i] - (i == 0 ? 0 : cuts.cells[i - 1]);
+        });
+        sections[name_of(lobe, 's')] = byte_planes(cuts.scales.size(), [&cuts](std::size_t i) {
+            return std::bit_cast<std::uint32_t>(cuts.scales[i]);
+        });
         sections[name_of(lobe, 'v')] = SectionContent::view(cuts.values);
     }
 }

@@ -10,6 +10,7 @@
 
 #include "files/output_file.h"
 #include "prt/scene/bounce_sections.h"
+#include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/material_sections.h"
 #include "prt/scene/older_counts.h"
@@ -186,17 +187,7 @@ private:
                     const SceneSettings& settings) const {
         transfer.counts.num_receivers = receivers.size();
         transfer.counts.num_leaves = transfer.quadtree.num_leaves();
-        transfer.counts.visible = reader_.elements<std::uint64_t>("visible");
-        transfer.counts.mixed = reader_.elements<std::uint64_t>("mixed");
-        transfer.counts.counts = reader_.elements<std::uint8_t>("counts");
-        try {
-            if (version_ < 2)
-                move_into_tiles(transfer.counts);
-            else
-                transfer.counts.index();
-        } catch (const std::invalid_argument&) {
-            reader_.fail("counts", "counts that fit the receivers and the tree");
-        }
+        read_counts(reader_, version_, transfer.counts);
         if (version_ < 3)
             count_above_horizon(transfer.counts, transfer.quadtree, transfer.normals,
                                 texel_level(settings.face_resolution));
@@ -250,12 +241,6 @@ NewSections sections_without_light(const std::filesystem::path& path, const Scen
     sections["order"] = SectionContent::view(scene.transfer.order);
     sections["quadtree"] = counted(scene.transfer.quadtree.split_flags());
     return sections;
-}
-
-void add_counts(NewSections& sections, const VisibleCounts& counts) {
-    sections["visible"] = SectionContent::view(counts.visible);
-    sections["mixed"] = SectionContent::view(counts.mixed);
-    sections["counts"] = SectionContent::view(counts.counts);
 }
 
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) {

@@ -26,7 +26,4 @@ namespace relumine::prt {
 [[nodiscard]] NewSections sections_without_light(const std::filesystem::path& path,
                                                  const Scene& scene);
 
-/// Adds the sections of the counts, which must last until they are written.
-void add_counts(NewSections& sections, const VisibleCounts& counts);
-
 } // namespace relumine::prt

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <deque>
 #include <memory>
 #include <new>
 #include <numeric>
@@ -290,16 +289,19 @@ public:
     std::uint64_t write(const NewSections& sections) {
         std::size_t index = 0;
         for (const auto& [name, content] : sections) {
-            made_.emplace_back();
-            std::span<const std::byte> rest = content.bytes(made_.back());
+            std::uint64_t begin = 0;
             do { // An empty section has one frame, too.
-                const std::span<const std::byte> frame =
-                    rest.first(std::min(FrameSize, rest.size()));
-                rest = rest.subspan(frame.size());
-                batch_.push_back({.section = index, .content = frame, .is_last = rest.empty()});
+                const auto size = static_cast<std::size_t>(
+                    std::min<std::uint64_t>(FrameSize, content.size() - begin));
+                batch_.push_back({.section = index,
+                                  .content = &content,
+                                  .begin = begin,
+                                  .size = size,
+                                  .is_last = begin + size == content.size()});
+                begin += size;
                 if (batch_.size() == BatchFrames)
                     write_batch();
-            } while (!rest.empty());
+            } while (begin < content.size());
             ++index;
         }
         write_batch();
@@ -314,7 +316,9 @@ private:
 
     struct Frame {
         std::size_t section;
-        std::span<const std::byte> content;
+        const SectionContent* content;
+        std::uint64_t begin;
+        std::size_t size;
         bool is_last;
         std::vector<std::byte> stored = {};
     };
@@ -337,10 +341,13 @@ private:
 
     void write_batch() {
         files::parallel_for(std::size_t{0}, batch_.size(), [&](std::size_t i) {
-            batch_[i].stored = files::compressed(batch_[i].content, CompressionLevel);
+            Frame& frame = batch_[i];
+            std::vector<std::byte> made;
+            frame.stored = files::compressed(frame.content->bytes(frame.begin, frame.size, made),
+                                             CompressionLevel);
         });
         for (const Frame& frame : batch_) {
-            num_packed_ += frame.content.size();
+            num_packed_ += frame.size;
             num_stored_ += frame.stored.size();
         }
         // The rest will pack as what came before did.
@@ -364,9 +371,6 @@ private:
                 entry.checksum = XXH64_digest(hash_.get());
         }
         batch_.clear();
-        // The content of a section that goes on in the next batch stays.
-        if (made_.size() > 1)
-            made_.erase(made_.begin(), made_.end() - 1);
     }
 
     void write_table() {
@@ -388,19 +392,22 @@ private:
     std::uint64_t num_packed_ = 0;
     std::uint64_t num_stored_ = 0;
     std::vector<Frame> batch_;
-    std::deque<std::vector<std::byte>> made_;
     const std::unique_ptr<XXH64_state_t, XXH_errorcode (*)(XXH64_state_t*)> hash_{
         XXH64_createState(), XXH64_freeState};
 };
 
 } // namespace
 
-std::span<const std::byte> SectionContent::bytes(std::vector<std::byte>& made) const {
+std::span<const std::byte> SectionContent::bytes(std::uint64_t begin, std::size_t size,
+                                                 std::vector<std::byte>& made) const {
+    const auto at = static_cast<std::size_t>(begin);
     if (const auto* own = std::get_if<std::vector<std::byte>>(&content_))
-        return *own;
+        return std::span(*own).subspan(at, size);
     if (const auto* view = std::get_if<std::span<const std::byte>>(&content_))
-        return *view;
-    made = std::get<Maker>(content_).make();
+        return view->subspan(at, size);
+    made.resize(size);
+    if (size != 0)
+        std::get<Maker>(content_).fill(begin, made);
     return made;
 }
 

@@ -17,21 +17,23 @@
 namespace relumine::prt {
 
 /// The version that is written. All versions up to this one are read.
-inline constexpr std::uint32_t SceneFileVersion = 4;
+inline constexpr std::uint32_t SceneFileVersion = 5;
 
 /// Sections of a file by name (1 to 16 ASCII letters), each a string of bytes.
 using Sections = std::map<std::string, std::vector<std::byte>>;
 
 /// The bytes of a section that will be written: bytes of its own, a view of an array that lasts
-/// until then, or a function that makes them when their turn has come. So a save needs little
-/// memory beside the scene.
+/// until then, or a function that makes them, piece by piece, when their turn has come. So a save
+/// needs little memory beside the scene.
 class SectionContent {
 public:
+    /// Fills `piece` with the bytes of the section from `begin` on. Pieces may be asked for at the
+    /// same time.
+    using Fill = std::function<void(std::uint64_t begin, std::span<std::byte> piece)>;
+
     SectionContent() = default;
     SectionContent(std::vector<std::byte> own) : content_(std::move(own)) {}
-    /// `make` returns `size` bytes.
-    SectionContent(std::uint64_t size, std::function<std::vector<std::byte>()> make)
-        : content_(Maker{size, std::move(make)}) {}
+    SectionContent(std::uint64_t size, Fill fill) : content_(Maker{size, std::move(fill)}) {}
 
     /// `elements` must last until the section is written.
     template<typename Element>
@@ -45,13 +47,14 @@ public:
     static SectionContent view(std::vector<Element>&&) = delete;
 
     [[nodiscard]] std::uint64_t size() const;
-    /// Returns the bytes. `made` keeps them if the function makes them.
-    [[nodiscard]] std::span<const std::byte> bytes(std::vector<std::byte>& made) const;
+    /// Returns `size` bytes from `begin` on. `made` keeps them if the function makes them.
+    [[nodiscard]] std::span<const std::byte> bytes(std::uint64_t begin, std::size_t size,
+                                                   std::vector<std::byte>& made) const;
 
 private:
     struct Maker {
         std::uint64_t size;
-        std::function<std::vector<std::byte>()> make;
+        Fill fill;
     };
     std::variant<std::vector<std::byte>, std::span<const std::byte>, Maker> content_;
 };
@@ -65,7 +68,7 @@ using NewSections = std::map<std::string, SectionContent>;
 /// Writes sections compressed (zstd), with sizes and xxHash64 checksums; whole or not at all.
 /// Returns the file's size.
 ///
-/// Memory:  32 MiB, and the largest content that a function makes.
+/// Memory:  at most 64 MiB.
 /// Throws:  std::runtime_error that names the path.
 std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections);
 

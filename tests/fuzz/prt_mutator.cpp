@@ -94,7 +94,8 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
         mutate(sections, max_size, random);
         prt::write_sections(path, prt::to_write(std::move(sections)));
         result = files::read(path);
-        fuzz::set_version(result, random() % 8 == 0 ? random() % 5 : version);
+        fuzz::set_version(result,
+                          random() % 8 == 0 ? random() % (prt::SceneFileVersion + 1) : version);
         result = fuzz::with_checksums(result);
     } catch (const std::exception&) { // no .prt file yet
     }

@@ -7,7 +7,7 @@
 namespace relumine::fuzz {
 
 /// The first is A, the next B and so on; new ones come last, so that the corpus keeps its meaning.
-inline constexpr std::array<std::string_view, 46> SectionNames = {"settings",
+inline constexpr std::array<std::string_view, 48> SectionNames = {"settings",
                                                                   "positions",
                                                                   "triangles",
                                                                   "normals",
@@ -52,6 +52,8 @@ inline constexpr std::array<std::string_view, 46> SectionNames = {"settings",
                                                                   "bounce_hits_size",
                                                                   "bounce_hits",
                                                                   "bounce_near_size",
-                                                                  "bounce_near"};
+                                                                  "bounce_near",
+                                                                  "count_codes",
+                                                                  "counts_14"};
 
 } // namespace relumine::fuzz

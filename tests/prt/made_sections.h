@@ -13,7 +13,8 @@ namespace relumine::scenes {
     prt::Sections result;
     for (const auto& [name, content] : sections) {
         std::vector<std::byte> own;
-        const std::span<const std::byte> bytes = content.bytes(own);
+        const std::span<const std::byte> bytes =
+            content.bytes(0, static_cast<std::size_t>(content.size()), own);
         result[name].assign(bytes.begin(), bytes.end());
     }
     return result;

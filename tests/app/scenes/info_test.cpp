@@ -72,10 +72,10 @@ TEST_F(Info, CheckFindsEveryFlippedBit) {
     }
     // The next version, by its number.
     std::string newer = whole;
-    newer[12] = 5;
+    newer[12] = 6;
     write("scene.prt", newer);
     fail({"info", "scene.prt", "--check"},
-         {"scene.prt: expected .prt version 4, got version 5, made by a newer relumine"});
+         {"scene.prt: expected .prt version 5, got version 6, made by a newer relumine"});
 }
 
 TEST_F(Info, Scene) {

@@ -136,8 +136,9 @@ TEST_F(ReceiverSectionsTest, PlainVerticesAddNothing) {
     std::vector<std::string> names;
     for (const auto& [name, bytes] : read_sections(file_))
         names.push_back(name);
-    EXPECT_EQ(names, (std::vector<std::string>{"counts", "mixed", "normals", "order", "positions",
-                                               "quadtree", "settings", "triangles", "visible"}));
+    EXPECT_EQ(names, (std::vector<std::string>{"count_codes", "counts_14", "mixed", "normals",
+                                               "order", "positions", "quadtree", "settings",
+                                               "triangles", "visible"}));
     const Scene loaded = load_scene(file_);
     EXPECT_EQ(loaded.layout, ReceiverLayout(VertexLayout{}));
     expect_same(loaded.receivers, scene.receivers);

@@ -220,12 +220,12 @@ TEST_F(ForgedSceneTest, SizesThatContradictEachOther) {
     refused<glm::vec2>("'uvs'", "uvs", [](auto& uv) { uv.emplace_back(0.0f); });
     refused<std::uint32_t>("'order'", "order", [](auto& o) { o.pop_back(); });
     refused<std::uint32_t>("'order'", "order", [](auto& o) { o.push_back(0); });
-    refused<std::uint64_t>("'counts'", "visible", [](auto& v) { v.pop_back(); });
-    refused<std::uint64_t>("'counts'", "visible", [](auto& v) { v.clear(); });
-    refused<std::uint64_t>("'counts'", "mixed", [](auto& m) { m.push_back(0); });
-    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c.pop_back(); });
-    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c.resize(c.size() + 16); });
-    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c.clear(); });
+    refused<std::uint64_t>("'count_codes'", "visible", [](auto& v) { v.pop_back(); });
+    refused<std::uint64_t>("'count_codes'", "visible", [](auto& v) { v.clear(); });
+    refused<std::uint64_t>("'count_codes'", "mixed", [](auto& m) { m.push_back(0); });
+    refused<std::uint8_t>("'count_codes'", "count_codes", [](auto& c) { c.pop_back(); });
+    refused<std::uint8_t>("'count_codes'", "count_codes", [](auto& c) { c.resize(c.size() + 8); });
+    refused<std::uint8_t>("'count", "count_codes", [](auto& c) { c.clear(); });
 }
 
 TEST_F(ForgedSceneTest, IndicesAndNumbersOutOfRange) {
@@ -242,16 +242,16 @@ TEST_F(ForgedSceneTest, IndicesAndNumbersOutOfRange) {
     }
     refused<std::uint32_t>("'order'", "order", [&](auto& o) { o[3] = num_vertices; });
     refused<std::uint32_t>("'order'", "order", [](auto& o) { o[3] = o[4]; });
-    refused<std::uint8_t>("'counts'", "counts", [](auto& c) { c[c.size() / 3] = 17; });
 }
 
 TEST_F(ForgedSceneTest, BitsThatContradictTheCounts) {
-    refused<std::uint64_t>("'counts'", "mixed", [](auto& m) {
+    refused<std::uint64_t>("'count_codes'", "mixed", [](auto& m) {
         const auto word = std::find_if(m.begin(), m.end(), [](std::uint64_t w) { return w != 0; });
         *word &= *word - 1;
     });
-    refused("'counts'", [](Sections& s) { s.at("visible") = s.at("mixed"); });
-    refused<std::uint64_t>("'counts'", "visible", [](auto& v) { v.back() = ~std::uint64_t{0}; });
+    refused("'count_codes'", [](Sections& s) { s.at("visible") = s.at("mixed"); });
+    refused<std::uint64_t>("'count_codes'", "visible",
+                           [](auto& v) { v.back() = ~std::uint64_t{0}; });
 }
 
 TEST_F(ForgedSceneTest, BrokenTrees) {
@@ -479,10 +479,16 @@ TEST_F(SceneFileTest, OlderVersionsBecomeWhatAPrecomputeFindsNow) {
     ASSERT_GT(scene.transfer.counts.num_tiles(), 1u);
     const VisibleCounts as_in_2 = counts_of_all_samples(scene, rays);
     ASSERT_GT(as_in_2.num_mixed(), scene.transfer.counts.num_mixed() * 5 / 4);
-    for (const std::uint32_t version : {1u, 2u}) {
+    for (const std::uint32_t version : {1u, 2u, 3u, 4u}) {
         Scene old = scene;
-        old.transfer.counts = version == 1 ? block_by_block(as_in_2) : as_in_2;
+        if (version < 3)
+            old.transfer.counts = version == 1 ? block_by_block(as_in_2) : as_in_2;
         save_scene(file_, old);
+        Sections sections = read_sections(file_);
+        sections.erase("count_codes");
+        sections.erase("counts_14");
+        sections["counts"] = bytes_of(old.transfer.counts.counts);
+        write_sections(file_, to_write(std::move(sections)));
         scenes::sign_as_version(file_, version);
         EXPECT_TRUE(same(load_scene(file_), scene)) << "version " << version;
     }

@@ -1,6 +1,7 @@
 #include "prt/scene/section_file.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <xxhash.h>
@@ -111,17 +113,18 @@ TEST_F(SectionFileTest, ViewsAndMadeBytesAreWrittenAsOwnOnes) {
                                        std::as_bytes(std::span(numbers)).end());
     write_sections(file_, {{"a", text("first")}, {"b", bytes}, {"c", bytes}, {"d", text("last")}});
     const std::vector<std::byte> own = files::read(file_);
-    int num_made = 0;
-    const SectionContent made(bytes.size(), [&] {
-        ++num_made;
-        return std::vector<std::byte>(bytes);
+    std::atomic<std::size_t> num_made = 0;
+    const SectionContent made(bytes.size(), [&](std::uint64_t begin, std::span<std::byte> piece) {
+        num_made += piece.size();
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(begin), piece.size(),
+                    piece.begin());
     });
     write_sections(file_, {{"a", text("first")},
                            {"b", SectionContent::view(numbers)},
                            {"c", made},
                            {"d", text("last")}});
     EXPECT_TRUE(files::read(file_) == own);
-    EXPECT_EQ(num_made, 1);
+    EXPECT_EQ(num_made, bytes.size());
     EXPECT_TRUE(read_sections(file_).at("c") == bytes);
 }
 
@@ -206,9 +209,10 @@ TEST_F(SectionFileTest, SaysWhatIsWrong) {
         write(bad);
     };
     changed([](auto& b) { put(b, VersionAt, std::uint32_t{0}); });
-    expect_refused("expected .prt version 1 to 4, got version 0");
+    expect_refused(fmt::format("expected .prt version 1 to {}, got version 0", SceneFileVersion));
     changed([](auto& b) { put(b, VersionAt, SceneFileVersion + 1); });
-    expect_refused("expected .prt version 4, got version 5, made by a newer relumine");
+    expect_refused(fmt::format("expected .prt version {}, got version {}, made by a newer relumine",
+                               SceneFileVersion, SceneFileVersion + 1));
     changed([](auto& b) { std::reverse(b.begin() + ByteOrderAt, b.begin() + VersionAt); });
     expect_refused("expected a little-endian .prt scene, got a big-endian one");
     changed([](auto& b) { b.resize(b.size() - 3); });
