@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
+#include "relight/band_sums.h"
 #include "relight/texel_kernel.h"
 
 namespace relumine::relight {
@@ -44,13 +45,24 @@ struct FaceSums {
     }
 };
 
-/// Turns coordinates (u, v, 1) of a face to the world, for one colour channel.
-glm::dvec3 to_world(cubemap::Face face, double u, double v, double one) {
+/// Adds whole texels, of which (x, y) is the first.
+void add_whole(const TexelSums& whole, std::uint32_t x, std::uint32_t y, double step,
+               FaceSums& sums) {
+    sums.one += whole.one;
+    sums.u += whole.x * step + whole.one * ((x + 0.5) * step - 1.0);
+    sums.v += whole.y * step + whole.one * ((y + 0.5) * step - 1.0);
+}
+
+/// Turns sums in the coordinates of a face to the world.
+VectorIrradiance to_world(cubemap::Face face, const FaceSums& sums) {
     // cube_point is linear in (2s - 1, 2t - 1, 1) for a fixed face.
     const glm::dvec3 centre = cubemap::cube_point(face, 0.5, 0.5);
     const glm::dvec3 right = cubemap::cube_point(face, 1.0, 0.5) - centre;
     const glm::dvec3 down = cubemap::cube_point(face, 0.5, 1.0) - centre;
-    return one * centre + u * right + v * down;
+    const auto channel = [&](int i) {
+        return sums.one[i] * centre + sums.u[i] * right + sums.v[i] * down;
+    };
+    return {.red = channel(0), .green = channel(1), .blue = channel(2)};
 }
 
 } // namespace
@@ -123,20 +135,27 @@ VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
             weights_.data() + std::size_t{rows.whole_begin} * resolution_ + columns.whole_begin,
             resolution_, columns.whole_end - columns.whole_begin,
             rows.whole_end - rows.whole_begin);
-        sums.one += whole.one;
-        sums.u += whole.x * step + whole.one * ((columns.whole_begin + 0.5) * step - 1.0);
-        sums.v += whole.y * step + whole.one * ((rows.whole_begin + 0.5) * step - 1.0);
+        add_whole(whole, columns.whole_begin, rows.whole_begin, step, sums);
     }
-    return {.red = to_world(cell.face, sums.u.r, sums.v.r, sums.one.r),
-            .green = to_world(cell.face, sums.u.g, sums.v.g, sums.one.g),
-            .blue = to_world(cell.face, sums.u.b, sums.v.b, sums.one.b)};
+    return to_world(cell.face, sums);
 }
 
 std::vector<VectorIrradiance> LightBinning::sums(const cubemap::CubeMap& environment,
                                                  std::span<const prt::Cell> cells) const {
+    const BandSums bands(resolution_, cells);
+    const std::vector<TexelSums> whole = bands.sums(environment, weights_);
     std::vector<VectorIrradiance> result(cells.size());
-    files::parallel_for(std::size_t{0}, cells.size(),
-                        [&](std::size_t i) { result[i] = sum(environment, cells[i]); });
+    files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
+        const prt::Cell& cell = cells[i];
+        if (!bands.has(i)) {
+            result[i] = sum(environment, cell);
+            return;
+        }
+        const std::uint32_t edge = resolution_ >> cell.level;
+        FaceSums sums;
+        add_whole(whole[i], cell.x * edge, cell.y * edge, 2.0 / resolution_, sums);
+        result[i] = to_world(cell.face, sums);
+    });
     return result;
 }
 

@@ -1,7 +1,9 @@
-// The inner loop of binning: sums over a rectangle of texels. Vectorised with run-time dispatch.
+// The inner loop of binning: sums over texels. Vectorised with run-time dispatch.
 #pragma once
 
+#include <array>
 #include <cstddef>
+#include <span>
 
 #include <glm/vec3.hpp>
 
@@ -23,5 +25,27 @@ struct TexelSums {
 ///           map's power.
 [[nodiscard]] TexelSums texel_sums(const glm::vec3* radiance, const float* weights,
                                    std::size_t stride, std::size_t width, std::size_t height);
+
+/// Sums down 8 texels side by side, from the first of at most 64 rows on. A rectangle of such
+/// columns has the same TexelSums as texel_sums() finds, bit by bit, if it adds up its columns from
+/// left to right, and those of the next 64 rows after them.
+struct TexelColumn {
+    static constexpr std::size_t Width = 8;
+    static constexpr std::size_t MaxHeight = 64;
+
+    /// [texel][channel] L q
+    std::array<float, 3 * Width> one{};
+    /// [texel][channel] L q y, where y counts rows from the column's first one
+    std::array<float, 3 * Width> y{};
+    /// Rows so far
+    std::size_t height = 0;
+
+    /// Adds the column to a rectangle's sums. `first_x` and `first_y` is the column's first texel.
+    void add_to(TexelSums& sums, std::size_t first_x, std::size_t first_y) const;
+};
+
+/// Adds rows to columns side by side. No column may become higher than its MaxHeight.
+void add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
+              std::size_t num_rows, std::span<TexelColumn> columns);
 
 } // namespace relumine::relight

@@ -131,6 +131,23 @@ TEST(LightBinning, EveryLeafGetsItsOwnPart) {
     }
 }
 
+TEST(LightBinning, AllCellsAtOnceHaveTheBitsOfEachAlone) {
+    // Cells higher than a column may be, as high as a column is wide, smaller, and larger than the
+    // part of a face that is read at once; and a resolution whose cells do not fit columns.
+    std::mt19937 random(4);
+    for (const std::uint32_t r : {64u, 192u, 1024u}) {
+        const prt::Quadtree tree(scenes::random_split_flags(random, 8, 0.8));
+        const cubemap::CubeMap environment = scenes::random_environment(r, 10 + r);
+        const LightBinning binning(r);
+        scenes::on_every_target([&] {
+            const auto sums = binning.sums(environment, tree.leaves());
+            for (std::size_t i = 0; i < sums.size(); ++i)
+                ASSERT_EQ(sums[i], binning.sum(environment, tree.leaves()[i]))
+                    << "R = " << r << ", level " << tree.leaves()[i].level;
+        });
+    }
+}
+
 TEST(LightBinning, WhiteFaceHasTheVectorIrradianceOfASquare) {
     // Half the sum over four edges of the angle acos(1/3) times the edge plane's normal, which
     // leans by 45 degrees.
