@@ -53,6 +53,16 @@ std::size_t first_bit(std::uint64_t bits) {
     return static_cast<std::size_t>(std::countr_zero(bits));
 }
 
+/// Returns how many counts the mixed pairs of a word have.
+std::size_t num_counts(std::uint64_t mixed) {
+    return static_cast<std::size_t>(std::popcount(mixed)) * prt::BlockSize;
+}
+
+/// Returns how many of them come before those of a cluster, a bit of the word.
+std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
+    return num_counts(mixed & (cluster - 1));
+}
+
 /// The light of a word's clusters.
 struct WordLights {
     const float* vectors;
@@ -281,10 +291,14 @@ void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLi
                                  .beams = lights.beams.data() + w * 64 * ClusterLights::BeamStride,
                                  .spread = lights.spread[w]};
         const std::uint64_t pairs = (blocks.mixed | blocks.across) & chosen;
-        for_blocks(pairs, [&](std::size_t block) {
-            const PairWord word{
-                counts.mixed[first_word + block], scene.words.across_of(blocks, block),
-                counts.mixed_counts(first_word + block, 0), scene.normals[begin + block]};
+        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
+        for_blocks(blocks.mixed | pairs, [&](std::size_t block) {
+            const PairWord word{counts.mixed[first_word + block],
+                                scene.words.across_of(blocks, block), of_pairs,
+                                scene.normals[begin + block]};
+            of_pairs += num_counts(word.mixed);
+            if ((chosen >> block & 1u) == 0)
+                return;
             if (((word.mixed | word.across) & of_word.spread) != 0)
                 add_pairs<true>(word, of_word, sums[block]);
             else
@@ -351,29 +365,29 @@ private:
     hn::Vec<D> lower_, upper_;
 };
 
-/// Adds the changes of a word's clusters to what adds up per receiver.
-void change_pairs(const PairWord& word, const LightChanges& changes, const ChangedWord& change,
-                  BlockLight& light) {
+/// A changed cluster that a block sees in part or across a horizon.
+struct ChangedPair {
+    /// Null: the block sees it whole.
+    const std::uint8_t* counts;
+    /// Among the changed clusters.
+    std::size_t cluster;
+};
+
+/// Adds the changes of a block's pairs to what adds up per receiver.
+void change_pairs(std::span<const ChangedPair> pairs, const BlockNormals& normals,
+                  const LightChanges& changes, BlockLight& light) {
     const Floats d;
     const auto zero = hn::Zero(d);
     const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-        const Normals<Floats> n(word.normals, lane);
+        const Normals<Floats> n(normals, lane);
         DoubleSum red(light.mixed[0].data() + lane);
         DoubleSum green(light.mixed[1].data() + lane);
         DoubleSum blue(light.mixed[2].data() + lane);
-        for (std::uint64_t bits = (word.mixed | word.across) & change.clusters; bits != 0;
-             bits &= bits - 1) {
-            const std::uint64_t before = (bits & (~bits + 1)) - 1;
-            const std::size_t cluster =
-                change.first + static_cast<std::size_t>(std::popcount(change.clusters & before));
-            const bool is_mixed = (word.mixed & (before + 1)) != 0;
-            const std::uint8_t* counts =
-                word.counts +
-                static_cast<std::size_t>(std::popcount(word.mixed & before)) * prt::BlockSize;
-            const auto count = is_mixed ? load_counts(d, counts + lane) : full;
-            for (std::size_t i = changes.beams_before[cluster];
-                 i < changes.beams_before[cluster + 1]; ++i) {
+        for (const ChangedPair& pair : pairs) {
+            const auto count = pair.counts != nullptr ? load_counts(d, pair.counts + lane) : full;
+            for (std::size_t i = changes.beams_before[pair.cluster];
+                 i < changes.beams_before[pair.cluster + 1]; ++i) {
                 const BeamChange& beam = changes.beams[i];
                 const auto cosine = n.dot(beam.direction.data());
                 const DoubleSum::Part part(hn::Mul(count, hn::Max(cosine, zero)));
@@ -386,6 +400,65 @@ void change_pairs(const PairWord& word, const LightChanges& changes, const Chang
         green.store(light.mixed[1].data() + lane);
         blue.store(light.mixed[2].data() + lane);
     }
+}
+
+/// Changed pairs of a tile's blocks. They are kept for a while, so that their counts, which lie far
+/// apart, can come from memory, and a block's light is read and written once for many.
+class ChangedPairs {
+public:
+    ChangedPairs(const BlockNormals* normals, const LightChanges& changes, BlockLight* of_block)
+        : normals_(normals), changes_(changes), of_block_(of_block) {}
+
+    void add(std::size_t block, const ChangedPair& pair) {
+        if (pair.counts != nullptr)
+            hwy::Prefetch(pair.counts);
+        pairs_[block][sizes_[block]++] = pair;
+        if (sizes_[block] == MostPairs)
+            finish(block);
+    }
+    void finish(std::size_t block) {
+        change_pairs({pairs_[block].data(), sizes_[block]}, normals_[block], changes_,
+                     of_block_[block]);
+        sizes_[block] = 0;
+    }
+
+private:
+    static constexpr std::size_t MostPairs = 32;
+
+    const BlockNormals* normals_;
+    const LightChanges& changes_;
+    BlockLight* of_block_;
+    std::array<std::array<ChangedPair, MostPairs>, prt::VisibleCounts::TileBlocks> pairs_;
+    std::array<std::uint8_t, prt::VisibleCounts::TileBlocks> sizes_{};
+};
+
+/// Blocks of a tile, bit b for block b.
+struct BlocksOfWord {
+    /// Have all of the wanted bits in their word, or some.
+    std::uint64_t all = 0, some = 0;
+};
+
+BlocksOfWord blocks_with(const std::uint64_t* words, std::size_t num_blocks, std::uint64_t wanted) {
+    const hn::CappedTag<std::uint64_t, 8> d;
+    const auto bits = hn::Set(d, wanted);
+    BlocksOfWord blocks;
+    std::size_t block = 0;
+    for (; block + hn::Lanes(d) <= num_blocks; block += hn::Lanes(d)) {
+        const auto found = hn::And(hn::LoadU(d, words + block), bits);
+        const auto mask_bits = [&](auto mask) {
+            std::uint8_t few[8] = {};
+            hn::StoreMaskBits(d, mask, few);
+            return std::uint64_t{few[0]} << block;
+        };
+        blocks.all |= mask_bits(hn::Eq(found, bits));
+        blocks.some |= mask_bits(hn::Ne(found, hn::Zero(d)));
+    }
+    for (; block < num_blocks; ++block) {
+        const std::uint64_t found = words[block] & wanted;
+        blocks.all |= std::uint64_t{found == wanted} << block;
+        blocks.some |= std::uint64_t{found != 0} << block;
+    }
+    return blocks;
 }
 
 void add(const std::array<double, ClusterLights::Stride>& vector,
@@ -402,48 +475,67 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const Light
                           BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
+    const std::size_t num_blocks = counts.tile_begin(tile + 1) - begin;
     BlockLight* of_block = light + begin;
-    std::uint64_t touched = 0;
+    // Side by side, as in add_visible().
+    using Vector = std::array<double, ClusterLights::Stride>;
+    std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
+    std::uint64_t summed = 0, touched = 0;
+    ChangedPairs pairs(scene.normals.data() + begin, changes, of_block);
     for (const ChangedWord& change : changes.words) {
         const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + change.word];
         const std::size_t first_word = counts.word(begin, change.word);
-        // Most blocks that see one changed cluster whole see all of them, because these are
-        // neighbours in the sky.
-        for_blocks(blocks.visible, [&](std::size_t block) {
-            const std::uint64_t seen = counts.visible[first_word + block] &
-                                       ~scene.words.across_of(blocks, block) & change.clusters;
-            if (seen == 0)
-                return;
-            touched |= std::uint64_t{1} << block;
-            if (seen == change.clusters)
-                add(change.vector, of_block[block].visible);
-            else
-                for (std::uint64_t bits = seen; bits != 0; bits &= bits - 1)
-                    add(changes.vectors[change.first +
-                                        static_cast<std::size_t>(std::popcount(
-                                            change.clusters & ((bits & (~bits + 1)) - 1)))],
-                        of_block[block].visible);
-        });
-        // The counts lie far apart: they are asked for before the first is needed.
-        std::uint64_t hit = 0;
-        for_blocks(blocks.mixed | blocks.across, [&](std::size_t block) {
-            const std::uint64_t mixed = counts.mixed[first_word + block] & change.clusters;
-            if ((mixed | (scene.words.across_of(blocks, block) & change.clusters)) == 0)
-                return;
-            hit |= std::uint64_t{1} << block;
-            if (mixed != 0)
-                hwy::Prefetch(counts.mixed_counts(first_word + block,
-                                                  static_cast<std::uint32_t>(first_bit(mixed))));
-        });
-        touched |= hit;
-        for_blocks(hit, [&](std::size_t block) {
-            const std::size_t word = first_word + block;
-            change_pairs({counts.mixed[word], scene.words.across_of(blocks, block),
-                          counts.mixed_counts(word, 0), scene.normals[begin + block]},
-                         changes, change, of_block[block]);
+        const std::uint64_t* const visible = counts.visible.data() + first_word;
+        const std::uint64_t* const mixed = counts.mixed.data() + first_word;
+        const auto index_of = [&](std::uint64_t bit) {
+            return change.first +
+                   static_cast<std::size_t>(std::popcount(change.clusters & (bit - 1)));
+        };
+        const auto for_clusters = [&](std::uint64_t bits, const auto& visit) {
+            for (; bits != 0; bits &= bits - 1)
+                visit(bits & (~bits + 1));
+        };
+        if ((blocks.visible | blocks.across) != 0) {
+            BlocksOfWord seen = blocks_with(visible, num_blocks, change.clusters);
+            std::uint64_t in_part = seen.some & ~seen.all;
+            for_blocks(seen.some & blocks.across, [&](std::size_t block) {
+                const std::uint64_t bit = std::uint64_t{1} << block;
+                const std::uint64_t across = scene.words.across_of(blocks, block) & change.clusters;
+                if (across == 0)
+                    return;
+                touched |= bit;
+                for_clusters(across, [&](std::uint64_t cluster) {
+                    pairs.add(block, {.counts = nullptr, .cluster = index_of(cluster)});
+                });
+                seen.all &= ~bit;
+                in_part |= bit;
+            });
+            // Most blocks that see one changed cluster whole see all of them, because these are
+            // neighbours in the sky.
+            for_blocks(seen.all, [&](std::size_t block) { add(change.vector, sums[block]); });
+            for_blocks(in_part, [&](std::size_t block) {
+                const std::uint64_t whole =
+                    visible[block] & change.clusters & ~scene.words.across_of(blocks, block);
+                for_clusters(whole, [&](std::uint64_t cluster) {
+                    add(changes.vectors[index_of(cluster)], sums[block]);
+                });
+            });
+            summed |= seen.some;
+        }
+        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
+        for_blocks(blocks.mixed, [&](std::size_t block) {
+            const std::uint64_t hit = mixed[block] & change.clusters;
+            touched |= std::uint64_t{hit != 0} << block;
+            for_clusters(hit, [&](std::uint64_t cluster) {
+                pairs.add(block, {.counts = of_pairs + counts_before(mixed[block], cluster),
+                                  .cluster = index_of(cluster)});
+            });
+            of_pairs += num_counts(mixed[block]);
         });
     }
-    return touched;
+    for_blocks(touched, [&](std::size_t block) { pairs.finish(block); });
+    for_blocks(summed, [&](std::size_t block) { add(sums[block], of_block[block].visible); });
+    return touched | summed;
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE

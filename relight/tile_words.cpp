@@ -168,6 +168,7 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
         for (std::size_t w = 0; w < num_words; ++w) {
             TileWord& of_tile = result.words[tile * num_words + w];
             of_tile.across_before = all_across.size();
+            of_tile.mixed_before = counts.mixed_before[counts.word(begin, w)];
             const float* corners = &cells.corners[w * 64].front().x;
             for (std::size_t block = begin; block < end; ++block) {
                 const std::size_t word = counts.word(block, w);

@@ -22,6 +22,9 @@ struct TileWord {
     std::uint64_t edges = 0;
     /// The block sees some clusters in part.
     std::uint64_t mixed = 0;
+    /// Mixed pairs of the scene before the first block's; those of the tile's blocks follow each
+    /// other.
+    std::uint64_t mixed_before = 0;
     /// The block sees some clusters whole across a receiver's horizon: it has an entry in
     /// TileWords::across.
     std::uint64_t across = 0;
