@@ -85,13 +85,14 @@ LightBinning::LightBinning(std::uint32_t face_resolution) : resolution_(face_res
     const std::vector<double> solid_angles = cubemap::texel_solid_angles(face_resolution);
     weights_.resize(solid_angles.size());
     const double step = 2.0 / face_resolution;
-    for (std::size_t y = 0; y < face_resolution; ++y)
+    files::parallel_for(std::size_t{0}, std::size_t{face_resolution}, [&](std::size_t y) {
         for (std::size_t x = 0; x < face_resolution; ++x) {
             const double u = (static_cast<double>(x) + 0.5) * step - 1.0;
             const double v = (static_cast<double>(y) + 0.5) * step - 1.0;
             const std::size_t i = y * face_resolution + x;
             weights_[i] = static_cast<float>(solid_angles[i] / std::sqrt(u * u + v * v + 1.0));
         }
+    });
 }
 
 VectorIrradiance LightBinning::sum(const cubemap::CubeMap& environment,
