@@ -23,6 +23,7 @@
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
+#include "prt/scene/section_reader.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/app/small_files.h"
 #include "tests/fuzz/prt_file.h"
@@ -246,12 +247,16 @@ void write_scenes(const fs::path& folder) {
     scene.receivers = prt::vertex_receivers(scene.mesh);
     scene.transfer = prt::precompute(scene.receivers, rays, options);
     save("vertices");
-    for (const std::uint32_t version : {1u, 2u}) {
-        std::vector<std::byte> older = files::read(folder / "prt/vertices.prt");
+    for (const std::uint32_t version : {1u, 2u, 4u}) {
+        const fs::path path = folder / fmt::format("prt/version_{}.prt", version);
+        prt::Sections sections = prt::read_sections(folder / "prt/vertices.prt");
+        sections.erase("count_codes");
+        sections.erase("counts_14");
+        sections["counts"] = prt::bytes_of(scene.transfer.counts.counts);
+        prt::write_sections(path, prt::to_write(std::move(sections)));
+        std::vector<std::byte> older = files::read(path);
         fuzz::set_version(older, version);
-        older = fuzz::with_checksums(older);
-        write(folder / fmt::format("prt/version_{}.prt", version),
-              {reinterpret_cast<const char*>(older.data()), older.size()});
+        write(path, fuzz::with_checksums(older));
     }
     prt::look_from(scene.receivers, glm::vec3(0.0f, 1.0f, 3.0f));
     scene.receivers.surfaces.assign(scene.receivers.size(), {.specular = glm::vec3(0.5f),

@@ -66,7 +66,9 @@ protected:
     }
 
     const VisibleCounts counts_ = random_counts();
-    fs::path folder_ = fs::path(testing::TempDir()) / "count_sections";
+    fs::path folder_ = fs::path(testing::TempDir()) /
+                       ("count_sections_" +
+                        std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::path file_ = folder_ / "counts.prt";
     Sections good_;
 };
