@@ -9,9 +9,9 @@ namespace relumine::relight {
 
 namespace {
 
-constexpr std::uint32_t Width = TexelColumn::Width;
-/// Bands of a face, as long as columns are that narrow. Tasks are bands.
-constexpr std::uint32_t BandsPerFace = 8;
+constexpr std::size_t Width = TexelColumn::Width;
+/// A task is a band. Cells of the least level that a precompute has by default are as high.
+constexpr std::size_t BandsPerFace = 8;
 
 } // namespace
 
@@ -20,26 +20,22 @@ BandSums::BandSums(std::uint32_t face_resolution, std::span<const prt::Cell> cel
       steps_per_band_(num_columns_ / BandsPerFace), is_summed_(cells.size()) {
     if (face_resolution % (Width * BandsPerFace) != 0)
         return;
-    cell_at_.assign(std::size_t{cubemap::NumFaces} * num_columns_ * num_columns_, NoCell);
+    cell_at_.assign(row_of(cubemap::NumFaces, 0), NoCell);
     for (std::size_t i = 0; i < cells.size(); ++i) {
         const prt::Cell& cell = cells[i];
-        const std::uint32_t edge = columns_of(cell);
+        const std::size_t edge = columns_of(cell);
         if (edge == 0 || edge > steps_per_band_)
             continue;
         is_summed_[i] = true;
-        for (std::uint32_t step = cell.y * edge; step < (cell.y + 1) * edge; ++step) {
-            const auto row =
-                cell_at_.begin() +
-                static_cast<std::ptrdiff_t>(
-                    (static_cast<std::size_t>(cell.face) * num_columns_ + step) * num_columns_ +
-                    cell.x * edge);
-            std::fill_n(row, edge, static_cast<std::uint32_t>(i));
-        }
+        for (std::size_t step = cell.y * edge; step < (cell.y + 1) * edge; ++step)
+            std::fill_n(
+                &cell_at_[row_of(static_cast<std::size_t>(cell.face), step) + cell.x * edge], edge,
+                static_cast<std::uint32_t>(i));
     }
 }
 
-std::uint32_t BandSums::columns_of(const prt::Cell& cell) const {
-    const std::uint32_t cells_per_edge = std::uint32_t{1} << cell.level;
+std::size_t BandSums::columns_of(const prt::Cell& cell) const {
+    const std::size_t cells_per_edge = std::size_t{1} << cell.level;
     return num_columns_ % cells_per_edge == 0 ? num_columns_ / cells_per_edge : 0;
 }
 
@@ -48,8 +44,7 @@ std::vector<TexelSums> BandSums::sums(const cubemap::CubeMap& environment,
     std::vector<TexelSums> result(cells_.size());
     if (cell_at_.empty())
         return result;
-    constexpr std::uint32_t NumFaces = cubemap::NumFaces;
-    files::parallel_for(std::uint32_t{0}, BandsPerFace * NumFaces, [&](std::uint32_t i) {
+    files::parallel_for(std::size_t{0}, BandsPerFace * cubemap::NumFaces, [&](std::size_t i) {
         sum_band(environment, weights, i / BandsPerFace, i % BandsPerFace * steps_per_band_,
                  result);
     });
@@ -57,22 +52,19 @@ std::vector<TexelSums> BandSums::sums(const cubemap::CubeMap& environment,
 }
 
 void BandSums::sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
-                        std::size_t face, std::uint32_t first_step,
+                        std::size_t face, std::size_t first_step,
                         std::vector<TexelSums>& sums) const {
     const std::size_t resolution = environment.resolution;
     std::vector<TexelColumn> columns(num_columns_);
-    const auto cells_of = [&](std::uint32_t step) {
-        return &cell_at_[(face * num_columns_ + step) * num_columns_];
-    };
-    for (std::uint32_t step = first_step; step < first_step + steps_per_band_; ++step) {
-        const std::size_t row = std::size_t{step} * Width;
+    for (std::size_t step = first_step; step < first_step + steps_per_band_; ++step) {
+        const std::size_t row = step * Width;
         add_rows(
             &environment.at(static_cast<cubemap::Face>(face), 0, static_cast<std::uint32_t>(row)),
             weights.data() + row * resolution, resolution, Width, columns);
         const bool is_last = step + 1 == first_step + steps_per_band_;
-        const std::uint32_t* const here = cells_of(step);
-        const std::uint32_t* const below = is_last ? nullptr : cells_of(step + 1);
-        for (std::uint32_t i = 0; i < num_columns_; ++i) {
+        const std::uint32_t* const here = &cell_at_[row_of(face, step)];
+        const std::uint32_t* const below = is_last ? nullptr : here + num_columns_;
+        for (std::size_t i = 0; i < num_columns_; ++i) {
             TexelColumn& column = columns[i];
             const std::uint32_t index = here[i];
             if (below != nullptr && below[i] == index && index != NoCell &&

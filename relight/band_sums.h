@@ -12,8 +12,8 @@
 namespace relumine::relight {
 
 /// The cells that are summed band by band: squares of whole TexelColumns, as high as a band at
-/// most. Cells by themselves read a few lines of memory from each row, far apart, which takes three
-/// times as long.
+/// most. Cells by themselves read a few lines of memory from each row, far apart, which takes twice
+/// as long.
 class BandSums {
 public:
     /// `cells` do not overlap.
@@ -27,17 +27,21 @@ public:
 
 private:
     void sum_band(const cubemap::CubeMap& environment, std::span<const float> weights,
-                  std::size_t face, std::uint32_t first_step, std::vector<TexelSums>& sums) const;
+                  std::size_t face, std::size_t first_step, std::vector<TexelSums>& sums) const;
     /// Returns the cell's edge in columns; 0 for a cell that is no square of whole columns.
-    [[nodiscard]] std::uint32_t columns_of(const prt::Cell& cell) const;
+    [[nodiscard]] std::size_t columns_of(const prt::Cell& cell) const;
+    /// Returns the place of a step's first column in `cell_at_`.
+    [[nodiscard]] std::size_t row_of(std::size_t face, std::size_t step) const {
+        return (face * num_columns_ + step) * num_columns_;
+    }
 
     static constexpr std::uint32_t NoCell = ~std::uint32_t{0};
 
     std::span<const prt::Cell> cells_;
     /// Of a face
-    std::uint32_t num_columns_;
-    /// Rows of a band, in steps of as many rows as a column is wide
-    std::uint32_t steps_per_band_;
+    std::size_t num_columns_;
+    /// A step is as many rows as a column is wide.
+    std::size_t steps_per_band_;
     std::vector<bool> is_summed_;
     /// [face][step][column] index of the cell
     std::vector<std::uint32_t> cell_at_;

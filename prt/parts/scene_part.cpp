@@ -130,6 +130,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
             refuse("directions to the eye and surfaces with highlights", "none");
         std::vector<BlockRange> blocks;
+        blocks.reserve(tiles.size());
         for (const std::size_t tile : tiles)
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
         transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
