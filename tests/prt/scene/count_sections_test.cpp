@@ -22,7 +22,8 @@ VisibleCounts random_counts() {
     std::mt19937_64 random(3);
     const std::size_t num_words = counts.num_blocks() * counts.words_per_block();
     for (std::size_t word = 0; word < num_words; ++word) {
-        const std::uint64_t bits = random() & random();
+        std::uint64_t bits = random();
+        bits &= random(); // a quarter of all pairs
         counts.visible.push_back(bits & random());
         counts.mixed.push_back(bits & ~counts.visible.back());
     }
