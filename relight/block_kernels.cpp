@@ -432,35 +432,6 @@ private:
     std::array<std::uint8_t, prt::VisibleCounts::TileBlocks> sizes_{};
 };
 
-/// Blocks of a tile, bit b for block b.
-struct BlocksOfWord {
-    /// Have all of the wanted bits in their word, or some.
-    std::uint64_t all = 0, some = 0;
-};
-
-BlocksOfWord blocks_with(const std::uint64_t* words, std::size_t num_blocks, std::uint64_t wanted) {
-    const hn::CappedTag<std::uint64_t, 8> d;
-    const auto bits = hn::Set(d, wanted);
-    BlocksOfWord blocks;
-    std::size_t block = 0;
-    for (; block + hn::Lanes(d) <= num_blocks; block += hn::Lanes(d)) {
-        const auto found = hn::And(hn::LoadU(d, words + block), bits);
-        const auto mask_bits = [&](auto mask) {
-            std::uint8_t few[8] = {};
-            hn::StoreMaskBits(d, mask, few);
-            return std::uint64_t{few[0]} << block;
-        };
-        blocks.all |= mask_bits(hn::Eq(found, bits));
-        blocks.some |= mask_bits(hn::Ne(found, hn::Zero(d)));
-    }
-    for (; block < num_blocks; ++block) {
-        const std::uint64_t found = words[block] & wanted;
-        blocks.all |= std::uint64_t{found == wanted} << block;
-        blocks.some |= std::uint64_t{found != 0} << block;
-    }
-    return blocks;
-}
-
 void add(const std::array<double, ClusterLights::Stride>& vector,
          std::array<double, ClusterLights::Stride>& sum) {
     constexpr std::size_t Last = ClusterLights::Stride - 1;
@@ -475,12 +446,11 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const Light
                           BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
     const std::size_t begin = counts.tile_begin(tile);
-    const std::size_t num_blocks = counts.tile_begin(tile + 1) - begin;
     BlockLight* of_block = light + begin;
     // Side by side, as in add_visible().
     using Vector = std::array<double, ClusterLights::Stride>;
     std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
-    std::uint64_t summed = 0, touched = 0;
+    std::uint64_t summed = 0, paired = 0;
     ChangedPairs pairs(scene.normals.data() + begin, changes, of_block);
     for (const ChangedWord& change : changes.words) {
         const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + change.word];
@@ -495,37 +465,33 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const Light
             for (; bits != 0; bits &= bits - 1)
                 visit(bits & (~bits + 1));
         };
-        if ((blocks.visible | blocks.across) != 0) {
-            BlocksOfWord seen = blocks_with(visible, num_blocks, change.clusters);
-            std::uint64_t in_part = seen.some & ~seen.all;
-            for_blocks(seen.some & blocks.across, [&](std::size_t block) {
-                const std::uint64_t bit = std::uint64_t{1} << block;
-                const std::uint64_t across = scene.words.across_of(blocks, block) & change.clusters;
-                if (across == 0)
-                    return;
-                touched |= bit;
-                for_clusters(across, [&](std::uint64_t cluster) {
-                    pairs.add(block, {.counts = nullptr, .cluster = index_of(cluster)});
-                });
-                seen.all &= ~bit;
-                in_part |= bit;
+        for_blocks(blocks.full, [&](std::size_t block) { add(change.vector, sums[block]); });
+        summed |= blocks.full;
+        for_blocks((blocks.visible | blocks.across) & ~blocks.full, [&](std::size_t block) {
+            const std::uint64_t bit = std::uint64_t{1} << block;
+            const std::uint64_t seen = visible[block] & change.clusters;
+            if (seen == 0)
+                return;
+            const std::uint64_t across = scene.words.across_of(blocks, block) & seen;
+            paired |= across != 0 ? bit : 0;
+            for_clusters(across, [&](std::uint64_t cluster) {
+                pairs.add(block, {.counts = nullptr, .cluster = index_of(cluster)});
             });
             // Most blocks that see one changed cluster whole see all of them, because these are
             // neighbours in the sky.
-            for_blocks(seen.all, [&](std::size_t block) { add(change.vector, sums[block]); });
-            for_blocks(in_part, [&](std::size_t block) {
-                const std::uint64_t whole =
-                    visible[block] & change.clusters & ~scene.words.across_of(blocks, block);
+            const std::uint64_t whole = seen & ~across;
+            summed |= whole != 0 ? bit : 0;
+            if (whole == change.clusters)
+                add(change.vector, sums[block]);
+            else
                 for_clusters(whole, [&](std::uint64_t cluster) {
                     add(changes.vectors[index_of(cluster)], sums[block]);
                 });
-            });
-            summed |= seen.some;
-        }
+        });
         const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
         for_blocks(blocks.mixed, [&](std::size_t block) {
             const std::uint64_t hit = mixed[block] & change.clusters;
-            touched |= std::uint64_t{hit != 0} << block;
+            paired |= std::uint64_t{hit != 0} << block;
             for_clusters(hit, [&](std::uint64_t cluster) {
                 pairs.add(block, {.counts = of_pairs + counts_before(mixed[block], cluster),
                                   .cluster = index_of(cluster)});
@@ -533,9 +499,9 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const Light
             of_pairs += num_counts(mixed[block]);
         });
     }
-    for_blocks(touched, [&](std::size_t block) { pairs.finish(block); });
+    for_blocks(paired, [&](std::size_t block) { pairs.finish(block); });
     for_blocks(summed, [&](std::size_t block) { add(sums[block], of_block[block].visible); });
-    return touched | summed;
+    return paired | summed;
 }
 
 } // namespace relumine::relight::HWY_NAMESPACE

@@ -191,6 +191,8 @@ TileWords tile_words(const prt::Transfer& transfer, std::span<const BlockNormals
                 }
                 if (visible != 0)
                     of_tile.visible |= bit;
+                if (visible == ~std::uint64_t{0})
+                    of_tile.full |= bit;
                 if ((visible ^ (visible << 1 | last[block - begin] >> 63)) != 0)
                     of_tile.edges |= bit;
                 last[block - begin] = visible;

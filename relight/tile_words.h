@@ -18,6 +18,8 @@ namespace relumine::relight {
 struct TileWord {
     /// The block sees some clusters whole, and these lie above its receivers' horizons.
     std::uint64_t visible = 0;
+    /// It sees all 64 clusters so.
+    std::uint64_t full = 0;
     /// A run of such clusters begins or ends here. Runs go on from word to word.
     std::uint64_t edges = 0;
     /// The block sees some clusters in part.
