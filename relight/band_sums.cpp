@@ -26,11 +26,20 @@ BandSums::BandSums(std::uint32_t face_resolution, std::span<const prt::Cell> cel
         const std::size_t edge = columns_of(cell);
         if (edge == 0 || edge > steps_per_band_)
             continue;
+        const auto row = [&](std::size_t step) {
+            const std::size_t first = row_of(static_cast<std::size_t>(cell.face), step);
+            return std::span(cell_at_).subspan(first + cell.x * edge, edge);
+        };
+        const std::size_t begin = cell.y * edge, end = begin + edge;
+        bool is_free = true;
+        for (std::size_t step = begin; step < end; ++step)
+            for (const std::uint32_t other : row(step))
+                is_free = is_free && other == NoCell;
+        if (!is_free)
+            continue;
         is_summed_[i] = true;
-        for (std::size_t step = cell.y * edge; step < (cell.y + 1) * edge; ++step)
-            std::fill_n(
-                &cell_at_[row_of(static_cast<std::size_t>(cell.face), step) + cell.x * edge], edge,
-                static_cast<std::uint32_t>(i));
+        for (std::size_t step = begin; step < end; ++step)
+            std::ranges::fill(row(step), static_cast<std::uint32_t>(i));
     }
 }
 

@@ -16,7 +16,7 @@ namespace relumine::relight {
 /// as long.
 class BandSums {
 public:
-    /// `cells` do not overlap.
+    /// `cells` must last as long as this.
     BandSums(std::uint32_t face_resolution, std::span<const prt::Cell> cells);
 
     /// Whether sums() has the cell's.

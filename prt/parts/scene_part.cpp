@@ -1,14 +1,10 @@
 #include "prt/parts/scene_part.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 #include <xxhash.h>

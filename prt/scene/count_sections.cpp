@@ -17,7 +17,7 @@ namespace {
 
 // Up to version 4, counts are bytes. Then they are codes of four bits, two in a byte. Counts are 0
 // to 16, and hardly ever 14: so the code 14 stands for 16, and a list names the entries that are 14
-// after all. The file of the Stanford bunny is 8 % smaller for it.
+// after all. The file of the Stanford bunny is 7 % smaller for it.
 const std::string Visible = "visible", Mixed = "mixed", Counts = "counts", Codes = "count_codes",
                   Rare = "counts_14";
 constexpr std::uint8_t RareCount = 14, FullCount = 16;
@@ -31,7 +31,7 @@ std::uint8_t code_of(std::uint8_t count) {
 }
 
 /// Returns the two counts of each byte of codes, as they lie in memory.
-std::array<std::uint16_t, 256> counts_by_code() {
+constexpr std::array<std::uint16_t, 256> counts_by_code() {
     const auto count = [](std::uint32_t code) -> std::uint32_t {
         return code == RareCount ? FullCount : code;
     };
@@ -70,14 +70,14 @@ std::vector<std::byte> rare_entries(const std::vector<std::uint8_t>& counts) {
 std::vector<std::uint8_t> counts_of(const SectionReader& reader, std::span<const std::byte> codes,
                                     std::span<const EntryRange> entries,
                                     std::uint64_t num_entries) {
-    static const std::array<std::uint16_t, 256> table = counts_by_code();
+    static constexpr std::array<std::uint16_t, 256> Table = counts_by_code();
     std::vector<std::uint8_t> counts(2 * codes.size());
     constexpr std::size_t Grain = std::size_t{1} << 16;
     files::parallel_for(files::IndexRange<std::size_t>(0, codes.size(), Grain),
                         [&](const files::IndexRange<std::size_t>& piece) {
                             for (std::size_t i = piece.begin(); i < piece.end(); ++i)
                                 std::memcpy(&counts[2 * i],
-                                            &table[std::to_integer<std::size_t>(codes[i])], 2);
+                                            &Table[std::to_integer<std::size_t>(codes[i])], 2);
                         });
     SmallNumbers gaps(reader, Rare, "entries of counts");
     std::uint64_t entry = 0;

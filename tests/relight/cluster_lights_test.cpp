@@ -148,6 +148,18 @@ TEST(LightBinning, AllCellsAtOnceHaveTheBitsOfEachAlone) {
     }
 }
 
+TEST(LightBinning, CellsMayOverlap) {
+    const cubemap::CubeMap environment = scenes::random_environment(256, 3);
+    const LightBinning binning(256);
+    const auto cell = [](std::uint8_t level, std::uint32_t x) {
+        return prt::Cell{.face = cubemap::Face::PositiveY, .level = level, .x = x, .y = x};
+    };
+    const std::vector<prt::Cell> cells = {cell(5, 9), cell(3, 2), cell(4, 4), cell(3, 2)};
+    const auto sums = binning.sums(environment, cells);
+    for (std::size_t i = 0; i < cells.size(); ++i)
+        EXPECT_EQ(sums[i], binning.sum(environment, cells[i])) << i;
+}
+
 TEST(LightBinning, WhiteFaceHasTheVectorIrradianceOfASquare) {
     // Half the sum over four edges of the angle acos(1/3) times the edge plane's normal, which
     // leans by 45 degrees.
