@@ -58,7 +58,7 @@ std::size_t num_counts(std::uint64_t mixed) {
     return static_cast<std::size_t>(std::popcount(mixed)) * prt::BlockSize;
 }
 
-/// Returns how many of them come before those of a cluster, a bit of the word.
+/// Returns how many counts of the word come before the counts of a cluster. `cluster` is its bit.
 std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
     return num_counts(mixed & (cluster - 1));
 }

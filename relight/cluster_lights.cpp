@@ -45,7 +45,7 @@ struct FaceSums {
     }
 };
 
-/// Adds whole texels, of which (x, y) is the first.
+/// Adds whole texels. (x, y) is the first of them.
 void add_whole(const TexelSums& whole, std::uint32_t x, std::uint32_t y, double step,
                FaceSums& sums) {
     sums.one += whole.one;

@@ -17,28 +17,25 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Lanes = hn::CappedTag<float, TexelColumn::Width>;
 using Vec = hn::Vec<Lanes>;
 
-/// Spreads weights over their texels' colours: as many texels as there are lanes, whose colours
-/// fill three vectors as they lie in memory.
-class Spread {
-public:
-    Spread() {
-        for (std::size_t i = 0; i < texel_of_.size(); ++i)
-            texel_of_[i] = static_cast<std::int32_t>(i / 3);
-    }
-    /// Returns the weights for the given third of the colours.
-    Vec operator()(Vec weights, std::size_t third) const {
-        const Lanes d;
-        return hn::TableLookupLanes(
-            weights, hn::SetTableIndices(d, texel_of_.data() + third * hn::Lanes(d)));
-    }
+/// The texel of each colour of a column, as the colours lie in memory.
+constexpr auto TexelOf = [] {
+    std::array<std::int32_t, 3 * TexelColumn::Width> texel_of{};
+    for (std::size_t i = 0; i < texel_of.size(); ++i)
+        texel_of[i] = static_cast<std::int32_t>(i / 3);
+    return texel_of;
+}();
 
-private:
-    std::array<std::int32_t, 3 * TexelColumn::Width> texel_of_;
-};
+/// Spreads weights over their texels' colours: as many texels as there are lanes, whose colours
+/// fill three vectors. Returns the weights for the given third of the colours.
+Vec spread(Vec weights, std::size_t third) {
+    const Lanes d;
+    return hn::TableLookupLanes(weights,
+                                hn::SetTableIndices(d, TexelOf.data() + third * hn::Lanes(d)));
+}
 
 /// Adds rows to texels [x, x + lanes) of a column.
 void add_rows_at(std::size_t x, const float* radiance, const float* weights, std::size_t stride,
-                 std::size_t num_rows, const Spread& spread, TexelColumn& column) {
+                 std::size_t num_rows, TexelColumn& column) {
     const Lanes d;
     const std::size_t n = hn::Lanes(d);
     float* const one = column.one.data() + 3 * x;
@@ -71,11 +68,10 @@ void add_rows_at(std::size_t x, const float* radiance, const float* weights, std
 
 void add_rows(const glm::vec3* radiance, const float* weights, std::size_t stride,
               std::size_t num_rows, TexelColumn* columns, std::size_t num_columns) {
-    const Spread spread;
     const auto* values = reinterpret_cast<const float*>(radiance);
     for (TexelColumn* column = columns; column < columns + num_columns; ++column) {
         for (std::size_t x = 0; x < TexelColumn::Width; x += hn::Lanes(Lanes()))
-            add_rows_at(x, values, weights, stride, num_rows, spread, *column);
+            add_rows_at(x, values, weights, stride, num_rows, *column);
         column->height += num_rows;
         values += 3 * TexelColumn::Width;
         weights += TexelColumn::Width;

@@ -27,8 +27,8 @@ struct TexelSums {
                                    std::size_t stride, std::size_t width, std::size_t height);
 
 /// Sums down 8 texels side by side, from the first of at most 64 rows on. A rectangle of such
-/// columns has the same TexelSums as texel_sums() finds, bit by bit, if it adds up its columns from
-/// left to right, and those of the next 64 rows after them.
+/// columns has the TexelSums that texel_sums() finds, bit by bit, if its columns are added from
+/// left to right, and columns of the first 64 rows before columns of the next.
 struct TexelColumn {
     static constexpr std::size_t Width = 8;
     static constexpr std::size_t MaxHeight = 64;

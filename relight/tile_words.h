@@ -24,8 +24,8 @@ struct TileWord {
     std::uint64_t edges = 0;
     /// The block sees some clusters in part.
     std::uint64_t mixed = 0;
-    /// Mixed pairs of the scene before the first block's; those of the tile's blocks follow each
-    /// other.
+    /// Mixed pairs of the scene before the first block's. The pairs of the tile's blocks follow
+    /// each other.
     std::uint64_t mixed_before = 0;
     /// The block sees some clusters whole across a receiver's horizon: it has an entry in
     /// TileWords::across.

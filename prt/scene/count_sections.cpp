@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "files/parallel.h"
+#include "prt/clusters/lattice.h"
 #include "prt/scene/older_counts.h"
 #include "prt/scene/section_picker.h"
 #include "prt/scene/small_numbers.h"
@@ -20,7 +21,7 @@ namespace {
 // after all. The file of the Stanford bunny is 7 % smaller for it.
 const std::string Visible = "visible", Mixed = "mixed", Counts = "counts", Codes = "count_codes",
                   Rare = "counts_14";
-constexpr std::uint8_t RareCount = 14, FullCount = 16;
+constexpr std::uint8_t RareCount = 14;
 constexpr std::uint32_t FirstVersionWithCodes = 5;
 
 /// Entries [begin, end) of a scene's counts, even numbers.

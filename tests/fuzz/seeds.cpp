@@ -23,12 +23,12 @@
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
-#include "prt/scene/section_reader.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/app/small_files.h"
 #include "tests/fuzz/prt_file.h"
 #include "tests/fuzz/section_names.h"
 #include "tests/mesh/texture_files.h"
+#include "tests/prt/older_sections.h"
 
 namespace {
 
@@ -250,9 +250,7 @@ void write_scenes(const fs::path& folder) {
     for (const std::uint32_t version : {1u, 2u, 4u}) {
         const fs::path path = folder / fmt::format("prt/version_{}.prt", version);
         prt::Sections sections = prt::read_sections(folder / "prt/vertices.prt");
-        sections.erase("count_codes");
-        sections.erase("counts_14");
-        sections["counts"] = prt::bytes_of(scene.transfer.counts.counts);
+        scenes::use_bytes_for_counts(sections, scene.transfer.counts);
         prt::write_sections(path, prt::to_write(std::move(sections)));
         std::vector<std::byte> older = files::read(path);
         fuzz::set_version(older, version);

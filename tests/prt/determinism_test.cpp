@@ -16,10 +16,10 @@
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
-#include "prt/scene/section_reader.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/every_target.h"
+#include "tests/prt/older_sections.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -74,9 +74,7 @@ protected:
     [[nodiscard]] std::string hash() const {
         save_scene(path_, precomputed(GetParam()));
         Sections sections = read_sections(path_);
-        sections["counts"] = bytes_of(load_scene(path_).transfer.counts.counts);
-        sections.erase("count_codes");
-        sections.erase("counts_14");
+        scenes::use_bytes_for_counts(sections, load_scene(path_).transfer.counts);
         std::string all;
         for (const auto& [name, content] : sections) {
             all += fmt::format("{} {}\n", name, content.size());

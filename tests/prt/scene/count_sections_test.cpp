@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/prt/damaged_file.h"
+#include "tests/prt/older_sections.h"
 
 namespace relumine::prt {
 namespace {
@@ -85,9 +86,7 @@ TEST_F(CountSectionsTest, EveryValueComesBack) {
 
 TEST_F(CountSectionsTest, BytesOfOlderVersionsAreRead) {
     Sections older = good_;
-    older.erase("count_codes");
-    older.erase("counts_14");
-    older["counts"] = bytes_of(counts_.counts);
+    scenes::use_bytes_for_counts(older, counts_);
     EXPECT_EQ(read(older, 4).counts, counts_.counts);
     older["counts"][7] = std::byte{17};
     refused("'counts'", older, 4);
@@ -97,11 +96,8 @@ TEST_F(CountSectionsTest, TilesAreReadAlone) {
     const std::size_t num_tiles = counts_.num_tiles();
     for (const bool is_older : {false, true}) {
         Sections stored = good_;
-        if (is_older) {
-            stored.erase("count_codes");
-            stored.erase("counts_14");
-            stored["counts"] = bytes_of(counts_.counts);
-        }
+        if (is_older)
+            scenes::use_bytes_for_counts(stored, counts_);
         write_sections(file_, to_write(stored));
         const SectionReader reader(file_, read_sections(file_, nullptr, long_count_sections()));
         for (const std::vector<std::size_t>& tiles : std::vector<std::vector<std::size_t>>{

@@ -27,6 +27,7 @@
 #include "prt/scene/section_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/damaged_file.h"
+#include "tests/prt/older_sections.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {
@@ -485,9 +486,7 @@ TEST_F(SceneFileTest, OlderVersionsBecomeWhatAPrecomputeFindsNow) {
             old.transfer.counts = version == 1 ? block_by_block(as_in_2) : as_in_2;
         save_scene(file_, old);
         Sections sections = read_sections(file_);
-        sections.erase("count_codes");
-        sections.erase("counts_14");
-        sections["counts"] = bytes_of(old.transfer.counts.counts);
+        scenes::use_bytes_for_counts(sections, old.transfer.counts);
         write_sections(file_, to_write(std::move(sections)));
         scenes::sign_as_version(file_, version);
         EXPECT_TRUE(same(load_scene(file_), scene)) << "version " << version;
