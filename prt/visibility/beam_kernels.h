@@ -1,21 +1,29 @@
-// Testing the rays of one receiver through a patch against the triangles of a shaft. Vectorised
-// with run-time dispatch.
+// Testing the rays of a group of receivers through a patch against the triangles of a shaft.
+// Vectorised with run-time dispatch.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
-#include <glm/vec3.hpp>
-
+#include "prt/visibility/group_origins.h"
 #include "prt/visibility/shaft.h"
 #include "prt/visibility/shaft_leaves.h"
 #include "prt/visibility/triangle_tree.h"
 
 namespace relumine::prt {
 
-/// Clears the rays of one receiver that a triangle blocks for certain. Returns the remaining rays
-/// that may hit one of the triangles. `origin` is in the mesh's coordinates.
-[[nodiscard]] std::uint64_t clear_certain(const TriangleTree& tree, const PatchPlane& patch,
-                                          const Shaft& shaft, const ShaftLeaves& leaves,
-                                          const glm::vec3& origin, std::uint64_t& rays);
+/// A patch, its plane, and the shaft of its rays.
+struct BeamPatch {
+    const DirectionPatch& directions;
+    const PatchPlane& plane;
+    const Shaft& shaft;
+};
+
+/// Clears the rays that a triangle blocks for certain, and sets `doubts` to the remaining rays that
+/// may hit one of the triangles. [receivers of the group], a bit per direction.
+void clear_certain(const TriangleTree& tree, const BeamPatch& patch,
+                   const ShaftLeaves& leaves, const GroupOrigins& origins,
+                   const ReceiverCones& cones, std::span<std::uint64_t> rays,
+                   std::span<std::uint64_t> doubts);
 
 } // namespace relumine::prt

@@ -6,12 +6,10 @@
 #include <cstddef>
 #include <utility>
 
-#include <glm/common.hpp>
-#include <glm/geometric.hpp>
-
 #include "mesh/flat_regions.h"
 #include "prt/visibility/beam_kernels.h"
 #include "prt/visibility/bit_matrix.h"
+#include "prt/visibility/group_origins.h"
 #include "prt/visibility/parallel_rays.h"
 #include "prt/visibility/shaft.h"
 #include "prt/visibility/shaft_leaves.h"
@@ -47,23 +45,6 @@ void transpose_squares(RayWords& words) {
     for (std::size_t first = 0; first < words.size(); first += DirectionPatch::Size)
         transpose(std::span<std::uint64_t, DirectionPatch::Size>(words.data() + first,
                                                                  DirectionPatch::Size));
-}
-
-/// Returns the shaft around the rays that are asked for.
-Shaft shaft_of_rays(const ReceiverGroup& group, const PatchPlane& plane, const TriangleTree& tree,
-                    float reach, std::span<const std::uint64_t> rays) {
-    Shaft shaft = shaft_of(plane, group.mean_normal, reach);
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (rays[i] == 0)
-            continue;
-        shaft.origins_low = glm::min(shaft.origins_low, group.origins[i]);
-        shaft.origins_high = glm::max(shaft.origins_high, group.origins[i]);
-        const glm::vec3 origin = group.origins[i] - tree.centre;
-        for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
-            shaft.offsets[k] =
-                std::min(shaft.offsets[k], glm::dot(shaft.normals[k], origin) - shaft.margins[k]);
-    }
-    return shaft;
 }
 
 /// With more leaves per ray on average, as for receivers far apart, the exact tracer is faster.
@@ -119,8 +100,6 @@ struct BeamScene::Impl {
     std::size_t crowded_shaft;
 };
 
-static_assert(BeamScene::CrowdedShaft <= ShaftLeaves::MaxSize);
-
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
                      std::size_t crowded_shaft)
     : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact,
@@ -147,7 +126,8 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
         return;
     }
     thread_local ShaftLeaves leaves;
-    const Shaft shaft = shaft_of_rays(group, plane, tree, origins.reach, rays);
+    Shaft shaft = shaft_of(plane, group.mean_normal, origins.reach);
+    const ReceiverCones cones = place_shaft(origins, rays, shaft);
     if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
         if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
             exact.clear_blocked(group, patch, rays);
@@ -155,16 +135,13 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
             clear_by_direction(tree, exact, group, origins, patch, plane, rays);
         return;
     }
-    if (leaves.size == 0)
+    if (leaves.found.empty())
         return;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        if (rays[i] == 0)
-            continue;
-        const std::uint64_t asked = rays[i];
-        const std::uint64_t doubts =
-            clear_certain(tree, plane, shaft, leaves, group.origins[i], rays[i]);
-        ask(exact, group.origins[i], patch, doubts, asked, rays[i]);
-    }
+    RayWords asked{}, doubts{};
+    std::copy(rays.begin(), rays.end(), asked.begin());
+    clear_certain(tree, {patch, plane, shaft}, leaves, origins, cones, rays, std::span(doubts).first(rays.size()));
+    for (std::size_t i = 0; i < rays.size(); ++i)
+        ask(exact, group.origins[i], patch, doubts[i], asked[i], rays[i]);
 }
 
 } // namespace relumine::prt

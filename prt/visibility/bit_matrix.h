@@ -16,11 +16,12 @@ inline constexpr std::size_t WordSize = 64;
 inline void transpose(std::span<std::uint64_t, 64> rows) {
     std::uint64_t mask = 0x00000000ffffffff;
     for (std::size_t width = 32; width != 0; width >>= 1u, mask ^= mask << width)
-        for (std::size_t i = 0; i < 64; i = ((i | width) + 1) & ~width) {
-            const std::uint64_t swapped = (rows[i] >> width ^ rows[i | width]) & mask;
-            rows[i] ^= swapped << width;
-            rows[i | width] ^= swapped;
-        }
+        for (std::size_t begin = 0; begin < 64; begin += 2 * width)
+            for (std::size_t i = begin; i < begin + width; ++i) { // neighbours, for vectors
+                const std::uint64_t swapped = (rows[i] >> width ^ rows[i + width]) & mask;
+                rows[i] ^= swapped << width;
+                rows[i + width] ^= swapped;
+            }
 }
 
 } // namespace relumine::prt

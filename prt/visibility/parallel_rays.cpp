@@ -132,7 +132,7 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
 
 /// The receivers of a group projected along the rays, in bundles of as many as a vector has lanes.
 struct ProjectedReceivers {
-    using Row = GroupOrigins::Row;
+    using Row = ReceiverRow;
     /// From the middle, along axis, axis_s, axis_t
     std::array<const float*, 3> origin;
     /// Moved along the rays
@@ -263,7 +263,7 @@ std::uint32_t test_bundle(D d, const TriangleTree::Leaf& leaf, const ProjectedLe
 
 /// Tests a leaf with all bundles of receivers whose own shafts it reaches into.
 template<class D>
-void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftBoxes::Found& found,
+void test_bundles(D d, const TriangleTree::Leaf& leaf, const ShaftLeaves::Found& found,
                   const Direction& direction, const GroupOrigins& origins,
                   ProjectedReceivers& receivers, ReceiverBits& lit, ReceiverBits& doubtful) {
     const std::size_t num_lanes = hn::Lanes(d);
@@ -317,17 +317,17 @@ ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection
                            origins.mean_normal, origins.reach);
     ProjectedReceivers receivers;
     project(d, direction, origins, active, shaft, receivers);
-    thread_local ShaftBoxes boxes;
-    if (!find_boxes(tree, shaft, MostLeaves, boxes))
-        return {.blocked = {}, .doubtful = active, .num_leaves = boxes.found.size()};
+    thread_local ShaftLeaves leaves;
+    if (!find_leaves(tree, shaft, MostLeaves, leaves))
+        return {.blocked = {}, .doubtful = active, .num_leaves = leaves.found.size()};
     ReceiverBits lit = active;
     ReceiverBits doubtful{};
-    for (const std::uint64_t key : boxes.order) {
-        const ShaftBoxes::Found& found = boxes.found[key & 0xffffffff];
+    for (const std::uint32_t i : leaves.order) {
+        const ShaftLeaves::Found& found = leaves.found[i];
         test_bundles(d, tree.leaves[static_cast<std::size_t>(found.leaf)], found, direction,
                      origins, receivers, lit, doubtful);
     }
-    ParallelResult result{.num_leaves = boxes.found.size()};
+    ParallelResult result{.num_leaves = leaves.found.size()};
     for (std::size_t i = 0; i < lit.size(); ++i) {
         result.blocked[i] = active[i] & ~lit[i];
         result.doubtful[i] = doubtful[i] & lit[i];
@@ -344,27 +344,6 @@ namespace relumine::prt {
 namespace {
 HWY_EXPORT(test_parallel_rays);
 } // namespace
-
-GroupOrigins::GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree)
-    : all(group.origins), mean_normal(group.mean_normal), reach(tree.extent) {
-    glm::vec3 low = group.origins.front();
-    glm::vec3 high = low;
-    for (const glm::vec3& origin : group.origins) {
-        low = glm::min(low, origin);
-        high = glm::max(high, origin);
-    }
-    middle = 0.5f * (low + high);
-    for (std::size_t i = 0; i < ReceiverGroup::MaxSize; ++i) {
-        const glm::vec3& origin = group.origins[i < group.origins.size() ? i : 0];
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto a = static_cast<std::size_t>(axis);
-            from_centre[a][i] = origin[axis] - tree.centre[axis];
-            from_middle[a][i] = origin[axis] - middle[axis];
-            reach = std::max(reach, std::abs(from_centre[a][i]));
-            radius = std::max(radius, std::abs(from_middle[a][i]));
-        }
-    }
-}
 
 ParallelResult test_parallel_rays(const TriangleTree& tree, const PatchDirection& of_patch,
                                   const GroupOrigins& origins, const ReceiverBits& active) {

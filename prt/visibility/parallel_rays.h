@@ -5,37 +5,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-
-#include <glm/vec3.hpp>
 
 #include "prt/visibility/blockers.h"
+#include "prt/visibility/group_origins.h"
 #include "prt/visibility/shaft.h"
 #include "prt/visibility/triangle_tree.h"
 
 namespace relumine::prt {
-
-/// The starts of a group's rays, in the layout that the kernel reads. Lanes after the last receiver
-/// repeat the first one.
-struct GroupOrigins {
-    using Row = std::array<float, ReceiverGroup::MaxSize>;
-
-    GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree);
-
-    /// x, y, z from the tree's centre.
-    alignas(64) std::array<Row, 3> from_centre;
-    /// x, y, z from the middle of the group.
-    alignas(64) std::array<Row, 3> from_middle;
-    /// In the mesh's coordinates.
-    std::span<const glm::vec3> all;
-    /// As in the group.
-    glm::vec3 mean_normal{0.0f};
-    glm::vec3 middle{0.0f};
-    /// Largest coordinate from the middle.
-    float radius = 0.0f;
-    /// Largest coordinate of the tree's triangles and the origins, from the tree's centre.
-    float reach = 0.0f;
-};
 
 /// One bit for each receiver of a group.
 using ReceiverBits = std::array<std::uint64_t, ReceiverGroup::MaxSize / 64>;

@@ -1,6 +1,7 @@
 #include "prt/visibility/shaft.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -25,15 +26,43 @@ float norm_1(const glm::vec3& v) {
     return std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
 }
 
-float bins_per_unit(float begin, float end) {
-    return static_cast<float>(PatchPlane::NumBins) / std::max(end - begin, 1e-6f);
+} // namespace
+
+std::size_t PatchPlane::Bins::bin(float place) const {
+    const float exact = (place - begin) * per_unit;
+    const float rounded = std::clamp(exact, 0.0f, static_cast<float>(NumBins - 1)) + ToInteger;
+    return std::bit_cast<std::uint32_t>(rounded) & (NumBins - 1);
 }
 
-/// The same sum as for the ends of what a box covers, so that rounding keeps their order.
-std::size_t bin(float x, float begin, float bins_per_unit) {
-    const float place = std::floor((x - begin) * bins_per_unit);
-    return static_cast<std::size_t>(
-        std::clamp(place, 0.0f, static_cast<float>(PatchPlane::NumBins - 1)));
+namespace {
+
+/// Sorts the places of directions between two sides into bins.
+PatchPlane::Bins bins_of(const std::array<float, DirectionPatch::Size>& places, float low,
+                         float high) {
+    constexpr std::size_t NumBins = PatchPlane::NumBins;
+    PatchPlane::Bins bins;
+    bins.per_unit = (static_cast<float>(NumBins) - 2.25f) / std::max(high - low, 1e-6f);
+    bins.begin = low - 0.625f / bins.per_unit;
+    bins.greatest_until.fill(low);
+    bins.least_from.fill(high);
+    for (std::size_t j = 0; j < places.size(); ++j) {
+        const std::size_t i = bins.bin(places[j]);
+        const std::uint32_t bit = std::uint32_t{1} << (j % 32);
+        bins.until[j / 32][i] |= bit;
+        bins.from[j / 32][i] |= bit;
+        bins.greatest_until[i] = std::max(bins.greatest_until[i], places[j]);
+        bins.least_from[i] = std::min(bins.least_from[i], places[j]);
+    }
+    for (auto& half : bins.until)
+        std::partial_sum(half.begin(), half.end(), half.begin(), std::bit_or());
+    for (auto& half : bins.from)
+        std::partial_sum(half.rbegin(), half.rend(), half.rbegin(), std::bit_or());
+    for (std::size_t i = 1; i < NumBins; ++i) {
+        bins.greatest_until[i] = std::max(bins.greatest_until[i], bins.greatest_until[i - 1]);
+        const std::size_t j = NumBins - 1 - i;
+        bins.least_from[j] = std::min(bins.least_from[j], bins.least_from[j + 1]);
+    }
+    return bins;
 }
 
 } // namespace
@@ -64,21 +93,8 @@ PatchPlane patch_plane(const DirectionPatch& patch) {
     plane.s1 += DirectionSlack;
     plane.t0 -= DirectionSlack;
     plane.t1 += DirectionSlack;
-    plane.bins_per_s = bins_per_unit(plane.s0, plane.s1);
-    plane.bins_per_t = bins_per_unit(plane.t0, plane.t1);
-    for (std::size_t j = 0; j < DirectionPatch::Size; ++j) {
-        const std::uint64_t bit = std::uint64_t{1} << j;
-        plane.from_s[bin(plane.s[j], plane.s0, plane.bins_per_s)] |= bit;
-        plane.from_t[bin(plane.t[j], plane.t0, plane.bins_per_t)] |= bit;
-    }
-    std::partial_sum(plane.from_s.begin(), plane.from_s.end(), plane.until_s.begin(),
-                     std::bit_or());
-    std::partial_sum(plane.from_t.begin(), plane.from_t.end(), plane.until_t.begin(),
-                     std::bit_or());
-    std::partial_sum(plane.from_s.rbegin(), plane.from_s.rend(), plane.from_s.rbegin(),
-                     std::bit_or());
-    std::partial_sum(plane.from_t.rbegin(), plane.from_t.rend(), plane.from_t.rbegin(),
-                     std::bit_or());
+    plane.columns = bins_of(plane.s, plane.s0, plane.s1);
+    plane.rows = bins_of(plane.t, plane.t0, plane.t1);
     return plane;
 }
 

@@ -30,11 +30,26 @@ struct PatchPlane : PatchRectangle {
     bool narrow = false;
     alignas(64) std::array<float, DirectionPatch::Size> s{}, t{};
 
-    /// The rectangle is cut into columns along s and rows along t. For each column or row: the
-    /// directions up to it (until) and from it on (from), itself included.
-    static constexpr int NumBins = 32;
-    float bins_per_s = 0.0f, bins_per_t = 0.0f;
-    std::array<std::uint64_t, NumBins> until_s{}, from_s{}, until_t{}, from_t{};
+    /// The rectangle is cut into columns along s and rows along t. Directions lie in all but the
+    /// first and the last, which stand for what is beside the rectangle.
+    static constexpr std::size_t NumBins = 16;
+    struct Bins {
+        /// Its last bits are the integer next to what is added.
+        static constexpr float ToInteger = 0x1p23f;
+        template<class T>
+        using Row = std::array<T, NumBins>;
+
+        float begin = 0.0f, per_unit = 0.0f;
+        /// For each column or row, the directions up to it (until) and from it on (from), itself
+        /// included: bit j of half h is direction 32 h + j.
+        alignas(64) std::array<Row<std::uint32_t>, 2> until{}, from{};
+        /// The greatest place of the directions up to it, and the least of those from it on.
+        Row<float> greatest_until{}, least_from{};
+
+        /// Kernels do the same step by step, so that rounding keeps the order of places.
+        [[nodiscard]] std::size_t bin(float place) const;
+    };
+    Bins columns, rows;
 };
 
 /// Half-spaces normal . x >= offset that hold all rays of a group through a patch, in the tree's
