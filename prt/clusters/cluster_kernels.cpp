@@ -159,29 +159,13 @@ bool divide_by_weight_above(std::span<std::uint8_t, BlockSize> seen,
 LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
                        const std::array<std::uint8_t, SamplesPerCell>& weights,
                        std::size_t num_receivers) {
+    constexpr std::size_t BlocksPerWord = WordSize / BlockSize;
     const std::size_t num_blocks = (num_receivers + BlockSize - 1) / BlockSize;
     LeafColumn column;
     column.visible.resize((num_blocks + 63) / 64);
     column.mixed.resize((num_blocks + 63) / 64);
-    for (std::size_t block = 0; block < num_blocks; ++block) {
-        std::array<std::uint16_t, SamplesPerCell> lit{};
-        std::uint32_t any = 0;
-        std::uint32_t all = 0xffff;
-        for (std::size_t l = 0; l < SamplesPerCell; ++l) {
-            if (weights[l] == 0)
-                continue;
-            lit[l] =
-                static_cast<std::uint16_t>(samples.lit[l][block / 4] >> (block % 4 * BlockSize));
-            any |= lit[l];
-            all &= lit[l];
-        }
-        if (any == 0)
-            continue;
+    const auto add_block = [&](std::size_t block, const std::array<std::uint16_t, SamplesPerCell>& lit) {
         const std::uint64_t bit = std::uint64_t{1} << (block % 64);
-        if (all == 0xffff) {
-            column.visible[block / 64] |= bit;
-            continue;
-        }
         // Lanes after the last receiver have no normal and so nothing above a horizon. They never
         // make a block mixed.
         std::array<std::uint8_t, BlockSize> counts = weights_of(lit, weights);
@@ -192,6 +176,31 @@ LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
         } else {
             column.mixed[block / 64] |= bit;
             column.counts.insert(column.counts.end(), counts.begin(), counts.end());
+        }
+    };
+    for (std::size_t word = 0; word * BlocksPerWord < num_blocks; ++word) {
+        std::array<std::uint64_t, SamplesPerCell> lit{};
+        std::uint64_t any = 0;
+        std::uint64_t all = ~std::uint64_t{0};
+        for (std::size_t l = 0; l < SamplesPerCell; ++l) {
+            if (weights[l] == 0)
+                continue;
+            lit[l] = samples.lit[l][word];
+            any |= lit[l];
+            all &= lit[l];
+        }
+        for (std::size_t i = 0; any != 0 && i < BlocksPerWord; ++i, any >>= BlockSize, all >>= BlockSize) {
+            const std::size_t block = word * BlocksPerWord + i;
+            if (static_cast<std::uint16_t>(any) == 0)
+                continue;
+            if (static_cast<std::uint16_t>(all) == 0xffff) {
+                column.visible[block / 64] |= std::uint64_t{1} << (block % 64);
+                continue;
+            }
+            std::array<std::uint16_t, SamplesPerCell> of_block;
+            for (std::size_t l = 0; l < SamplesPerCell; ++l)
+                of_block[l] = static_cast<std::uint16_t>(lit[l] >> (i * BlockSize));
+            add_block(block, of_block);
         }
     }
     return column;

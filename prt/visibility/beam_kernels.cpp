@@ -38,7 +38,7 @@ constexpr float TooNearRoundings = 4096.0f;
 
 /// From so many rays for each triangle that may meet one, rays side by side are faster than
 /// triangles side by side. Measured.
-constexpr int RaysPerTriangle = 4;
+constexpr int RaysPerTriangle = 6;
 
 /// A leaf's triangles about one of their corners, in the patch's axes. What all receivers share.
 struct PlacedLeaf {
@@ -460,9 +460,10 @@ public:
 
     /// The rays of receiver first + lane that the box covers.
     [[nodiscard]] HWY_INLINE AskedRays asked(std::size_t first, std::size_t lane) const {
-        const glm::vec3& origin = origins_.all[first + lane];
-        return {.origin = {origin[static_cast<int>(axes_[0])], origin[static_cast<int>(axes_[1])],
-                           origin[static_cast<int>(axes_[2])]},
+        const auto origin = [&](std::size_t a) {
+            return origins_.rows[axes_[a]][first + lane];
+        };
+        return {.origin = {origin(0), origin(1), origin(2)},
                 .s0 = patch_.columns.least_from[s_first_[lane]],
                 .s1 = patch_.columns.greatest_until[s_last_[lane]],
                 .t0 = patch_.rows.least_from[t_first_[lane]],

@@ -32,15 +32,14 @@ float subtract(const ReceiverRow& row, float from, ReceiverRow& relative) {
 
 void fill(const glm::vec3& centre, GroupOrigins& origins) {
     const hn::CappedTag<float, TriangleTree::Width> d;
-    alignas(64) std::array<ReceiverRow, 3> rows;
     for (std::size_t i = 0; i < MaxReceivers; ++i) {
         const glm::vec3& origin = origins.all[i < origins.all.size() ? i : 0];
         for (std::size_t axis = 0; axis < 3; ++axis)
-            rows[axis][i] = origin[static_cast<int>(axis)];
+            origins.rows[axis][i] = origin[static_cast<int>(axis)];
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<int>(axis);
-        const ReceiverRow& row = rows[axis];
+        const ReceiverRow& row = origins.rows[axis];
         auto low = hn::Load(d, row.data());
         auto high = low;
         for (std::size_t i = hn::Lanes(d); i < MaxReceivers; i += hn::Lanes(d)) {

@@ -23,6 +23,8 @@ struct GroupOrigins {
     /// The group must not be empty, and must outlive this object.
     GroupOrigins(const ReceiverGroup& group, const TriangleTree& tree);
 
+    /// x, y, z in the mesh's coordinates.
+    alignas(64) std::array<ReceiverRow, 3> rows;
     /// x, y, z from the tree's centre.
     alignas(64) std::array<ReceiverRow, 3> from_centre;
     /// x, y, z from the middle of the group.
