@@ -164,7 +164,8 @@ LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
     LeafColumn column;
     column.visible.resize((num_blocks + 63) / 64);
     column.mixed.resize((num_blocks + 63) / 64);
-    const auto add_block = [&](std::size_t block, const std::array<std::uint16_t, SamplesPerCell>& lit) {
+    const auto add_block = [&](std::size_t block,
+                               const std::array<std::uint16_t, SamplesPerCell>& lit) {
         const std::uint64_t bit = std::uint64_t{1} << (block % 64);
         // Lanes after the last receiver have no normal and so nothing above a horizon. They never
         // make a block mixed.
@@ -189,7 +190,8 @@ LeafColumn leaf_column(const NormalArrays& normals, const CellSamples& samples,
             any |= lit[l];
             all &= lit[l];
         }
-        for (std::size_t i = 0; any != 0 && i < BlocksPerWord; ++i, any >>= BlockSize, all >>= BlockSize) {
+        for (std::size_t i = 0; any != 0 && i < BlocksPerWord;
+             ++i, any >>= BlockSize, all >>= BlockSize) {
             const std::size_t block = word * BlocksPerWord + i;
             if (static_cast<std::uint16_t>(any) == 0)
                 continue;

@@ -163,8 +163,8 @@ HWY_INLINE TriangleView<D> view_of(D d, const PlacedLeaf& leaf, std::size_t lane
     Vector side = row(leaf.height);
     for (std::size_t a = 0; a < 3; ++a)
         side = hn::NegMulAdd(row(leaf.normal[a]), o[a], side);
-    const Vector side_certain = hn::MulAdd(hn::Mul(longest, longest),
-                                           hn::Set(d, SideTolerance * reach), smallest);
+    const Vector side_certain =
+        hn::MulAdd(hn::Mul(longest, longest), hn::Set(d, SideTolerance * reach), smallest);
     view.edge_on = hn::Not(hn::Gt(hn::Abs(side), side_certain));
     const Vector turn = hn::And(side, hn::SignBit(d));
     const Vector turn_along = hn::Xor(turn, hn::And(hn::Set(d, sign), hn::SignBit(d)));
@@ -310,8 +310,8 @@ HWY_INLINE Cover<D> covered_bins(D d, V low, V high, const BoxDistances<V>& box,
     const auto bin = [&](V place) { // PatchPlane::Bins::bin
         const V exact = hn::Mul(hn::Sub(place, hn::Set(d, bins.begin)), hn::Set(d, bins.per_unit));
         const V last = hn::Set(d, static_cast<float>(PatchPlane::NumBins - 1));
-        const V rounded = hn::Add(hn::Min(hn::Max(exact, zero), last),
-                                  hn::Set(d, PatchPlane::Bins::ToInteger));
+        const V rounded =
+            hn::Add(hn::Min(hn::Max(exact, zero), last), hn::Set(d, PatchPlane::Bins::ToInteger));
         return hn::And(hn::BitCast(du, rounded), hn::Set(du, PatchPlane::NumBins - 1));
     };
     return {bin(hn::Sub(least, box.slack)), bin(hn::Add(most, box.slack))};
@@ -375,8 +375,7 @@ class OpenRays {
 public:
     OpenRays(const PatchPlane& patch, const GroupOrigins& origins, const ReceiverCones& cones,
              std::span<std::uint64_t> rays)
-        : patch_(patch), origins_(origins), cones_(cones), rays_(rays),
-          axes_(axes_of(patch)),
+        : patch_(patch), origins_(origins), cones_(cones), rays_(rays), axes_(axes_of(patch)),
           lost_(LostRoundings * Rounding * origins.reach + Smallest),
           too_near_(TooNearRoundings * Rounding * origins.reach + 64.0f * Smallest) {
         low_.fill(0);
@@ -404,7 +403,8 @@ public:
     }
 
     /// Which of the receivers from `first` on have a cone that the leaf reaches into.
-    [[nodiscard]] HWY_INLINE std::uint32_t in_cones(const ShaftLeaf& leaf, std::size_t first) const {
+    [[nodiscard]] HWY_INLINE std::uint32_t in_cones(const ShaftLeaf& leaf,
+                                                    std::size_t first) const {
         const D d;
         auto mask = hn::FirstN(d, hn::Lanes(d));
         for (std::size_t k = 0; k < Shaft::NumPlanes; ++k)
@@ -523,10 +523,9 @@ RayVerdicts judge_rays(D d, const TriangleTree::Leaf& leaf, const PlacedLeaf& pl
     return verdicts;
 }
 
-void clear_certain(const TriangleTree& tree, const BeamPatch& patch,
-                   const ShaftLeaves& leaves, const GroupOrigins& origins,
-                   const ReceiverCones& cones, std::span<std::uint64_t> rays,
-                   std::span<std::uint64_t> doubts) {
+void clear_certain(const TriangleTree& tree, const BeamPatch& patch, const ShaftLeaves& leaves,
+                   const GroupOrigins& origins, const ReceiverCones& cones,
+                   std::span<std::uint64_t> rays, std::span<std::uint64_t> doubts) {
     const hn::CappedTag<float, Width> d;
     OpenRays<hn::CappedTag<float, Width>> open(patch.plane, origins, cones, rays);
     PlacedLeaf placed;
@@ -584,10 +583,9 @@ namespace {
 HWY_EXPORT(clear_certain);
 } // namespace
 
-void clear_certain(const TriangleTree& tree, const BeamPatch& patch,
-                   const ShaftLeaves& leaves, const GroupOrigins& origins,
-                   const ReceiverCones& cones, std::span<std::uint64_t> rays,
-                   std::span<std::uint64_t> doubts) {
+void clear_certain(const TriangleTree& tree, const BeamPatch& patch, const ShaftLeaves& leaves,
+                   const GroupOrigins& origins, const ReceiverCones& cones,
+                   std::span<std::uint64_t> rays, std::span<std::uint64_t> doubts) {
     HWY_DYNAMIC_DISPATCH(clear_certain)(tree, patch, leaves, origins, cones, rays, doubts);
 }
 

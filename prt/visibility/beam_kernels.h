@@ -21,9 +21,8 @@ struct BeamPatch {
 
 /// Clears the rays that a triangle blocks for certain, and sets `doubts` to the remaining rays that
 /// may hit one of the triangles. [receivers of the group], a bit per direction.
-void clear_certain(const TriangleTree& tree, const BeamPatch& patch,
-                   const ShaftLeaves& leaves, const GroupOrigins& origins,
-                   const ReceiverCones& cones, std::span<std::uint64_t> rays,
-                   std::span<std::uint64_t> doubts);
+void clear_certain(const TriangleTree& tree, const BeamPatch& patch, const ShaftLeaves& leaves,
+                   const GroupOrigins& origins, const ReceiverCones& cones,
+                   std::span<std::uint64_t> rays, std::span<std::uint64_t> doubts);
 
 } // namespace relumine::prt

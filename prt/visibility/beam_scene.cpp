@@ -139,7 +139,8 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
         return;
     RayWords asked{}, doubts{};
     std::copy(rays.begin(), rays.end(), asked.begin());
-    clear_certain(tree, {patch, plane, shaft}, leaves, origins, cones, rays, std::span(doubts).first(rays.size()));
+    clear_certain(tree, {patch, plane, shaft}, leaves, origins, cones, rays,
+                  std::span(doubts).first(rays.size()));
     for (std::size_t i = 0; i < rays.size(); ++i)
         ask(exact, group.origins[i], patch, doubts[i], asked[i], rays[i]);
 }

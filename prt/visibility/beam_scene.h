@@ -25,8 +25,8 @@ namespace relumine::prt {
 /// The rays of a group of receivers through a patch of directions fill a shaft. Six planes bound
 /// it: a triangle outside of one plane blocks none of the rays. One walk of a tree of triangles
 /// finds the few triangles that may block a ray. Most shafts meet nothing: 8,192 rays are decided
-/// at once. A triangle in the shaft is tested receiver by receiver: first against the receiver's
-/// own cone, then with the edge functions of 64 rays at a time.
+/// at once. A leaf of the tree in the shaft is tested for all receivers whose own cones it reaches
+/// into: the rays that touch its box, then its triangles, 16 at a time.
 ///
 /// Why nothing changes: rounding errors have bounds, and a test here only decides where its result
 /// is beyond its bound. A ray hits a triangle for certain, misses all of them for certain, or is in
@@ -41,7 +41,7 @@ class BeamScene final : public Blockers {
 public:
     /// Leaves of up to 16 triangles in a shaft; with more, directions are traced one by one.
     /// Measured (docs/performance.md).
-    static constexpr std::size_t CrowdedShaft = 2048;
+    static constexpr std::size_t CrowdedShaft = 4096;
 
     /// `exact` traces the triangles of the same mesh and must outlive this object; the mesh need
     /// not. `crowded_shaft`, at most the default, changes no answer.

@@ -64,7 +64,8 @@ inline bool leaves_planes(const TriangleTree::Leaf& leaf, const Shaft& shaft) {
     return true;
 }
 
-/// Writes the largest lane of each of four vectors: four reductions for the steps of one and a half.
+/// Writes the largest lane of each of four vectors: four reductions for the steps of one and a
+/// half.
 template<class D, class V = hn::Vec<D>>
 HWY_INLINE void store_largest(D d, V a, V b, V c, V e, float* largest) {
 #if HWY_TARGET == HWY_SCALAR
@@ -73,10 +74,10 @@ HWY_INLINE void store_largest(D d, V a, V b, V c, V e, float* largest) {
         largest[i] = hn::GetLane(hn::MaxOfLanes(d, all[i]));
 #else
     const hn::Repartition<double, D> pairs;
-    const auto ab = hn::BitCast(
-        pairs, hn::Max(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)));
-    const auto ce = hn::BitCast(
-        pairs, hn::Max(hn::InterleaveLower(d, c, e), hn::InterleaveUpper(d, c, e)));
+    const auto ab =
+        hn::BitCast(pairs, hn::Max(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)));
+    const auto ce =
+        hn::BitCast(pairs, hn::Max(hn::InterleaveLower(d, c, e), hn::InterleaveUpper(d, c, e)));
     V all = hn::Max(hn::BitCast(d, hn::InterleaveLower(pairs, ab, ce)),
                     hn::BitCast(d, hn::InterleaveUpper(pairs, ab, ce)));
     if constexpr (hn::MaxLanes(D()) == 16)
@@ -91,8 +92,8 @@ HWY_INLINE void store_largest(D d, V a, V b, V c, V e, float* largest) {
 
 /// Writes the supports of a leaf's triangles, which are much closer than those of its box where a
 /// surface runs along a plane. False where one says that the leaf is outside.
-inline bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre, const Shaft& shaft,
-                            std::array<float, 8>& supports) {
+inline bool supports_inside(const TriangleTree::Leaf& leaf, const glm::vec3& centre,
+                            const Shaft& shaft, std::array<float, 8>& supports) {
     static_assert(Shaft::NumPlanes <= 8);
     const hn::CappedTag<float, TriangleTree::Width> d;
     using Vector = hn::Vec<decltype(d)>;
