@@ -520,7 +520,7 @@ HWY_EXPORT(update_tile);
 bool has_dimmed(BlockLight& light) {
     const double now = HWY_DYNAMIC_DISPATCH(brightness)(light);
     light.largest = std::max(light.largest, now);
-    return now < light.summed / 64.0 || now < std::ldexp(light.largest, -30);
+    return now < light.summed / 64.0 || now < 0x1p-30 * light.largest;
 }
 
 void block_radiance(const BlockNormals& normals, const BlockLight& light,

@@ -489,23 +489,8 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
     };
     touched_.resize(num_tiles);
     dimmed_.assign(num_tiles, 0);
-    files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
-        touched_[tile] = update_tile(scene, tile, changes_, light_);
-        for_blocks(tile, touched_[tile], [&](std::size_t block) {
-            if (has_dimmed(light_[block]))
-                dimmed_[tile] |= std::uint64_t{1} << (block - transfer_.counts.tile_begin(tile));
-        });
-    });
-    const auto any = [](std::uint64_t blocks) {
-        return blocks != 0;
-    };
-    if (std::any_of(dimmed_.begin(), dimmed_.end(), any))
-        lights_.sum_prefix();
-
     std::atomic<std::size_t> num_blocks = 0;
-    files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
-        if (dimmed_[tile] != 0)
-            light_tile(scene, tile, lights_, light_, dimmed_[tile]);
+    const auto write_tile = [&](std::size_t tile) {
         if (sharp_changed || transfer_.glossy)
             touched_[tile] = transfer_.counts.tile_blocks(tile);
         for_blocks(tile, touched_[tile], [&](std::size_t block) {
@@ -513,7 +498,28 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
             write_radiance(block);
         });
         num_blocks += static_cast<std::size_t>(std::popcount(touched_[tile]));
+    };
+    files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+        touched_[tile] = update_tile(scene, tile, changes_, light_);
+        for_blocks(tile, touched_[tile], [&](std::size_t block) {
+            if (has_dimmed(light_[block]))
+                dimmed_[tile] |= std::uint64_t{1} << (block - transfer_.counts.tile_begin(tile));
+        });
+        if (dimmed_[tile] == 0)
+            write_tile(tile); // while its light is in the cache
     });
+    const auto any = [](std::uint64_t blocks) {
+        return blocks != 0;
+    };
+    if (std::any_of(dimmed_.begin(), dimmed_.end(), any)) {
+        lights_.sum_prefix();
+        files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
+            if (dimmed_[tile] == 0)
+                return;
+            light_tile(scene, tile, lights_, light_, dimmed_[tile]);
+            write_tile(tile);
+        });
+    }
     finish_change();
     return std::min(num_blocks * prt::BlockSize, radiance_.size());
 }
@@ -573,15 +579,17 @@ void Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
     block_radiance(normals_[block], light_[block],
                    with_sharp_lights ? traced_.diffuse(block) : nullptr, sums);
     const std::size_t begin = block * prt::BlockSize;
-    const std::size_t size = std::min(prt::BlockSize, radiance.size() - begin);
-    for (std::size_t i = 0; i < size; ++i) {
-        const std::uint32_t receiver = transfer_.order[begin + i];
-        if (!diffuse.empty())
-            diffuse[receiver] = sums.of(i);
-        radiance[receiver] = transfer_.surfaces.empty()
-                                 ? sums.of(i)
-                                 : through_surface(begin + i, sums.of(i), with_sharp_lights);
-    }
+    const auto receivers = std::span(transfer_.order)
+                               .subspan(begin, std::min(prt::BlockSize, radiance.size() - begin));
+    if (!diffuse.empty())
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            diffuse[receivers[i]] = sums.of(i);
+    if (transfer_.surfaces.empty())
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            radiance[receivers[i]] = sums.of(i);
+    else
+        for (std::size_t i = 0; i < receivers.size(); ++i)
+            radiance[receivers[i]] = through_surface(begin + i, sums.of(i), with_sharp_lights);
 }
 
 std::vector<glm::vec3> Relighter::Impl::soft_radiance() const {
