@@ -1,8 +1,16 @@
 #include "prt/progress.h"
 
+#include <algorithm>
+
 #include "prt/precompute.h"
 
 namespace relumine::prt {
+
+void Progress::start_stage(double begin, double end) {
+    begin_ = std::max(begin, last_);
+    const double scale = begin < 1.0 ? (1.0 - begin_) / (1.0 - begin) : 0.0;
+    end_ = begin_ + scale * (end - begin);
+}
 
 void Progress::report(double part) {
     poll();

@@ -17,11 +17,10 @@ public:
     Progress(std::stop_token stop, std::function<void(double)> on_progress)
         : stop_(std::move(stop)), on_progress_(std::move(on_progress)) {}
 
-    /// Begins the next stage, which takes the scale from `begin` to `end`.
-    void start_stage(double begin, double end) {
-        begin_ = begin;
-        end_ = end;
-    }
+    /// Begins the next stage, which takes the work from `begin` to `end` by the estimate of now.
+    /// Where an earlier stage thought that more was done, what is left of the scale is shared out
+    /// over the work that is left: the fraction goes on slowly and does not wait.
+    void start_stage(double begin, double end);
     /// Says that the fraction `part` of the stage is done.
     ///
     /// Throws:  Cancelled when the work must stop.
