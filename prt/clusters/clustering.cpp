@@ -253,13 +253,15 @@ bool Clustering::is_given(const Cell& cell) const {
                    .leaves()[static_cast<std::size_t>(found - given_keys_.begin())] == cell;
 }
 
-/// Returns for each cell whether it is a cluster; the others are to be split.
-std::vector<std::uint8_t> Clustering::find_clusters(std::span<const Cell> cells) {
-    std::vector<std::uint8_t> is_cluster(cells.size());
+/// Returns for each cell how many levels of cells are expected below it: none if it is a cluster;
+/// the others are to be split.
+std::vector<std::uint8_t> Clustering::levels_below(std::span<const Cell> cells) {
+    std::vector<std::uint8_t> levels(cells.size());
     if (context_.plan != nullptr) {
-        std::transform(cells.begin(), cells.end(), is_cluster.begin(),
-                       [this](const Cell& cell) { return is_given(cell) ? 1 : 0; });
-        return is_cluster;
+        std::transform(cells.begin(), cells.end(), levels.begin(), [this](const Cell& cell) {
+            return static_cast<std::uint8_t>(is_given(cell) ? 0 : 1);
+        });
+        return levels;
     }
     std::vector<std::int64_t> sums(cells.size() * SamplesPerCell);
     files::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t i) {
@@ -271,13 +273,15 @@ std::vector<std::uint8_t> Clustering::find_clusters(std::span<const Cell> cells)
     });
     reduction_.sum(sums);
     for (std::size_t i = 0; i < cells.size(); ++i) {
+        if (is_single_texel(cells[i]))
+            continue;
         const auto of_cell = std::span(sums).subspan(i * SamplesPerCell, SamplesPerCell);
-        is_cluster[i] = is_single_texel(cells[i]) ||
-                        std::all_of(of_cell.begin(), of_cell.end(), [this](std::int64_t sum) {
-                            return static_cast<double>(sum) * SquaredDistanceUnit < allowed_;
-                        });
+        const double most = static_cast<double>(*std::max_element(of_cell.begin(), of_cell.end()));
+        if (!(most * SquaredDistanceUnit < allowed_))
+            levels[i] = std::max<std::uint8_t>(
+                1, WorkEstimate::expected_depth(most * SquaredDistanceUnit / allowed_));
     }
-    return is_cluster;
+    return levels;
 }
 
 LeafColumn Clustering::column(const Cell& cell) const {
@@ -299,18 +303,19 @@ void Clustering::decide_batch() {
     while (!batch_.empty()) {
         const std::span<const Cell> slice =
             std::span<const Cell>(batch_).first(std::min(max_slice, batch_.size()));
-        const std::vector<std::uint8_t> is_cluster = find_clusters(slice);
+        const std::vector<std::uint8_t> levels = levels_below(slice);
         std::vector<LeafColumn> columns(slice.size());
         files::parallel_for(std::size_t{0}, slice.size(), [&](std::size_t i) {
             progress_.poll();
-            if (is_cluster[i] != 0)
+            if (levels[i] == 0)
                 columns[i] = column(slice[i]);
         });
         std::uint64_t num_bytes = column_bytes_;
         std::size_t num_found = 0;
         for (std::size_t i = 0; i < slice.size(); ++i) {
-            num_bytes += is_cluster[i] != 0 ? bytes_of(columns[i], context_.column_scale) : 0;
-            num_found += is_cluster[i];
+            num_bytes += levels[i] == 0 ? bytes_of(columns[i], context_.column_scale) : 0;
+            num_found += levels[i] == 0 ? 1 : 0;
+            ++depths_[levels[i]];
         }
         // Every waiting cell becomes one cluster at least.
         const std::size_t num_waiting =
@@ -320,7 +325,7 @@ void Clustering::decide_batch() {
         if (num_bytes != 0)
             throw TooManyClusters(clusters_.size() + num_found + num_waiting, num_bytes);
         for (std::size_t i = 0; i < slice.size(); ++i) {
-            if (is_cluster[i] != 0) {
+            if (levels[i] == 0) {
                 add_cluster({slice[i], std::exchange(columns[i], {})});
                 continue;
             }
@@ -366,12 +371,11 @@ void Clustering::work() {
             take_batch();
         const auto start = std::chrono::steady_clock::now();
         const std::uint32_t level = batch_.front().level;
-        const std::size_t num_cells = batch_.size();
-        const std::size_t num_clusters = clusters_.size();
+        depths_.fill(0);
         trace_batch();
         decide_batch();
         estimate_.add(
-            level, num_cells, num_cells - (clusters_.size() - num_clusters),
+            level, depths_,
             std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
         look_up();
     }

@@ -57,7 +57,7 @@ private:
     void add_cluster(const Cluster& cluster);
 
     [[nodiscard]] std::vector<LatticePoint> needed_points(const std::vector<Cell>& cells) const;
-    [[nodiscard]] std::vector<std::uint8_t> find_clusters(std::span<const Cell> cells);
+    [[nodiscard]] std::vector<std::uint8_t> levels_below(std::span<const Cell> cells);
     [[nodiscard]] bool is_given(const Cell& cell) const;
     [[nodiscard]] LeafColumn column(const Cell& cell) const;
     [[nodiscard]] std::uint64_t patches_per_step() const;
@@ -91,8 +91,9 @@ private:
     /// The clusters' cells and columns, as they were found.
     std::vector<Cell> clusters_;
     std::optional<ColumnStore> columns_;
-    /// For the progress
+    /// For the progress, and what it is to learn from the batch
     WorkEstimate estimate_;
+    WorkEstimate::Depths depths_{};
     /// Clusters in the checkpoint.
     std::size_t num_saved_ = 0;
     std::uint64_t column_bytes_ = 0;

@@ -1,26 +1,32 @@
 #include "prt/clusters/work_estimate.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace relumine::prt {
 
 namespace {
 
-// What the first levels of meshes on a floor show, for levels without anything to learn from.
+/// What the first levels of meshes on a floor show, for levels without anything to learn from.
 constexpr double FirstShare = 0.7;
-constexpr double FirstFall = 0.9;
-/// At the deepest levels shares have always fallen, even where they rose before.
-constexpr double MostFall = 0.95;
 /// Rays of a deeper level are closer together, so a cell takes this part of its
 /// parent's time.
-constexpr double DeeperCell = 0.7;
+constexpr double DeeperCell = 0.6;
 
 } // namespace
 
-void WorkEstimate::add(std::uint32_t level, std::size_t num_cells, std::size_t num_split,
-                       double seconds) {
-    levels_[level].num_cells += num_cells;
-    levels_[level].num_split += num_split;
+std::uint8_t WorkEstimate::expected_depth(double excess) {
+    if (!(excess >= 1.0))
+        return 0;
+    return static_cast<std::uint8_t>(
+        std::min(1.0 + std::floor(std::log2(excess)), double{MaxLevel}));
+}
+
+void WorkEstimate::add(std::uint32_t level, const Depths& cells, double seconds) {
+    std::size_t num_deeper = 0;
+    for (std::size_t depth = cells.size(); depth-- > 0;)
+        levels_[level].deeper[depth] += num_deeper += cells[depth];
+    levels_[level].num_cells += num_deeper;
     levels_[level].seconds += seconds;
     seconds_ += seconds;
 }
@@ -36,22 +42,16 @@ double WorkEstimate::seconds_of_cell(std::uint32_t level) const {
 double WorkEstimate::split_share(std::uint32_t level) const {
     if (level >= max_level_)
         return 0.0;
-    const auto measured = [&](std::uint32_t l) {
-        return static_cast<double>(levels_[l].num_split) /
-               static_cast<double>(levels_[l].num_cells);
-    };
     std::uint32_t known = level + 1;
     while (known > 0 && levels_[known - 1].num_cells == 0)
         --known;
     if (known == 0)
         return FirstShare;
-    double share = measured(--known);
-    const double fall = known > 0 && levels_[known - 1].num_split != 0
-                            ? std::min(MostFall, share / measured(known - 1))
-                            : FirstFall;
-    for (; known < level; ++known)
-        share *= fall;
-    return share;
+    const Depths& deeper = levels_[--known].deeper;
+    const std::uint32_t depth = level - known;
+    return deeper[depth] == 0
+               ? 0.0
+               : static_cast<double>(deeper[depth + 1]) / static_cast<double>(deeper[depth]);
 }
 
 double WorkEstimate::seconds_of(const Counts& cells) const {

@@ -9,19 +9,27 @@
 
 namespace relumine::prt {
 
-/// Learns from the levels of the quadtree how many cells are split and how long a cell takes, and
-/// expects the deeper levels to go on in the same way: what share is split, and how it falls from
-/// level to level.
+/// Learns from the levels of the quadtree how long a cell takes, and from the cells of the last one
+/// how many levels will follow. A cell is split while the squared distance of its transfer vectors
+/// is too large [JN, Eq. 11]. Where shadows' edges cross a cell, half of them cross a child, so a
+/// child has about half the squared distance.
 class WorkEstimate {
 public:
     /// Cells of a level, one number for each.
     using Counts = std::array<std::size_t, MaxLevel + 1>;
+    /// Tested cells by the levels that are expected below them, one number for each: first the
+    /// clusters.
+    using Depths = std::array<std::size_t, MaxLevel + 1>;
+
+    /// Returns how many levels are expected below a cell whose squared distance is so many times
+    /// the allowed one: none below 1.
+    [[nodiscard]] static std::uint8_t expected_depth(double excess);
 
     /// Cells of `max_level` are never split.
     explicit WorkEstimate(std::uint32_t max_level) : max_level_(max_level) {}
 
-    /// Says that cells of one level were tested, how many of them were split, and how long it took.
-    void add(std::uint32_t level, std::size_t num_cells, std::size_t num_split, double seconds);
+    /// Says that cells of one level were tested, and how long it took.
+    void add(std::uint32_t level, const Depths& cells, double seconds);
 
     /// Returns the time of all that was added.
     [[nodiscard]] double seconds() const { return seconds_; }
@@ -38,7 +46,8 @@ private:
 
     struct Level {
         std::size_t num_cells = 0;
-        std::size_t num_split = 0;
+        /// Cells with at least so many levels below.
+        Depths deeper{};
         double seconds = 0.0;
     };
     std::array<Level, MaxLevel + 1> levels_;

@@ -1,6 +1,8 @@
 // The time that the clustering expects, against what its levels took.
 #include "prt/clusters/work_estimate.h"
 
+#include <limits>
+#include <numeric>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,26 +12,23 @@ namespace {
 
 struct LevelTime {
     std::uint32_t level;
-    std::size_t num_cells;
-    std::size_t num_clusters;
+    WorkEstimate::Depths cells;
     double seconds;
 };
 
-/// A scan of 36,000 vertices on a floor, and one of 35,000 with highlights, as measured.
-const std::vector<std::vector<LevelTime>> Measured = {{{3, 384, 114, 2.706},
-                                                       {4, 1080, 383, 3.685},
-                                                       {5, 2788, 1256, 8.155},
-                                                       {6, 6128, 2582, 13.498},
-                                                       {7, 14184, 7756, 20.613},
-                                                       {8, 25712, 25712, 26.009}},
-                                                      {{3, 384, 31, 1.849},
-                                                       {4, 1412, 92, 2.819},
-                                                       {5, 5280, 2559, 11.364},
-                                                       {6, 10884, 9400, 19.551},
-                                                       {7, 5936, 5916, 15.584},
-                                                       {8, 80, 80, 0.459}}};
+/// Scans of 36,000 and 5,000 vertices on a floor, as measured.
+const std::vector<std::vector<LevelTime>> Measured = {{{3, {121, 7, 37, 184, 35}, 0.918},
+                                                       {4, {43, 487, 367, 155}, 1.115},
+                                                       {5, {2251, 1209, 576}, 2.296},
+                                                       {6, {4927, 2213}, 2.257},
+                                                       {7, {8852}, 1.862}},
+                                                      {{3, {147, 13, 36, 188}, 0.195},
+                                                       {4, {60, 295, 585, 8}, 0.294},
+                                                       {5, {1750, 1718, 84}, 0.731},
+                                                       {6, {6636, 572}, 1.132},
+                                                       {7, {2288}, 0.294}}};
 
-TEST(WorkEstimate, AfterAFifthOfTheTimeTheRestIsKnownToThirtyPercent) {
+TEST(WorkEstimate, AfterAFifthOfTheTimeTheRestIsKnownToAThird) {
     for (const std::vector<LevelTime>& levels : Measured) {
         double all = 0.0;
         for (const LevelTime& level : levels)
@@ -37,29 +36,50 @@ TEST(WorkEstimate, AfterAFifthOfTheTimeTheRestIsKnownToThirtyPercent) {
         WorkEstimate estimate(8);
         auto level = levels.begin();
         for (; estimate.seconds() < 0.19 * all; ++level)
-            estimate.add(level->level, level->num_cells, level->num_cells - level->num_clusters,
-                         level->seconds);
+            estimate.add(level->level, level->cells, level->seconds);
         WorkEstimate::Counts cells{};
-        cells[level->level] = level->num_cells;
+        cells[level->level] =
+            std::accumulate(level->cells.begin(), level->cells.end(), std::size_t{0});
         const double left = all - estimate.seconds();
-        EXPECT_NEAR(estimate.seconds_of(cells), left, 0.3 * left);
+        EXPECT_NEAR(estimate.seconds_of(cells), left, left / 3.0);
     }
 }
 
-TEST(WorkEstimate, DeeperLevelsGoOnAlike) {
-    // Half of the cells of each level are split, so 0.95 of a half is expected below, and a cell
-    // takes seven tenths of its parent's time.
+TEST(WorkEstimate, CellsFarOverTheLimitHaveManyLevelsBelow) {
+    EXPECT_EQ(WorkEstimate::expected_depth(0.99), 0);
+    EXPECT_EQ(WorkEstimate::expected_depth(1.0), 1);
+    EXPECT_EQ(WorkEstimate::expected_depth(1.99), 1);
+    EXPECT_EQ(WorkEstimate::expected_depth(8.0), 4);
+    EXPECT_EQ(WorkEstimate::expected_depth(std::numeric_limits<double>::infinity()), MaxLevel);
+    EXPECT_EQ(WorkEstimate::expected_depth(std::numeric_limits<double>::quiet_NaN()), 0);
+}
+
+TEST(WorkEstimate, ChildrenHaveOneLevelLessBelow) {
+    // Of 64 cells, 32 are split; the children of 8 are split again, and then no more. A cell takes
+    // six tenths of its parent's time.
     WorkEstimate estimate(5);
-    estimate.add(2, 64, 32, 64.0);
-    estimate.add(3, 128, 64, 89.6);
+    estimate.add(2, {32, 24, 8}, 64.0);
     WorkEstimate::Counts cells{};
+    cells[3] = 128;
+    EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 128 * 0.6 + 4 * 32 * 0.36);
+    // What a level shows counts more than what the level above it promised.
+    estimate.add(3, {0, 64}, 64.0);
+    cells[3] = 0;
     cells[4] = 256;
-    EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 256 * 0.49 + 512 * 0.95 * 0.343);
+    EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 256 * 0.6);
     cells[4] = 0;
     cells[5] = 8;
-    EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 8 * 0.343);
+    EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 8 * 0.36);
     EXPECT_DOUBLE_EQ(estimate.seconds_of({}), 0.0);
-    EXPECT_DOUBLE_EQ(estimate.seconds(), 153.6);
+    EXPECT_DOUBLE_EQ(estimate.seconds(), 128.0);
+}
+
+TEST(WorkEstimate, CellsOfTheDeepestLevelAreNeverSplit) {
+    WorkEstimate estimate(3);
+    estimate.add(2, {0, 0, 0, 16}, 16.0);
+    WorkEstimate::Counts cells{};
+    cells[3] = 64;
+    EXPECT_DOUBLE_EQ(estimate.seconds_of(cells), 64 * 0.6);
 }
 
 TEST(WorkEstimate, ExpectsSomethingBeforeAnythingIsKnown) {
