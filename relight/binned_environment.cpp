@@ -25,17 +25,18 @@ bool is_good(const glm::vec3& texel) {
     return good(texel.r) && good(texel.g) && good(texel.b);
 }
 
-/// Whether all values are surely good. As whole numbers, floats from 0 up keep their order, and NaN
-/// and negative values are larger than all of them. So one comparison suffices, which compilers
-/// turn into vectors. (-0 is good, but not surely.)
+/// Whether all values are surely good. (-0 is good, but not surely.) As whole numbers, floats from
+/// 0 up keep their order, and negative ones have the highest bit set. So two operations a value
+/// suffice, which compilers turn into vectors.
 bool are_surely_good(std::span<const glm::vec3> texels) {
-    const auto surely = [](float value) {
-        return std::bit_cast<std::uint32_t>(value) <= std::bit_cast<std::uint32_t>(MaxRadiance);
-    };
-    bool good = true;
-    for (const glm::vec3& texel : texels)
-        good &= surely(texel.r) & surely(texel.g) & surely(texel.b);
-    return good;
+    constexpr std::uint32_t Negative = 1u << 31u;
+    const float* values = texels.empty() ? nullptr : &texels.front().x;
+    std::uint32_t bad = 0;
+    for (std::size_t i = 0; i < 3 * texels.size(); ++i) {
+        const auto bits = std::bit_cast<std::uint32_t>(values[i]);
+        bad |= bits | (std::bit_cast<std::uint32_t>(MaxRadiance) - bits);
+    }
+    return (bad & Negative) == 0;
 }
 
 } // namespace

@@ -201,29 +201,37 @@ void add_runs(std::uint64_t edges, std::uint64_t visible, const double* prefix, 
     sum[Last] = last;
 }
 
-void block_radiance(const BlockNormals& normals, const BlockLight& light,
-                    const TracedRadiance* traced, BlockRadiance& radiance) {
-    const hn::CappedTag<double, prt::BlockSize> d;
-    const hn::Rebind<float, decltype(d)> floats;
+double block_radiance(const BlockNormals& normals, const BlockLight& light,
+                      const TracedRadiance* traced, BlockRadiance& radiance) {
+    const hn::CappedTag<double, 8> doubles;
+    const hn::Rebind<float, decltype(doubles)> d;
+    constexpr std::size_t Last = ClusterLights::Stride - 1;
+    const auto full = static_cast<double>(prt::FullCount);
+    std::array<float, ClusterLights::Stride> visible;
+    visible[Last] = static_cast<float>(full * light.visible[Last]);
+    auto largest = hn::Set(d, std::abs(visible[Last]));
+    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d)) {
+        const auto part =
+            hn::Mul(hn::Set(doubles, full), hn::LoadU(doubles, light.visible.data() + lane));
+        hn::StoreU(hn::DemoteTo(d, part), d, visible.data() + lane);
+        largest = hn::Max(largest, hn::Abs(hn::DemoteTo(d, part)));
+    }
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
-        const auto nx = hn::PromoteTo(d, hn::LoadU(floats, normals.axes[0].data() + lane));
-        const auto ny = hn::PromoteTo(d, hn::LoadU(floats, normals.axes[1].data() + lane));
-        const auto nz = hn::PromoteTo(d, hn::LoadU(floats, normals.axes[2].data() + lane));
+        const Normals<decltype(d)> n(normals, lane);
         for (std::size_t channel = 0; channel < 3; ++channel) {
-            const double* e = light.visible.data() + 3 * channel;
-            const auto along_z = hn::Mul(nz, hn::Set(d, e[2]));
-            const auto n_dot_e =
-                hn::MulAdd(nx, hn::Set(d, e[0]), hn::MulAdd(ny, hn::Set(d, e[1]), along_z));
-            const auto mixed = hn::LoadU(d, light.mixed[channel].data() + lane);
-            // A whole cluster counts 16. A sum of nothing may round to a hair below zero.
-            auto sum =
-                hn::Max(hn::Zero(d), hn::MulAdd(hn::Set(d, static_cast<double>(prt::FullCount)),
-                                                n_dot_e, mixed));
+            const auto mixed =
+                hn::DemoteTo(d, hn::LoadU(doubles, light.mixed[channel].data() + lane));
+            largest = hn::Max(largest, hn::Abs(mixed));
+            // A sum of nothing may round to a hair below zero.
+            auto sum = hn::Max(hn::Zero(d), hn::Add(n.dot(visible.data() + 3 * channel), mixed));
             if (traced != nullptr)
-                sum = hn::Add(sum, hn::LoadU(d, traced->channels[channel].data() + lane));
-            hn::StoreU(hn::DemoteTo(floats, sum), floats, radiance.channels[channel].data() + lane);
+                sum = hn::Add(
+                    sum,
+                    hn::DemoteTo(d, hn::LoadU(doubles, traced->channels[channel].data() + lane)));
+            hn::StoreU(sum, d, radiance.channels[channel].data() + lane);
         }
     }
+    return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, largest)));
 }
 
 /// Calls visit(block) for the set bits, blocks of a tile.
@@ -231,19 +239,6 @@ template<class Visit>
 void for_blocks(std::uint64_t bits, const Visit& visit) {
     for (; bits != 0; bits &= bits - 1)
         visit(first_bit(bits));
-}
-
-/// Returns the largest part of a block's light.
-double brightness(const BlockLight& light) {
-    const hn::CappedTag<double, prt::BlockSize> d;
-    auto largest = hn::Zero(d);
-    for (const auto& channel : light.mixed)
-        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d))
-            largest = hn::Max(largest, hn::Abs(hn::LoadU(d, channel.data() + lane)));
-    double result = hn::GetLane(hn::MaxOfLanes(d, largest));
-    for (const double value : light.visible)
-        result = std::max(result, static_cast<double>(prt::FullCount) * std::abs(value));
-    return result;
 }
 
 /// Adds up the clusters that the chosen blocks of a tile see whole.
@@ -322,10 +317,6 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
     for_blocks(chosen, [&](std::size_t block) { light[begin + block] = {}; });
     add_visible(scene, tile, lights, chosen, light + begin);
     add_per_receiver(scene, tile, lights, chosen, light + begin);
-    for_blocks(chosen, [&](std::size_t block) {
-        light[begin + block].summed = brightness(light[begin + block]);
-        light[begin + block].largest = light[begin + block].summed;
-    });
 }
 
 /// A channel's sums of some receivers in double: two vectors for one of Floats. (Where vectors have
@@ -512,20 +503,13 @@ namespace relumine::relight {
 
 namespace {
 HWY_EXPORT(block_radiance);
-HWY_EXPORT(brightness);
 HWY_EXPORT(light_tile);
 HWY_EXPORT(update_tile);
 } // namespace
 
-bool has_dimmed(BlockLight& light) {
-    const double now = HWY_DYNAMIC_DISPATCH(brightness)(light);
-    light.largest = std::max(light.largest, now);
-    return now < light.summed / 64.0 || now < 0x1p-30 * light.largest;
-}
-
-void block_radiance(const BlockNormals& normals, const BlockLight& light,
-                    const TracedRadiance* traced, BlockRadiance& radiance) {
-    HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, traced, radiance);
+double block_radiance(const BlockNormals& normals, const BlockLight& light,
+                      const TracedRadiance* traced, BlockRadiance& radiance) {
+    return HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, traced, radiance);
 }
 
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,

@@ -2,6 +2,7 @@
 // Vectorised with run-time dispatch.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -23,18 +24,29 @@ namespace relumine::relight {
 /// of floats, exactly but for the roundings of double. So lights may come and go as often as they
 /// like.
 struct alignas(64) BlockLight {
+    /// Radiance [channel][receiver].
+    std::array<std::array<double, prt::BlockSize>, 3> mixed{};
     /// Vector irradiance over 16 pi.
     std::array<double, ClusterLights::Stride> visible{};
     /// Brightness when light_tile() last summed the block, and the largest since then.
     double summed = 0.0;
     double largest = 0.0;
-    /// Radiance [channel][receiver].
-    std::array<std::array<double, prt::BlockSize>, 3> mixed{};
+
+    /// Takes note of the brightness after light_tile().
+    void set_summed(double brightness) { summed = largest = brightness; }
+    /// Takes note of the brightness after update_tile(). Returns whether the block has dimmed so
+    /// far that roundings of brighter light may show, and it must be summed anew: to a 64th of what
+    /// light_tile() summed in float, or to 2^-30 of what update_tile() added in double.
+    [[nodiscard]] bool has_dimmed_to(double brightness) {
+        largest = std::max(largest, brightness);
+        return brightness < summed / 64.0 || brightness < 0x1p-30 * largest;
+    }
 };
 
-/// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver].
+/// Outgoing radiance of a block's receivers for albedo 1, [channel][receiver]. Kernels write all of
+/// it, so nothing is there before.
 struct alignas(64) BlockRadiance {
-    std::array<std::array<float, prt::BlockSize>, 3> channels{};
+    std::array<std::array<float, prt::BlockSize>, 3> channels;
 
     [[nodiscard]] glm::vec3 of(std::size_t receiver) const {
         return {channels[0][receiver], channels[1][receiver], channels[2][receiver]};
@@ -47,9 +59,10 @@ struct alignas(64) TracedRadiance {
     std::array<std::array<double, prt::BlockSize>, 3> channels{};
 };
 
-/// Sums both parts of a block's light, never below zero, and adds `traced` (null: nothing).
-void block_radiance(const BlockNormals& normals, const BlockLight& light,
-                    const TracedRadiance* traced, BlockRadiance& radiance);
+/// Sums both parts of a block's light, never below zero, and adds `traced` (null: nothing). Returns
+/// the block's brightness: the largest entry of either part, whatever its sign.
+double block_radiance(const BlockNormals& normals, const BlockLight& light,
+                      const TracedRadiance* traced, BlockRadiance& radiance);
 
 /// The scene's data for lighting blocks. Sums of a tile's blocks need nothing else.
 struct BlockScene {
@@ -71,10 +84,5 @@ void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& 
 /// see a changed cluster: bit b for the tile's block b.
 std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
                           std::span<BlockLight> light);
-
-/// Takes note of a block's brightness after an update. Returns whether the block has dimmed so far
-/// that roundings of brighter light may show, and it must be summed anew: to a 64th of what
-/// light_tile() summed in float, or to 2^-30 of what update_tile() added in double.
-[[nodiscard]] bool has_dimmed(BlockLight& light);
 
 } // namespace relumine::relight

@@ -223,8 +223,7 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     // texels that it covers, before and after. A layer that moved within the list is compared with
     // its new neighbour, and so dirtied.
     const auto add = [&](const cubemap::LightLayer& layer) {
-        for (const cubemap::TexelRectangle& touched :
-             cubemap::touched_texels(layer, base_->resolution))
+        for (const cubemap::TexelRectangle& touched : texels_of(layer))
             add_merged(touched, touched_);
     };
     const std::size_t num_places = std::max(turned_layers_.size(), next_layers_.size());
@@ -252,6 +251,24 @@ UpdateReport LightEditor::apply(std::span<const cubemap::LightLayer> layers) {
     const UpdateReport report = update_dirty(turned_base(), next_layers_);
     std::swap(turned_layers_, next_layers_);
     return report;
+}
+
+/// Returns touched_texels(), until the next call.
+std::span<const cubemap::TexelRectangle> LightEditor::texels_of(const cubemap::LightLayer& layer) {
+    constexpr std::size_t MostKnown = 8;
+    if (!layer.on)
+        return {};
+    const auto known = std::find_if(known_.begin(), known_.end(), [&](const TouchedTexels& of) {
+        return of.resolution == base_->resolution && of.region == layer.region;
+    });
+    if (known != known_.end())
+        return known->rectangles;
+    if (known_.size() == MostKnown)
+        known_.erase(known_.begin());
+    known_.push_back({.region = layer.region,
+                      .resolution = base_->resolution,
+                      .rectangles = cubemap::touched_texels(layer, base_->resolution)});
+    return known_.back().rectangles;
 }
 
 UpdateReport LightEditor::update_dirty(const cubemap::CubeMap& base,

@@ -128,7 +128,14 @@ private:
         /// Compares bases by their address.
         bool operator==(const State&) const = default;
     };
+    /// Texels that a region touches.
+    struct TouchedTexels {
+        cubemap::Region region;
+        std::uint32_t resolution;
+        std::vector<cubemap::TexelRectangle> rectangles;
+    };
     void forget_oldest();
+    std::span<const cubemap::TexelRectangle> texels_of(const cubemap::LightLayer& layer);
     UpdateReport apply(std::span<const cubemap::LightLayer> layers);
     RelightTimes relight_all();
     UpdateReport update_dirty(const cubemap::CubeMap& base,
@@ -161,6 +168,8 @@ private:
     std::vector<cubemap::TexelRectangle> dirty_;
     /// Scratch of apply(): the rectangles that changed layers cover.
     std::vector<cubemap::TexelRectangle> touched_;
+    /// Of regions asked for last, oldest first: an edit's region is often that of the edit before.
+    std::vector<TouchedTexels> known_;
     std::vector<State> history_;
     /// Index of the present mark.
     std::size_t at_ = 0;

@@ -117,10 +117,11 @@ private:
     void take_bounces();
     void forget_bounces();
     void finish_change();
-    void write_radiance(std::size_t block);
+    /// Returns the block's brightness.
+    double write_radiance(std::size_t block);
     /// Of radiance for albedo 1 in `diffuse`, too, unless that is empty.
-    void write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
-                        std::span<glm::vec3> diffuse) const;
+    double write_radiance(std::size_t block, bool with_sharp_lights, std::span<glm::vec3> radiance,
+                          std::span<glm::vec3> diffuse) const;
     [[nodiscard]] glm::vec3 through_surface(std::size_t place, const glm::vec3& diffuse,
                                             bool with_sharp_lights) const;
 
@@ -161,8 +162,8 @@ private:
     /// Scratch: clusters whose light changes, and how.
     std::vector<std::uint32_t> changed_;
     LightChanges changes_;
-    /// Scratch, [num_tiles]: blocks that a change touches, and those that are summed anew.
-    std::vector<std::uint64_t> touched_, dimmed_;
+    /// Scratch, [num_tiles]: blocks that are summed anew after a change.
+    std::vector<std::uint64_t> dimmed_;
 };
 
 Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
@@ -310,7 +311,7 @@ void Relighter::Impl::resum() {
         for (std::size_t block = transfer_.counts.tile_begin(tile);
              block < transfer_.counts.tile_begin(tile + 1); ++block) {
             light_glossy(block);
-            write_radiance(block);
+            light_[block].set_summed(write_radiance(block));
         }
     });
     finish_change();
@@ -482,31 +483,25 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
         changes_.set(lights_, cluster, light_of(cluster));
     const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
     const std::size_t num_tiles = transfer_.counts.num_tiles();
-    const auto for_blocks = [&](std::size_t tile, std::uint64_t bits, const auto& visit) {
-        const std::size_t begin = transfer_.counts.tile_begin(tile);
-        for (; bits != 0; bits &= bits - 1)
-            visit(begin + static_cast<std::size_t>(std::countr_zero(bits)));
+    // Calls visit(block) for blocks of a tile after their light is known.
+    const auto for_blocks = [&](std::size_t tile, std::uint64_t blocks, const auto& visit) {
+        for (; blocks != 0; blocks &= blocks - 1) {
+            const auto bit = static_cast<std::size_t>(std::countr_zero(blocks));
+            visit(transfer_.counts.tile_begin(tile) + bit, std::uint64_t{1} << bit);
+        }
     };
-    touched_.resize(num_tiles);
     dimmed_.assign(num_tiles, 0);
     std::atomic<std::size_t> num_blocks = 0;
-    const auto write_tile = [&](std::size_t tile) {
-        if (sharp_changed || transfer_.glossy)
-            touched_[tile] = transfer_.counts.tile_blocks(tile);
-        for_blocks(tile, touched_[tile], [&](std::size_t block) {
-            light_glossy(block);
-            write_radiance(block);
-        });
-        num_blocks += static_cast<std::size_t>(std::popcount(touched_[tile]));
-    };
     files::parallel_for(std::size_t{0}, num_tiles, [&](std::size_t tile) {
-        touched_[tile] = update_tile(scene, tile, changes_, light_);
-        for_blocks(tile, touched_[tile], [&](std::size_t block) {
-            if (has_dimmed(light_[block]))
-                dimmed_[tile] |= std::uint64_t{1} << (block - transfer_.counts.tile_begin(tile));
+        std::uint64_t touched = update_tile(scene, tile, changes_, light_);
+        if (sharp_changed || transfer_.glossy)
+            touched = transfer_.counts.tile_blocks(tile);
+        for_blocks(tile, touched, [&](std::size_t block, std::uint64_t bit) {
+            light_glossy(block);
+            if (light_[block].has_dimmed_to(write_radiance(block)))
+                dimmed_[tile] |= bit;
         });
-        if (dimmed_[tile] == 0)
-            write_tile(tile); // while its light is in the cache
+        num_blocks += static_cast<std::size_t>(std::popcount(touched));
     });
     const auto any = [](std::uint64_t blocks) {
         return blocks != 0;
@@ -517,7 +512,9 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
             if (dimmed_[tile] == 0)
                 return;
             light_tile(scene, tile, lights_, light_, dimmed_[tile]);
-            write_tile(tile);
+            for_blocks(tile, dimmed_[tile], [&](std::size_t block, std::uint64_t) {
+                light_[block].set_summed(write_radiance(block));
+            });
         });
     }
     finish_change();
@@ -568,16 +565,16 @@ glm::vec3 Relighter::Impl::through_surface(std::size_t place, const glm::vec3& d
     return prt::reflect(transfer_.surfaces[place], lobes);
 }
 
-void Relighter::Impl::write_radiance(std::size_t block) {
-    write_radiance(block, true, radiance_, diffuse_);
+double Relighter::Impl::write_radiance(std::size_t block) {
+    return write_radiance(block, true, radiance_, diffuse_);
 }
 
-void Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
-                                     std::span<glm::vec3> radiance,
-                                     std::span<glm::vec3> diffuse) const {
+double Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
+                                       std::span<glm::vec3> radiance,
+                                       std::span<glm::vec3> diffuse) const {
     BlockRadiance sums;
-    block_radiance(normals_[block], light_[block],
-                   with_sharp_lights ? traced_.diffuse(block) : nullptr, sums);
+    const double brightness = block_radiance(
+        normals_[block], light_[block], with_sharp_lights ? traced_.diffuse(block) : nullptr, sums);
     const std::size_t begin = block * prt::BlockSize;
     const auto receivers = std::span(transfer_.order)
                                .subspan(begin, std::min(prt::BlockSize, radiance.size() - begin));
@@ -590,6 +587,7 @@ void Relighter::Impl::write_radiance(std::size_t block, bool with_sharp_lights,
     else
         for (std::size_t i = 0; i < receivers.size(); ++i)
             radiance[receivers[i]] = through_surface(begin + i, sums.of(i), with_sharp_lights);
+    return brightness;
 }
 
 std::vector<glm::vec3> Relighter::Impl::soft_radiance() const {

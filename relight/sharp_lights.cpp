@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <numbers>
+#include <numeric>
 
 #include <glm/geometric.hpp>
 
@@ -30,17 +31,17 @@ constexpr double FinestShare = 1.0 / 64.0;
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
 
-/// Keeps four sums side by side: each addition waits for the one before it, and this function runs
-/// with every edit.
+/// Keeps sums side by side: each addition waits for the one before it, and this function runs with
+/// every edit.
 double sum_of(std::span<const double> values) {
-    std::array<double, 4> sums{};
+    std::array<double, 16> sums{};
     std::size_t i = 0;
     for (; i + sums.size() <= values.size(); i += sums.size())
         for (std::size_t k = 0; k < sums.size(); ++k)
             sums[k] += values[i + k];
     for (; i < values.size(); ++i)
         sums[0] += values[i];
-    return (sums[0] + sums[1]) + (sums[2] + sums[3]);
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
 /// Finds the sharp cells below one cluster and cuts them into lights.

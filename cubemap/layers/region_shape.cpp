@@ -22,10 +22,6 @@ double chord(double degrees) {
     return 2.0 * std::sin(0.5 * radians(degrees));
 }
 
-double squared_distance(const glm::dvec3& a, const glm::dvec3& b) {
-    return glm::dot(a - b, a - b);
-}
-
 /// Returns 1 / (outer^2 - inner^2). The ramp of a disc is linear in squared chords, so in cosines.
 double inverse_band(double outer, double inner) {
     return 1.0 / std::max((outer - inner) * (outer + inner), HardEdge * outer * outer);
@@ -76,19 +72,6 @@ DiscShape::DiscShape(const Disc& disc)
     : axis_(glm::normalize(disc.direction)), outer_(chord(disc.radius_degrees)),
       inner_(chord(disc.radius_degrees * (1.0 - disc.softness))), squared_outer_(outer_ * outer_),
       inverse_band_(inverse_band(outer_, inner_)), smallest_feature_(outer_ / 64.0) {}
-
-Overlap DiscShape::bound(const glm::dvec3& w, double chord_radius) const {
-    const double squared = squared_distance(w, axis_);
-    const double reach = outer_ + chord_radius;
-    if (squared >= reach * reach)
-        return Overlap::None;
-    const double room = inner_ - chord_radius;
-    return room >= 0.0 && squared <= room * room ? Overlap::All : Overlap::Part;
-}
-
-std::array<double, 1> DiscShape::ramps(const glm::dvec3& w) const {
-    return {(squared_outer_ - squared_distance(w, axis_)) * inverse_band_};
-}
 
 RectangleShape::RectangleShape(const Rectangle& rectangle)
     : forward_(glm::normalize(rectangle.direction)) {

@@ -18,6 +18,7 @@
 #include <optional>
 #include <variant>
 
+#include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
@@ -39,8 +40,16 @@ public:
 
     /// Returns how the region meets all directions within a chord of a unit direction. None and All
     /// are certain, Part is not.
-    [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
-    [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
+    [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const {
+        const double squared = squared_distance(w);
+        const double reach = outer_ + chord, room = inner_ - chord;
+        if (squared >= reach * reach)
+            return Overlap::None;
+        return room >= 0.0 && squared <= room * room ? Overlap::All : Overlap::Part;
+    }
+    [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const {
+        return {(squared_outer_ - squared_distance(w)) * inverse_band_};
+    }
     /// Returns true if ramp i may have a kink within a chord that samples there do not show.
     [[nodiscard]] static bool has_kink(std::size_t, const glm::dvec3&, double) { return false; }
     /// Returns a chord radius at which a square is small against the region's features.
@@ -48,6 +57,10 @@ public:
     [[nodiscard]] const DiscShape& within(const glm::dvec3&, double) const { return *this; }
 
 private:
+    [[nodiscard]] double squared_distance(const glm::dvec3& w) const {
+        return glm::dot(w - axis_, w - axis_);
+    }
+
     glm::dvec3 axis_;
     /// Chords.
     double outer_, inner_;
