@@ -54,10 +54,16 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
 
 void require_radiance_in(const cubemap::CubeMap& map,
                          std::span<const cubemap::TexelRectangle> rectangles) {
-    for (const cubemap::TexelRectangle& rectangle : rectangles)
-        for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
-            require_radiance(
-                {&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
+    constexpr std::uint32_t Grain = 1 << 15; // texels that are worth a task
+    for (const cubemap::TexelRectangle& rectangle : rectangles) {
+        const std::uint32_t width = rectangle.x1 - rectangle.x0;
+        files::parallel_for(
+            files::IndexRange<std::uint32_t>(rectangle.y0, rectangle.y1, Grain / width + 1),
+            [&](const auto& rows) {
+                for (std::uint32_t y = rows.begin(); y < rows.end(); ++y)
+                    require_radiance({&map.at(rectangle.face, rectangle.x0, y), width});
+            });
+    }
 }
 
 /// Adds the parts of a rectangle that no rectangle of the list covers.
