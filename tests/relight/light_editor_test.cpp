@@ -94,6 +94,27 @@ TEST(LightEditor, FollowsRandomEditsOfAllKinds) {
     }
 }
 
+TEST(LightEditor, RegionsThatComeBackAreFoundInBasesOfAnySize) {
+    // The editor keeps the texels of the last regions.
+    std::mt19937 random(17);
+    std::vector<cubemap::LightLayer> kinds;
+    for (int i = 0; i < 12; ++i)
+        kinds.push_back(random_layer(random));
+    LightEditor editor(relit_scene().transfer);
+    editor.set_base(scenes::random_environment(32, 5));
+    editor.set_layers({kinds[0], kinds[1]});
+    for (int edit = 0; edit < 120; ++edit) {
+        if (edit % 30 == 29)
+            editor.set_base(scenes::random_environment(edit % 60 == 29 ? 48 : 32, 5));
+        cubemap::LightLayer layer = kinds[random() % kinds.size()];
+        layer.gain_ev = 0.1 * edit;
+        layer.on = edit % 7 != 6;
+        editor.set_layer(static_cast<std::size_t>(edit % 2), layer);
+        EXPECT_EQ(editor.environment().texels,
+                  cubemap::composite(*editor.base(), editor.layers()).texels);
+    }
+}
+
 TEST(LightEditor, TenThousandEditsLeaveNoDrift) {
     const cubemap::CubeMap base = scenes::random_environment(16, 5);
     LightEditor editor(relit_scene().transfer);
