@@ -30,7 +30,9 @@ bool is_good(const glm::vec3& texel) {
 /// suffice, which compilers turn into vectors.
 bool are_surely_good(std::span<const glm::vec3> texels) {
     constexpr std::uint32_t Negative = 1u << 31u;
-    const float* values = texels.empty() ? nullptr : &texels.front().x;
+    if (texels.empty())
+        return true;
+    const float* values = &texels.front().x;
     std::uint32_t bad = 0;
     for (std::size_t i = 0; i < 3 * texels.size(); ++i) {
         const auto bits = std::bit_cast<std::uint32_t>(values[i]);
