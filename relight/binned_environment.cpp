@@ -62,24 +62,24 @@ void require_radiance(std::span<const glm::vec3> texels) {
                         bad->r, bad->g, bad->b));
 }
 
-BinnedEnvironment EnvironmentBinner::bin(cubemap::CubeMap map) {
+BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap> map) {
     using Clock = std::chrono::steady_clock;
     const auto seconds_since = [](Clock::time_point start) {
         return std::chrono::duration<double>(Clock::now() - start).count();
     };
-    const std::size_t r = map.resolution;
-    if (r == 0 || map.texels.size() != cubemap::NumFaces * r * r)
+    const std::size_t r = map ? map->resolution : 0;
+    if (r == 0 || map->texels.size() != cubemap::NumFaces * r * r)
         throw std::invalid_argument(
-            fmt::format("expected 6 x {0} x {0} texels, got {1}", r, map.texels.size()));
-    require_radiance(map.texels);
+            fmt::format("expected 6 x {0} x {0} texels, got {1}", r, map ? map->texels.size() : 0));
+    require_radiance(map->texels);
 
     BinnedEnvironment result;
     auto start = Clock::now();
-    if (!binning_ || binning_->resolution() != map.resolution)
-        binning_ = std::make_shared<const LightBinning>(map.resolution);
+    if (!binning_ || binning_->resolution() != map->resolution)
+        binning_ = std::make_shared<const LightBinning>(map->resolution);
     result.binning = binning_;
     result.map = std::move(map);
-    result.sums = binning_->sums(result.map, transfer_.quadtree.leaves());
+    result.sums = binning_->sums(*result.map, transfer_.quadtree.leaves());
     result.powers.resize(result.sums.size());
     std::transform(result.sums.begin(), result.sums.end(), result.powers.begin(),
                    std::mem_fn(&VectorIrradiance::power));
@@ -88,7 +88,7 @@ BinnedEnvironment EnvironmentBinner::bin(cubemap::CubeMap map) {
     start = Clock::now();
     if (sharp_tolerance_ > 0.0f)
         result.sharp_lights =
-            find_sharp_lights(result.map, *binning_, transfer_.quadtree.leaves(), result.powers,
+            find_sharp_lights(*result.map, *binning_, transfer_.quadtree.leaves(), result.powers,
                               sharp_tolerance_, transfer_.glossy.has_value());
     result.seconds_sharp = seconds_since(start);
     return result;

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -24,9 +25,9 @@ inline constexpr float MaxRadiance = 1e30f;
 /// Throws:  std::invalid_argument for a radiance that is NaN, negative or above MaxRadiance.
 void require_radiance(std::span<const glm::vec3> texels);
 
-/// Everything that relighting needs of an environment.
+/// Everything that relighting needs of an environment. Copies share the map.
 struct BinnedEnvironment {
-    cubemap::CubeMap map;
+    std::shared_ptr<const cubemap::CubeMap> map;
     /// For the map's resolution.
     std::shared_ptr<const LightBinning> binning;
     /// [num_clusters] all light of each cluster.
@@ -57,7 +58,10 @@ public:
     /// Threads: one call at a time. The same bits for any number of threads inside.
     /// Throws:  std::invalid_argument for a map without texels, or a radiance that
     ///          require_radiance() refuses.
-    [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap map);
+    [[nodiscard]] BinnedEnvironment bin(std::shared_ptr<const cubemap::CubeMap> map);
+    [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap map) {
+        return bin(std::make_shared<const cubemap::CubeMap>(std::move(map)));
+    }
 
 private:
     const prt::Transfer& transfer_;

@@ -100,7 +100,7 @@ public:
     [[nodiscard]] std::span<const glm::vec3> diffuse_radiance() const {
         return diffuse_.empty() ? radiance_ : diffuse_;
     }
-    [[nodiscard]] const cubemap::CubeMap& environment() const { return environment_; }
+    [[nodiscard]] const cubemap::CubeMap& environment() const { return *environment_; }
     [[nodiscard]] const prt::Transfer& transfer() const { return transfer_; }
     [[nodiscard]] glm::dvec3 from_cluster(std::size_t place, std::size_t cluster) const;
     [[nodiscard]] std::span<const SharpLight> sharp_lights() const { return sharp_lights_; }
@@ -148,7 +148,10 @@ private:
     EnvironmentBinner binner_;
     /// For environment_.
     std::shared_ptr<const LightBinning> binning_;
-    cubemap::CubeMap environment_;
+    std::shared_ptr<const cubemap::CubeMap> environment_ =
+        std::make_shared<const cubemap::CubeMap>();
+    /// environment_ for updates; null where others may hold it, too.
+    std::shared_ptr<cubemap::CubeMap> own_environment_;
     std::vector<glm::vec3> radiance_;
     /// For albedo 1; empty without surfaces.
     std::vector<glm::vec3> diffuse_;
@@ -187,11 +190,13 @@ Relighter::Impl::Impl(const prt::Transfer& transfer, const ShadowRays& rays)
 }
 
 RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
-    BinnedEnvironment binned = binner_.bin(std::move(environment));
+    const auto own = std::make_shared<cubemap::CubeMap>(std::move(environment));
+    BinnedEnvironment binned = binner_.bin(own);
     forget_bounces();
     RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
     take(std::move(binned));
+    own_environment_ = own;
     static_cast<void>(traced_.trace(sharp_lights_));
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace += seconds_since(start);
@@ -208,6 +213,7 @@ RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
 /// Takes everything of an environment and drops the one before.
 void Relighter::Impl::take(BinnedEnvironment binned) {
     environment_ = std::move(binned.map);
+    own_environment_.reset();
     binning_ = std::move(binned.binning);
     sums_ = std::move(binned.sums);
     powers_ = std::move(binned.powers);
@@ -216,13 +222,14 @@ void Relighter::Impl::take(BinnedEnvironment binned) {
 
 UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
     const auto start = std::chrono::steady_clock::now();
-    if (frame.sums.size() != sums_.size() || frame.powers.size() != sums_.size() || !frame.binning)
+    if (frame.sums.size() != sums_.size() || frame.powers.size() != sums_.size() ||
+        !frame.binning || !frame.map)
         throw std::invalid_argument("expected an environment binned for this scene");
     if (!(bound >= 0.0))
         throw std::invalid_argument("expected a bound >= 0");
     forget_bounces();
     UpdateReport report;
-    const bool is_first = environment_.resolution == 0;
+    const bool is_first = environment_->resolution == 0;
     changed_.clear();
     for (std::uint32_t cluster = 0; cluster < sums_.size(); ++cluster)
         if (is_first || differs(sums_[cluster], frame.sums[cluster], bound))
@@ -239,6 +246,7 @@ UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
         powers_[cluster] = frame.powers[cluster];
     }
     environment_ = std::move(frame.map);
+    own_environment_.reset();
     binning_ = std::move(frame.binning);
     set_pyramid();
     if (is_first || is_cheaper_to_sum_all(changed_, sums_.size())) {
@@ -262,7 +270,8 @@ RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> l
     forget_bounces();
     RelightTimes times;
     auto start = std::chrono::steady_clock::now();
-    environment_ = {};
+    environment_ = std::make_shared<const cubemap::CubeMap>();
+    own_environment_.reset();
     sharp_lights_.clear();
     std::fill(sums_.begin(), sums_.end(), VectorIrradiance());
     for (const lights::DistantLight& light : lights) {
@@ -397,7 +406,7 @@ VectorIrradiance Relighter::Impl::light_of(std::size_t cluster) const {
 }
 
 void Relighter::Impl::check(const TexelRectangle& rectangle) const {
-    const std::uint32_t r = environment_.resolution;
+    const std::uint32_t r = environment_->resolution;
     if (r == 0)
         throw std::invalid_argument("expected an environment before its first update");
     if (rectangle.x0 >= rectangle.x1 || rectangle.y0 >= rectangle.y1 || rectangle.x1 > r ||
@@ -426,12 +435,16 @@ UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rec
     const auto start = std::chrono::steady_clock::now();
     for (const TexelRectangle& rectangle : rectangles)
         check(rectangle);
-    edit(environment_);
+    if (!own_environment_) {
+        own_environment_ = std::make_shared<cubemap::CubeMap>(*environment_);
+        environment_ = own_environment_;
+    }
+    edit(*own_environment_);
 
     // The light of clusters under the rectangles is summed anew, not by differences. So nothing can
     // drift.
     changed_.clear();
-    const auto r = static_cast<double>(environment_.resolution);
+    const auto r = static_cast<double>(environment_->resolution);
     for (const TexelRectangle& rectangle : rectangles)
         transfer_.quadtree.find_leaves({.face = rectangle.face,
                                         .s0 = rectangle.x0 / r,
@@ -443,14 +456,14 @@ UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rec
     const std::size_t num_changed = changed_.size();
     files::parallel_for(std::size_t{0}, num_changed, [&](std::size_t i) {
         const std::uint32_t cluster = changed_[i];
-        sums_[cluster] = binning_->sum(environment_, transfer_.quadtree.leaves()[cluster]);
+        sums_[cluster] = binning_->sum(*environment_, transfer_.quadtree.leaves()[cluster]);
         powers_[cluster] = sums_[cluster].power();
     });
     // Which lights are sharp depends on the whole map.
     std::optional<std::size_t> traced;
     if (rays_.blockers != nullptr)
         traced = replace_sharp_lights(
-            find_sharp_lights(environment_, *binning_, transfer_.quadtree.leaves(), powers_,
+            find_sharp_lights(*environment_, *binning_, transfer_.quadtree.leaves(), powers_,
                               rays_.tolerance, transfer_.glossy.has_value()));
     set_pyramid();
     const std::size_t num_receivers = update_changed(traced.has_value());
@@ -536,7 +549,7 @@ std::optional<std::size_t> Relighter::Impl::replace_sharp_lights(std::vector<Sha
 
 void Relighter::Impl::set_pyramid() {
     if (pyramid_)
-        pyramid_->set(environment_, *binning_, sharp_lights_);
+        pyramid_->set(*environment_, *binning_, sharp_lights_);
 }
 
 void Relighter::Impl::light_glossy(std::size_t block) {

@@ -290,7 +290,7 @@ UpdateReport LitScene::update(Environment environment) {
     return report;
 }
 
-BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
+BinnedEnvironment LitScene::bin(std::shared_ptr<const cubemap::CubeMap> environment) const {
     impl_->require_clusters();
     return relight::EnvironmentBinner(impl_->scene.transfer, impl_->sharp_tolerance())
         .bin(std::move(environment));
@@ -298,7 +298,7 @@ BinnedEnvironment LitScene::bin(cubemap::CubeMap environment) const {
 
 void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFile& file) {
     if (impl_->editor)
-        impl_->editor->set_base(std::move(environment.map));
+        impl_->editor->set_base(*environment.map);
     else
         impl_->plain_relighter().set_frame(std::move(environment));
     impl_->is_lit_by_list = false;

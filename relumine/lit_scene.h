@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -155,8 +156,11 @@ public:
     /// need not be summed again.
     ///
     /// Throws:  as light().
-    /// Cost:    O(6 R^2), and the memory of the map.
-    [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap environment) const;
+    /// Cost:    O(6 R^2). What is returned holds the map; copies of it share the map.
+    [[nodiscard]] BinnedEnvironment bin(std::shared_ptr<const cubemap::CubeMap> environment) const;
+    [[nodiscard]] BinnedEnvironment bin(cubemap::CubeMap environment) const {
+        return bin(std::make_shared<const cubemap::CubeMap>(std::move(environment)));
+    }
 
     /// Lights the scene with an environment that bin() of this scene has summed. Clusters whose
     /// light stays are not summed again, so the last bits may differ from light() of the map. The

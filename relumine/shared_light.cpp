@@ -193,7 +193,7 @@ RelightTimes SharedLight::light(cubemap::CubeMap environment) {
 }
 
 UpdateReport SharedLight::set_frame(BinnedEnvironment frame, double bound) {
-    require_same(impl_->team, impl_->path, &frame.map);
+    require_same(impl_->team, impl_->path, frame.map.get());
     impl_->bounced.clear();
     return impl_->relighter ? impl_->relighter->set_frame(std::move(frame), bound) : UpdateReport();
 }

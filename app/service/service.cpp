@@ -217,7 +217,7 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
         binned.push_front({key, target.bin(std::move(environment.map)), environment.file});
         std::size_t bytes = 0;
         for (auto each = binned.begin(); each != binned.end();) {
-            bytes += (each->environment.map.texels.size() + each->file.image->pixels.size()) *
+            bytes += (each->environment.map->texels.size() + each->file.image->pixels.size()) *
                      sizeof(glm::vec3);
             each =
                 bytes > MaxBytes && each != binned.begin() ? binned.erase(each) : std::next(each);

@@ -157,6 +157,24 @@ TEST_F(TracedFrames, LightListsAndRegionUpdatesMayComeBetween) {
     scenes::expect_close(relighter_.radiance(), afresh(map), 1e-5);
 }
 
+TEST_F(Frames, AnUpdateLeavesTheFrameThatOthersKeep) {
+    const cubemap::CubeMap map = scenes::random_environment(16, 2);
+    const BinnedEnvironment kept = binner_.bin(map);
+    relighter_.set_frame(kept);
+    EXPECT_EQ(&relighter_.environment(), kept.map.get()) << "shared";
+    const std::vector<glm::vec3> before = copy(relighter_.radiance());
+    const std::vector<glm::vec3> patch(4, glm::vec3(50.0f));
+    for (const std::uint32_t x : {2u, 8u})
+        relighter_.update_region(
+            {.face = cubemap::Face::PositiveX, .x0 = x, .y0 = 8, .x1 = x + 2, .y1 = 10}, patch);
+    EXPECT_EQ(kept.map->texels, map.texels);
+    EXPECT_EQ(relighter_.environment().at(cubemap::Face::PositiveX, 2, 8), patch[0]);
+    EXPECT_EQ(relighter_.environment().at(cubemap::Face::PositiveX, 8, 8), patch[0]);
+    EXPECT_NE(copy(relighter_.radiance()), before);
+    relighter_.set_frame(kept);
+    scenes::expect_close(relighter_.radiance(), before, 1e-5);
+}
+
 TEST_F(Frames, WhatDoesNotFitIsRefused) {
     const cubemap::CubeMap map = scenes::random_environment(16, 2);
     show(map);
@@ -165,9 +183,13 @@ TEST_F(Frames, WhatDoesNotFitIsRefused) {
     BinnedEnvironment other = binner_.bin(map);
     other.sums.pop_back();
     EXPECT_THROW(relighter_.set_frame(other), std::invalid_argument);
+    other = binner_.bin(map);
+    other.map.reset();
+    EXPECT_THROW(relighter_.set_frame(other), std::invalid_argument);
     EXPECT_THROW(relighter_.set_frame(binner_.bin(map), -0.1), std::invalid_argument);
     EXPECT_THROW(relighter_.set_frame(binner_.bin(map), std::nan("")), std::invalid_argument);
-    EXPECT_THROW(static_cast<void>(binner_.bin({})), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(binner_.bin(cubemap::CubeMap())), std::invalid_argument);
+    EXPECT_THROW(static_cast<void>(binner_.bin(nullptr)), std::invalid_argument);
     EXPECT_THROW(static_cast<void>(binner_.bin(cubemap::CubeMap(4, glm::vec3(-1.0f)))),
                  std::invalid_argument);
     EXPECT_EQ(copy(relighter_.radiance()), before);
