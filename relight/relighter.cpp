@@ -496,7 +496,7 @@ std::size_t Relighter::Impl::update_changed(bool sharp_changed) {
         changes_.set(lights_, cluster, light_of(cluster));
     const BlockScene scene{.counts = transfer_.counts, .words = words_, .normals = normals_};
     const std::size_t num_tiles = transfer_.counts.num_tiles();
-    // Calls visit(block) for blocks of a tile after their light is known.
+    // Calls visit(block, bit) for blocks of a tile, each one's number in the scene and its bit.
     const auto for_blocks = [&](std::size_t tile, std::uint64_t blocks, const auto& visit) {
         for (; blocks != 0; blocks &= blocks - 1) {
             const auto bit = static_cast<std::size_t>(std::countr_zero(blocks));

@@ -103,7 +103,8 @@ public:
     /// updates.
     ///
     /// Shape:   radiance is [(x1 - x0) * (y1 - y0)], row by row.
-    /// Cost:    proportional to the transfer of the clusters under the rectangle.
+    /// Cost:    proportional to the transfer of the clusters under the rectangle. The first update
+    ///          after set_frame() copies the map, because others may hold it.
     /// Throws:  std::invalid_argument for a rectangle outside the face, a wrong size, a radiance
     ///          that require_radiance() refuses, or no environment; nothing has changed then.
     UpdateReport update_region(const TexelRectangle& rectangle,
