@@ -175,7 +175,7 @@ RelightTimes LightEditor::relight_all() {
     turn_base();
     turn(layers_, turned_layers_);
     cubemap::CubeMap environment = turned_base();
-    cubemap::composite(turned_base(), turned_layers_, cubemap::all_texels(environment.resolution),
+    cubemap::composite(environment, turned_layers_, cubemap::all_texels(environment.resolution),
                        environment);
     const RelightTimes times = relighter_.set_environment(std::move(environment));
     dirty_ = cubemap::all_texels(relighter_.environment().resolution);
