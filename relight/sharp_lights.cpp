@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <functional>
 #include <numbers>
 #include <numeric>
 
@@ -31,16 +32,17 @@ constexpr double FinestShare = 1.0 / 64.0;
 // Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
 constexpr std::uint32_t FinestLevel = 9;
 
-/// Keeps sums side by side: each addition waits for the one before it, and this function runs with
-/// every edit.
-double sum_of(std::span<const double> values) {
+/// Returns the sum of term(value). Keeps sums side by side: each addition waits for the one before
+/// it, and this function runs with every edit.
+template<class Term>
+double sum_of(std::span<const double> values, const Term& term) {
     std::array<double, 16> sums{};
     std::size_t i = 0;
     for (; i + sums.size() <= values.size(); i += sums.size())
         for (std::size_t k = 0; k < sums.size(); ++k)
-            sums[k] += values[i + k];
+            sums[k] += term(values[i + k]);
     for (; i < values.size(); ++i)
-        sums[0] += values[i];
+        sums[0] += term(values[i]);
     return std::accumulate(sums.begin(), sums.end(), 0.0);
 }
 
@@ -119,7 +121,7 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
                                           std::span<const double> powers, float tolerance,
                                           bool glossy) {
     // The length of a small cell's vector irradiance is its power.
-    const double total_power = sum_of(powers);
+    const double total_power = sum_of(powers, std::identity());
     std::vector<SharpLight> lights;
     if (total_power == 0.0 || tolerance <= 0.0f)
         return lights;
@@ -127,9 +129,21 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
         AllowedError * total_power / (4.0 * std::numbers::pi) / static_cast<double>(tolerance);
 
     Search search(environment, binning, min_power, glossy, lights);
-    for (std::uint32_t cluster = 0; cluster < clusters.size(); ++cluster)
-        if (powers[cluster] >= min_power)
-            search.look_into(cluster, powers[cluster], clusters[cluster]);
+    const auto is_bright = [=](double power) {
+        return power >= min_power;
+    };
+    // Most runs of so many clusters have no bright one, which vectors of a compiler tell at once.
+    constexpr std::size_t Run = 512;
+    for (std::size_t begin = 0; begin < powers.size(); begin += Run) {
+        const std::size_t end = std::min(begin + Run, powers.size());
+        const double num_bright = sum_of(powers.subspan(begin, end - begin), [&](double power) {
+            return is_bright(power) ? 1.0 : 0.0;
+        });
+        for (std::size_t cluster = begin; num_bright > 0.0 && cluster < end; ++cluster)
+            if (is_bright(powers[cluster]))
+                search.look_into(static_cast<std::uint32_t>(cluster), powers[cluster],
+                                 clusters[cluster]);
+    }
     return lights;
 }
 
