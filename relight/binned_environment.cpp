@@ -67,10 +67,12 @@ BinnedEnvironment EnvironmentBinner::bin(std::shared_ptr<const cubemap::CubeMap>
     const auto seconds_since = [](Clock::time_point start) {
         return std::chrono::duration<double>(Clock::now() - start).count();
     };
-    const std::size_t r = map ? map->resolution : 0;
+    if (!map)
+        throw std::invalid_argument("expected an environment");
+    const std::size_t r = map->resolution;
     if (r == 0 || map->texels.size() != cubemap::NumFaces * r * r)
         throw std::invalid_argument(
-            fmt::format("expected 6 x {0} x {0} texels, got {1}", r, map ? map->texels.size() : 0));
+            fmt::format("expected 6 x {0} x {0} texels, got {1}", r, map->texels.size()));
     require_radiance(map->texels);
 
     BinnedEnvironment result;

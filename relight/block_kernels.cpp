@@ -211,10 +211,10 @@ double block_radiance(const BlockNormals& normals, const BlockLight& light,
     visible[Last] = static_cast<float>(full * light.visible[Last]);
     auto largest = hn::Set(d, std::abs(visible[Last]));
     for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d)) {
-        const auto part =
-            hn::Mul(hn::Set(doubles, full), hn::LoadU(doubles, light.visible.data() + lane));
-        hn::StoreU(hn::DemoteTo(d, part), d, visible.data() + lane);
-        largest = hn::Max(largest, hn::Abs(hn::DemoteTo(d, part)));
+        const auto part = hn::DemoteTo(
+            d, hn::Mul(hn::Set(doubles, full), hn::LoadU(doubles, light.visible.data() + lane)));
+        hn::StoreU(part, d, visible.data() + lane);
+        largest = hn::Max(largest, hn::Abs(part));
     }
     for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
         const Normals<decltype(d)> n(normals, lane);

@@ -54,16 +54,10 @@ void append_changed_tiles(const cubemap::CubeMap& before, const cubemap::CubeMap
 
 void require_radiance_in(const cubemap::CubeMap& map,
                          std::span<const cubemap::TexelRectangle> rectangles) {
-    constexpr std::uint32_t Grain = 1 << 15; // texels that are worth a task
-    for (const cubemap::TexelRectangle& rectangle : rectangles) {
-        const std::uint32_t width = rectangle.x1 - rectangle.x0;
-        files::parallel_for(
-            files::IndexRange<std::uint32_t>(rectangle.y0, rectangle.y1, Grain / width + 1),
-            [&](const auto& rows) {
-                for (std::uint32_t y = rows.begin(); y < rows.end(); ++y)
-                    require_radiance({&map.at(rectangle.face, rectangle.x0, y), width});
-            });
-    }
+    for (const cubemap::TexelRectangle& rectangle : rectangles)
+        for (std::uint32_t y = rectangle.y0; y < rectangle.y1; ++y)
+            require_radiance(
+                {&map.at(rectangle.face, rectangle.x0, y), rectangle.x1 - rectangle.x0});
 }
 
 /// Adds the parts of a rectangle that no rectangle of the list covers.
@@ -133,11 +127,10 @@ UpdateReport report_of(const RelightTimes& times, const prt::Transfer& transfer)
 LightEditor::LightEditor(const prt::Transfer& transfer, const ShadowRays& rays)
     : relighter_(transfer, rays), history_(1) {}
 
-RelightTimes LightEditor::set_base(cubemap::CubeMap base) {
-    auto next = std::make_shared<const cubemap::CubeMap>(std::move(base));
-    if (next->resolution == 0)
+RelightTimes LightEditor::set_base(std::shared_ptr<const cubemap::CubeMap> base) {
+    if (!base || base->resolution == 0)
         throw std::invalid_argument("expected a base with texels");
-    const std::shared_ptr<const cubemap::CubeMap> before = std::exchange(base_, std::move(next));
+    const std::shared_ptr<const cubemap::CubeMap> before = std::exchange(base_, std::move(base));
     try {
         const RelightTimes times = relight_all();
         if (!before)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <shared_mutex>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -39,7 +40,10 @@ public:
     ///
     /// Throws:  std::invalid_argument for a map without texels, or a radiance that
     ///          require_radiance() refuses; nothing has changed then.
-    RelightTimes set_base(cubemap::CubeMap base);
+    RelightTimes set_base(std::shared_ptr<const cubemap::CubeMap> base);
+    RelightTimes set_base(cubemap::CubeMap base) {
+        return set_base(std::make_shared<const cubemap::CubeMap>(std::move(base)));
+    }
     /// The base as given, unturned; null before the first. Every change of the base makes another
     /// object, so pointers tell bases apart.
     [[nodiscard]] const std::shared_ptr<const cubemap::CubeMap>& base() const { return base_; }
@@ -168,7 +172,7 @@ private:
     std::vector<cubemap::TexelRectangle> dirty_;
     /// Scratch of apply(): the rectangles that changed layers cover.
     std::vector<cubemap::TexelRectangle> touched_;
-    /// Of regions asked for last, oldest first: an edit's region is often that of the edit before.
+    /// Of regions asked for last, oldest first: an edit often has the region of the edit before.
     std::vector<TouchedTexels> known_;
     std::vector<State> history_;
     /// Index of the present mark.

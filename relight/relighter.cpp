@@ -110,6 +110,10 @@ private:
     void check(const TexelRectangle& rectangle) const;
     [[nodiscard]] VectorIrradiance light_of(std::size_t cluster) const;
     void take(BinnedEnvironment binned);
+    /// Holds a map that others may hold, too.
+    void hold(std::shared_ptr<const cubemap::CubeMap> map);
+    /// Holds a map that nobody else does.
+    void hold_own(std::shared_ptr<cubemap::CubeMap> map);
     std::optional<std::size_t> replace_sharp_lights(std::vector<SharpLight> lights);
     std::size_t update_changed(bool sharp_changed);
     void set_pyramid();
@@ -196,7 +200,7 @@ RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
     RelightTimes times{.seconds_bin = binned.seconds_bin, .seconds_trace = binned.seconds_sharp};
     auto start = std::chrono::steady_clock::now();
     take(std::move(binned));
-    own_environment_ = own;
+    hold_own(own);
     static_cast<void>(traced_.trace(sharp_lights_));
     times.num_sharp_lights = sharp_lights_.size();
     times.seconds_trace += seconds_since(start);
@@ -212,12 +216,21 @@ RelightTimes Relighter::Impl::set_environment(cubemap::CubeMap environment) {
 
 /// Takes everything of an environment and drops the one before.
 void Relighter::Impl::take(BinnedEnvironment binned) {
-    environment_ = std::move(binned.map);
-    own_environment_.reset();
+    hold(std::move(binned.map));
     binning_ = std::move(binned.binning);
     sums_ = std::move(binned.sums);
     powers_ = std::move(binned.powers);
     sharp_lights_ = std::move(binned.sharp_lights);
+}
+
+void Relighter::Impl::hold(std::shared_ptr<const cubemap::CubeMap> map) {
+    environment_ = std::move(map);
+    own_environment_.reset();
+}
+
+void Relighter::Impl::hold_own(std::shared_ptr<cubemap::CubeMap> map) {
+    own_environment_ = std::move(map);
+    environment_ = own_environment_;
 }
 
 UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
@@ -245,8 +258,7 @@ UpdateReport Relighter::Impl::set_frame(BinnedEnvironment frame, double bound) {
         sums_[cluster] = frame.sums[cluster];
         powers_[cluster] = frame.powers[cluster];
     }
-    environment_ = std::move(frame.map);
-    own_environment_.reset();
+    hold(std::move(frame.map));
     binning_ = std::move(frame.binning);
     set_pyramid();
     if (is_first || is_cheaper_to_sum_all(changed_, sums_.size())) {
@@ -270,8 +282,7 @@ RelightTimes Relighter::Impl::set_lights(std::span<const lights::DistantLight> l
     forget_bounces();
     RelightTimes times;
     auto start = std::chrono::steady_clock::now();
-    environment_ = std::make_shared<const cubemap::CubeMap>();
-    own_environment_.reset();
+    hold(std::make_shared<const cubemap::CubeMap>());
     sharp_lights_.clear();
     std::fill(sums_.begin(), sums_.end(), VectorIrradiance());
     for (const lights::DistantLight& light : lights) {
@@ -435,10 +446,8 @@ UpdateReport Relighter::Impl::update_regions(std::span<const TexelRectangle> rec
     const auto start = std::chrono::steady_clock::now();
     for (const TexelRectangle& rectangle : rectangles)
         check(rectangle);
-    if (!own_environment_) {
-        own_environment_ = std::make_shared<cubemap::CubeMap>(*environment_);
-        environment_ = own_environment_;
-    }
+    if (!own_environment_)
+        hold_own(std::make_shared<cubemap::CubeMap>(*environment_));
     edit(*own_environment_);
 
     // The light of clusters under the rectangles is summed anew, not by differences. So nothing can

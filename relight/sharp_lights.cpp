@@ -132,7 +132,7 @@ std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
     const auto is_bright = [=](double power) {
         return power >= min_power;
     };
-    // Most runs of so many clusters have no bright one, which vectors of a compiler tell at once.
+    // Most runs of so many clusters have no bright one. Counting them is quicker than asking each.
     constexpr std::size_t Run = 512;
     for (std::size_t begin = 0; begin < powers.size(); begin += Run) {
         const std::size_t end = std::min(begin + Run, powers.size());

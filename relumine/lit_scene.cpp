@@ -298,7 +298,7 @@ BinnedEnvironment LitScene::bin(std::shared_ptr<const cubemap::CubeMap> environm
 
 void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFile& file) {
     if (impl_->editor)
-        impl_->editor->set_base(*environment.map);
+        impl_->editor->set_base(std::move(environment.map));
     else
         impl_->plain_relighter().set_frame(std::move(environment));
     impl_->is_lit_by_list = false;

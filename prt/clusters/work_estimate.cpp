@@ -24,9 +24,10 @@ std::uint8_t WorkEstimate::expected_depth(double excess) {
 
 void WorkEstimate::add(std::uint32_t level, const Depths& cells, double seconds) {
     std::size_t num_deeper = 0;
-    for (std::size_t depth = cells.size(); depth-- > 0;)
-        levels_[level].deeper[depth] += num_deeper += cells[depth];
-    levels_[level].num_cells += num_deeper;
+    for (std::size_t depth = cells.size(); depth-- > 0;) {
+        num_deeper += cells[depth];
+        levels_[level].deeper[depth] += num_deeper;
+    }
     levels_[level].seconds += seconds;
     seconds_ += seconds;
 }
@@ -34,8 +35,8 @@ void WorkEstimate::add(std::uint32_t level, const Depths& cells, double seconds)
 double WorkEstimate::seconds_of_cell(std::uint32_t level) const {
     double scale = 1.0;
     for (std::uint32_t l = level + 1; l-- > 0; scale *= DeeperCell)
-        if (levels_[l].num_cells != 0)
-            return scale * levels_[l].seconds / static_cast<double>(levels_[l].num_cells);
+        if (levels_[l].deeper[0] != 0)
+            return scale * levels_[l].seconds / static_cast<double>(levels_[l].deeper[0]);
     return scale;
 }
 
@@ -43,7 +44,7 @@ double WorkEstimate::split_share(std::uint32_t level) const {
     if (level >= max_level_)
         return 0.0;
     std::uint32_t known = level + 1;
-    while (known > 0 && levels_[known - 1].num_cells == 0)
+    while (known > 0 && levels_[known - 1].deeper[0] == 0)
         --known;
     if (known == 0)
         return FirstShare;

@@ -11,8 +11,8 @@ namespace relumine::prt {
 
 /// Learns from the levels of the quadtree how long a cell takes, and from the cells of the last one
 /// how many levels will follow. A cell is split while the squared distance of its transfer vectors
-/// is too large [JN, Eq. 11]. Where shadows' edges cross a cell, half of them cross a child, so a
-/// child has about half the squared distance.
+/// is too large [JN, Eq. 11]. Where shadows' edges cross a cell, half of the edges cross a child,
+/// so a child has about half the squared distance.
 class WorkEstimate {
 public:
     /// Cells of a level, one number for each.
@@ -45,8 +45,7 @@ private:
     [[nodiscard]] double split_share(std::uint32_t level) const;
 
     struct Level {
-        std::size_t num_cells = 0;
-        /// Cells with at least so many levels below.
+        /// Cells with at least so many levels below: first all cells.
         Depths deeper{};
         double seconds = 0.0;
     };

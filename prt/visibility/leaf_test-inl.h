@@ -194,7 +194,7 @@ HWY_INLINE std::uint32_t near_rays(D d, const TriangleView<D>& view, const Asked
     return bits_of(d, hn::Or(view.edge_on, near));
 }
 
-/// Triangles that a ray meets for certain, and those that it may meet.
+/// Triangles that a ray meets for certain, and triangles that it may meet.
 template<class D>
 struct Meets {
     hn::Mask<D> hit, maybe;
