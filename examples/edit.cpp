@@ -22,7 +22,7 @@ int main(int argc, char** argv) try {
                                   .region =
                                       cubemap::Disc{.direction = {0, -1, 0}, .radius_degrees = 90},
                                   .effect = cubemap::Gain{.factor = 0.25f}};
-    lit.set_layers({dim, key});
+    set_layers(lit, {dim, key});
     relight::LightEditor& editor = lit.editor();
     editor.mark();
 
@@ -30,7 +30,7 @@ int main(int argc, char** argv) try {
     double seconds = 0.0;
     for (int event = 0; event < 20; ++event) {
         std::get<cubemap::Disc>(key.region).direction.x -= 0.1;
-        seconds += lit.set_layer(1, key).seconds;
+        seconds += set_layer(lit, 1, key).seconds;
     }
     editor.mark();
     const std::vector<glm::vec3> dragged(lit.radiance().begin(), lit.radiance().end());
@@ -42,7 +42,7 @@ int main(int argc, char** argv) try {
 
     // Which directions light the vertex nearest to a point? Their integral is its radiance.
     const std::uint32_t receiver = nearest_receiver(lit.scene(), {0.0f, 2.0f, 0.0f});
-    const cubemap::CubeMap who = lit.contribution_map({&receiver, 1});
+    const cubemap::CubeMap who = contribution_map(lit, {&receiver, 1});
     cubemap::save_layers(argv[3], {.layers = {editor.layers().begin(), editor.layers().end()}});
     std::printf("20 events, %.2f ms each; vertex %u: %.4f, by direction %.4f\n", 50.0 * seconds,
                 receiver, static_cast<double>(seen[receiver].g), cubemap::total_power(who).y);

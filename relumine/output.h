@@ -16,7 +16,6 @@
 #include "relight/pictures/picture.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/tone_curve.h"
-#include "relight/relighter.h"
 #include "relight/sharp_lights.h"
 #include "relumine/scene.h"
 
@@ -68,10 +67,9 @@ struct Lighting {
     /// radiance has all light.
     std::vector<relight::SharpLight> lights = {};
     std::vector<glm::vec3> soft = {};
+    /// What `radiance` points to, where it was gathered from several processes.
+    std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
 };
-
-/// Returns the light of a Relighter, which must outlive it.
-[[nodiscard]] Lighting lighting_of(const relight::Relighter& relighter);
 
 struct OutputOptions {
     Albedo albedo = AutomaticAlbedo{};
@@ -127,7 +125,7 @@ struct OutputOptions {
                                                  const OutputOptions& options = {});
 
 /// Draws and writes many pictures of one scene from one camera. What the camera sees is found once,
-/// and one exposure is chosen for all. LitScene::draw() and save() are the short forms for one
+/// and one exposure is chosen for all. draw() and save() of a LitScene are the short forms for one
 /// picture.
 ///
 /// Throws:  std::invalid_argument where radiance does not fit the scene, an environment has no

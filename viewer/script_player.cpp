@@ -23,7 +23,7 @@ glm::dvec3 vector_of(const ScriptCommand& command) {
 }
 
 std::size_t layer_of(const ScriptCommand& command, const ViewState& state) {
-    const std::optional<std::size_t> index = state.desk.find(command.text);
+    const std::optional<std::size_t> index = find(state.desk, command.text);
     if (!index)
         fail(command, fmt::format("expected the name of a layer, got '{}'", command.text));
     return *index;
@@ -90,7 +90,7 @@ void set_gain(const ScriptCommand& command, ViewState& state) {
     const std::size_t index = layer_of(command, state);
     cubemap::LightLayer layer = state.desk.layers()[index];
     layer.gain_ev = command.numbers[0];
-    state.desk.change(index, layer);
+    change(state.desk, index, layer);
     state.desk.finish();
 }
 
@@ -165,13 +165,14 @@ ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
 void ScriptPlayer::drag_layer(const ScriptCommand& command, ViewState& state, std::size_t count) {
     const std::size_t index = layer_of(command, state);
     if (frame_ == 0) {
-        from_ = turned(middle(state.desk.layers()[index].region), state.desk.editor().rotation());
-        state.desk.begin_drag({.index = index, .grip = Grip::Body}, from_);
+        from_ =
+            turned(middle(state.desk.layers()[index].region), state.desk.state().rotation_degrees);
+        state.hand.begin_drag({.index = index, .grip = Grip::Body}, from_);
     }
     const glm::dvec3 on_way = from_ + (vector_of(command) - from_) * part_done(count);
-    state.desk.drag_to(glm::length(on_way) > 1e-6 ? on_way : vector_of(command));
+    state.hand.move_to(glm::length(on_way) > 1e-6 ? on_way : vector_of(command));
     if (frame_ + 1 == count)
-        state.desk.end_drag();
+        state.hand.end();
 }
 
 void ScriptPlayer::resize_layer(const ScriptCommand& command, ViewState& state, std::size_t count) {
@@ -180,7 +181,7 @@ void ScriptPlayer::resize_layer(const ScriptCommand& command, ViewState& state, 
     if (frame_ == 0)
         size_from_ = size_of(layer.region);
     resize_region(layer.region, size_from_ + (command.numbers[0] - size_from_) * part_done(count));
-    state.desk.change(index, layer);
+    change(state.desk, index, layer);
     if (frame_ + 1 == count)
         state.desk.finish();
 }
@@ -193,7 +194,7 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
     case Action::AddDisc:
     case Action::AddRectangle:
     case Action::AddGain:
-        state.desk.add(new_layer(command));
+        add(state.desk, new_layer(command));
         break;
     case Action::DragLayer:
         drag_layer(command, state, count);
@@ -212,7 +213,7 @@ void ScriptPlayer::apply(const ScriptCommand& command, ViewState& state, std::si
         frame.pointer = moved_pointer(command, frame_, count, state.tool);
         break;
     case Action::Rotate:
-        state.desk.set_rotation(command.numbers[0]);
+        set_rotation(state.desk, command.numbers[0]);
         state.desk.finish();
         break;
     case Action::Undo:

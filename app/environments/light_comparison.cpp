@@ -52,7 +52,7 @@ public:
               relight::random_receivers(lit_.scene().transfer, options.num_samples, options.seed)) {
         require_diffuse(lit_.scene(), options.scene);
         lit_.light(map_);
-        exact_ = relight::exact_radiance(receivers_, sample_, lit_.blockers(), map_,
+        exact_ = relight::exact_radiance(receivers_, sample_, lit_.rays().blockers(), map_,
                                          {.bias = lit_.scene().settings.bias,
                                           .stop = session.stop(),
                                           .on_progress = session.progress("exact integration")});
@@ -87,8 +87,8 @@ public:
 
 private:
     [[nodiscard]] double relative_l2(std::span<const lights::DistantLight> list) const {
-        const std::vector<glm::dvec3> radiance =
-            relight::radiance_under(list, receivers_.normals, sample_, lit_.shadow_rays());
+        const std::vector<glm::dvec3> radiance = relight::radiance_under(
+            list, receivers_.normals, sample_, lit_.relighter().shadow_rays());
         std::vector<glm::vec3> relit(receivers_.size(), glm::vec3(0.0f));
         for (std::size_t i = 0; i < sample_.size(); ++i)
             relit[sample_[i]] = glm::vec3(radiance[i]);

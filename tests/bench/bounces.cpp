@@ -69,9 +69,9 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
             one.push_back(bench::seconds_of([&] { bounces.step(direct); }));
 
         const auto exact = relight::exact_radiance(
-            scene.receivers, sample, lit.rays(), lit.environment(), {.bias = scene.settings.bias});
+            scene.receivers, sample, lit.rays(), environment_of(lit), {.bias = scene.settings.bias});
         const auto traced = relight::trace_bounces(
-            scene.mesh, albedo, scene.receivers, sample, lit.rays(), lit.environment(),
+            scene.mesh, albedo, scene.receivers, sample, lit.rays(), environment_of(lit),
             {.num_paths = settings.paths, .bias = scene.settings.bias});
         double squares = 0.0, noise = 0.0, error = 0.0, direct_error = 0.0, indirect_error = 0.0;
         double mean = 0.0, mean_relit = 0.0, missing = 0.0;

@@ -65,7 +65,7 @@ void BM_Edit(benchmark::State& state) {
     const std::vector<glm::vec3> radiance(13 * 13, glm::vec3(2.0f));
     for (auto _ : state)
         benchmark::DoNotOptimize(
-            relighter.update_region({cubemap::Face::PositiveZ, 100, 60, 113, 73}, radiance));
+            update_region(relighter, {cubemap::Face::PositiveZ, 100, 60, 113, 73}, radiance));
 }
 void BM_CubeFromLatLong(benchmark::State& state) {
     cubemap::EnvironmentImage image;

@@ -187,7 +187,7 @@ private:
             images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
                 luminance += lights::luminance(value);
-            const RelightTimes times = lit_.light(map);
+            const UpdateReport times = lit_.light(map);
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
             relit.emplace_back();
             for (const std::uint32_t receiver : sample_)
@@ -238,7 +238,7 @@ private:
         std::vector<double> seconds;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t frame = i * (frames.num_frames() - 1) / 2;
-            const RelightTimes times = lit_.light(frames.at(frame));
+            const UpdateReport times = lit_.light(frames.at(frame));
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
         }
         row.seconds_light = bench::median(seconds);

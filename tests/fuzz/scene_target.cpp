@@ -49,7 +49,7 @@ void require_sound(const prt::Scene& scene) {
     require(relighter.radiance().size() == num_receivers, "every receiver has a radiance");
     require_moderate(relighter.radiance());
     const std::vector<glm::vec3> red(4, glm::vec3(1.0f, 0.0f, 0.0f));
-    relighter.update_region({.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
+    update_region(relighter, {.face = cubemap::Face::PositiveY, .x0 = 1, .y0 = 1, .x1 = 3, .y1 = 3},
                             red);
     require_moderate(relighter.radiance());
     if (!scene.bounces)

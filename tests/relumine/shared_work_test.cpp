@@ -92,10 +92,10 @@ double difference_of_bounces(const std::filesystem::path& a, const std::filesyst
         each->bounce(bounce_albedo(each->scene()));
     }
     double difference = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < lit.bounced().size(); ++i) {
-        const glm::dvec3 d = glm::dvec3(lit.bounced()[i]) - glm::dvec3(other.bounced()[i]);
+    for (std::size_t i = 0; i < lit.bounces().bounced().size(); ++i) {
+        const glm::dvec3 d = glm::dvec3(lit.bounces().bounced()[i]) - glm::dvec3(other.bounced()[i]);
         difference += glm::dot(d, d);
-        all += glm::dot(glm::dvec3(lit.bounced()[i]), glm::dvec3(lit.bounced()[i]));
+        all += glm::dot(glm::dvec3(lit.bounces().bounced()[i]), glm::dvec3(lit.bounces().bounced()[i]));
     }
     return std::sqrt(difference / all);
 }
@@ -224,7 +224,7 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
             expected.emplace_back(relighter.radiance().begin(), relighter.radiance().end());
         };
         for (const float sun : suns) {
-            relighter.set_frame(lit.bin(sun_and_sky(sun)));
+            relighter.set_frame(bin(lit, sun_and_sky(sun)));
             keep();
         }
         relighter.set_lights(list);
@@ -243,7 +243,7 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
                 ++frame;
             };
             for (const float sun : suns) {
-                shared.set_frame(lit.bin(sun_and_sky(sun)));
+                shared.set_frame(bin(lit, sun_and_sky(sun)));
                 compare();
             }
             shared.set_lights(list);
@@ -259,7 +259,7 @@ TEST_F(SharedWork, ProcessesFindTheErrorOfOne) {
         LitScene lit(scene);
         lit.light(sun_and_sky(60.0f));
         lit.bounce(bounce_albedo(*scene));
-        return lit.verify(
+        return verify(lit, 
             {.num_samples = 70, .num_surface_points = 30, .num_paths = 8, .reduction = reduction});
     };
     const Verification whole = verified(nullptr);

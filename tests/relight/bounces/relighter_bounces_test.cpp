@@ -106,7 +106,7 @@ TEST_F(RelighterBounces, AnUpdateShowsItsDirectLightAtOnceAndStepsBringTheRest) 
     relighter.bounce();
     const Colors bounced = copy(relighter.bounced());
     const glm::vec3 sun(9000.0f);
-    relighter.update_region(
+    update_region(relighter, 
         {.face = cubemap::Face::PositiveY, .x0 = 20, .y0 = 12, .x1 = 21, .y1 = 13}, {&sun, 1});
     EXPECT_EQ(copy(relighter.bounced()), bounced);
     EXPECT_LT(relative_difference(relighter.diffuse_radiance(), fresh.diffuse_radiance()), 1e-5);
