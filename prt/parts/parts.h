@@ -11,10 +11,8 @@
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
-#include "prt/reduction.h"
-#include "prt/transfer/glossy_transfer.h"
+#include "prt/team.h"
 #include "prt/transfer/transfer.h"
-#include "prt/transfer/visible_counts.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
