@@ -9,17 +9,17 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/transfer.h"
-#include "relight/block_kernels.h"
-#include "relight/block_normals.h"
-#include "relight/cluster_lights.h"
-#include "relight/glossy_kernels.h"
-#include "relight/kernel_lights.h"
+#include "prt/transfer/transfer.h"
+#include "relight/kernels/block_kernels.h"
+#include "relight/kernels/block_normals.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/kernels/glossy_kernels.h"
+#include "relight/kernels/kernel_lights.h"
+#include "relight/kernels/tile_words.h"
 #include "relight/light_pyramid.h"
-#include "relight/shadow_rays.h"
-#include "relight/sharp_lights.h"
-#include "relight/tile_words.h"
-#include "relight/traced_light.h"
+#include "relight/sharp/shadow_rays.h"
+#include "relight/sharp/sharp_lights.h"
+#include "relight/sharp/traced_light.h"
 
 namespace relumine::relight {
 

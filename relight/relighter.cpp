@@ -13,8 +13,8 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
-#include "relight/light_packets.h"
 #include "relight/receiver_light.h"
+#include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
 

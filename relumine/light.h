@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/image/environment_file.h"
 #include "cubemap/layers/light_layer.h"
 #include "lights/light_list.h"
 #include "relight/binned_environment.h"
-#include "relight/exact.h"
 #include "relight/pictures/backdrop.h"
 #include "relumine/environment.h"
 
@@ -32,13 +32,13 @@ struct Light {
     /// An environment that bin() of the scene has summed. Clusters whose light stays are not summed
     /// again, so the last bits may differ from light of the map. `file` is what the map was made
     /// from.
-    Light(BinnedEnvironment binned, relight::EnvironmentFile of = {})
+    Light(BinnedEnvironment binned, cubemap::EnvironmentFile of = {})
         : environment(std::move(binned)), file(std::move(of)) {}
     Light(std::vector<lights::DistantLight> list) : lights(std::move(list)) {}
 
     std::variant<std::monostate, cubemap::CubeMap, BinnedEnvironment> environment = {};
     /// The pixels that pictures show behind the mesh; without an image: those of the map.
-    relight::EnvironmentFile file = {};
+    cubemap::EnvironmentFile file = {};
     std::filesystem::path path = {};
     /// Each has shadow rays of its own or, with LightOptions::clusters_only, its cluster's.
     std::vector<lights::DistantLight> lights = {};
@@ -51,13 +51,13 @@ struct Light {
 class LightBase {
 public:
     explicit LightBase(std::shared_ptr<const cubemap::CubeMap> map,
-                       relight::EnvironmentFile file = {}, std::filesystem::path path = {})
+                       cubemap::EnvironmentFile file = {}, std::filesystem::path path = {})
         : map_(std::move(map)), file_(std::move(file)), path_(std::move(path)) {}
 
     /// Unturned. Null as long as nothing was edited: the scene's environment is the base then.
     [[nodiscard]] const std::shared_ptr<const cubemap::CubeMap>& map() const { return map_; }
     /// What it was made from; without an image where that is unknown.
-    [[nodiscard]] const relight::EnvironmentFile& file() const { return file_; }
+    [[nodiscard]] const cubemap::EnvironmentFile& file() const { return file_; }
     [[nodiscard]] const std::filesystem::path& path() const { return path_; }
     /// The file's pixels; empty without a file. Made by the first call: to resample pictures of
     /// faces takes as long as to light a scene.
@@ -68,7 +68,7 @@ public:
 
 private:
     std::shared_ptr<const cubemap::CubeMap> map_;
-    relight::EnvironmentFile file_;
+    cubemap::EnvironmentFile file_;
     std::filesystem::path path_;
     mutable std::once_flag once_;
     mutable relight::Backdrop backdrop_;

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "prt/clusters/dealt_tiles.h"
-#include "relight/shadow_rays.h"
+#include "relight/sharp/shadow_rays.h"
 
 namespace relumine {
 
@@ -224,7 +224,7 @@ UpdateReport LitScene::update(const LightState& next) {
 void LitScene::begin_edits() {
     const LightState first{.base = std::make_shared<const LightBase>(
                                std::make_shared<const cubemap::CubeMap>(relighter_->environment()),
-                               state_.base ? state_.base->file() : relight::EnvironmentFile(),
+                               state_.base ? state_.base->file() : cubemap::EnvironmentFile(),
                                state_.base ? state_.base->path() : std::filesystem::path())};
     compositor_ = LayerCompositor(first);
     state_ = first;

@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "cubemap/layers/layer_composite.h"
-#include "relight/bounces/path_tracer.h"
 #include "relight/contribution.h"
+#include "relight/reference/path_tracer.h"
 #include "relumine/shared_slices.h"
 
 namespace relumine {
@@ -22,7 +22,7 @@ void require_environment(const LitScene& lit) {
 }
 
 /// What the environment was made from, while nothing has changed it; null otherwise.
-const relight::EnvironmentFile* file_of(const LitScene& lit) {
+const cubemap::EnvironmentFile* file_of(const LitScene& lit) {
     const LightBase* base = lit.state().base.get();
     return base != nullptr && !base->map() && base->file().image ? &base->file() : nullptr;
 }
@@ -33,7 +33,7 @@ std::vector<glm::dvec3> exact_radiance(const LitScene& lit, const prt::Receivers
                                        const VerifyOptions& options,
                                        const relight::ExactOptions& exact_options) {
     return in_slices<glm::dvec3>(options.team, indices, [&](std::span<const std::uint32_t> slice) {
-        const relight::EnvironmentFile* file = file_of(lit);
+        const cubemap::EnvironmentFile* file = file_of(lit);
         return file != nullptr
                    ? relight::exact_radiance(receivers, slice, lit.rays().blockers(), *file,
                                              exact_options)

@@ -15,8 +15,8 @@
 #include "cubemap/layers/light_layer.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/team.h"
-#include "relight/exact.h"
-#include "relight/sharp_lights.h"
+#include "relight/reference/exact.h"
+#include "relight/sharp/sharp_lights.h"
 #include "relumine/lit_scene.h"
 #include "relumine/output.h"
 

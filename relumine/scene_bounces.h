@@ -7,7 +7,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "relight/bounces/bounce_light.h"
 #include "relumine/scene.h"
 

@@ -25,6 +25,8 @@ public:
     std::optional<BounceReport> bounce(LitScene& lit, const relumine::OutputOptions& output,
                                        const std::string& path) const;
 
+    [[nodiscard]] const BounceLimits& limits() const { return limits_; }
+
 private:
     bool is_given_ = false;
     BounceLimits limits_;
