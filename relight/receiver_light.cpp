@@ -116,7 +116,7 @@ glm::dvec3 ReceiverLight::from_cluster(std::size_t place, std::size_t cluster) c
                                                   block % prt::VisibleCounts::TileBlocks);
     const glm::vec3& normal = transfer_.normals[place];
     return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
-                                                        : lights_.of_beams(cluster, normal));
+                                                        : lights_.of_directional(cluster, normal));
 }
 
 void ReceiverLight::light_glossy(std::size_t block) {
