@@ -22,4 +22,5 @@
 #include "relumine/precompute.h"
 #include "relumine/questions.h"
 #include "relumine/scene.h"
+#include "relumine/shared_radiance.h"
 // IWYU pragma: end_exports

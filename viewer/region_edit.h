@@ -28,7 +28,7 @@ enum class Grip { None, Body, Rim };
 [[nodiscard]] cubemap::Region resized(const cubemap::Region& region, const glm::dvec3& from,
                                       const glm::dvec3& to);
 
-// Turns as relight::LightEditor::set_rotation() does.
+// Turns as set_rotation() does.
 using cubemap::turned;
 
 /// Returns the degrees between two directions of any length but zero.

@@ -44,7 +44,7 @@ public:
         const auto result = work(lit_);
         const std::span<const glm::vec3> radiance = lit_.radiance();
         std::copy(radiance.begin(), radiance.end(), radiance_.begin());
-        is_lit_ = true;
+        is_lit_ = !radiance.empty();
         return result;
     }
     /// A progress function that calls back would wait for itself.
@@ -194,10 +194,10 @@ py::dict verify(const LitPointer& own, std::size_t samples, std::uint64_t seed, 
                 const py::object& progress) {
     Verification found = slowly(own, progress, [=](LitScene& lit, const Reins& reins) {
         return relumine::verify(lit, {.num_samples = samples,
-                           .seed = seed,
-                           .num_paths = paths,
-                           .stop = reins.stop,
-                           .on_progress = reins.on_progress});
+                                      .seed = seed,
+                                      .num_paths = paths,
+                                      .stop = reins.stop,
+                                      .on_progress = reins.on_progress});
     });
     py::dict result;
     result["relative_l2"] = found.error.relative_l2;

@@ -41,7 +41,8 @@ Figures steps(LitScene& lit, const LayersAt& layers_at) {
         for (std::size_t i = 0; i < layers.size();
              ++i) { // one disc is one edit, as an artist would drag it
             relight::UpdateReport report;
-            const double seconds = bench::seconds_of([&] { report = set_layer(lit, i, layers[i]); });
+            const double seconds =
+                bench::seconds_of([&] { report = set_layer(lit, i, layers[i]); });
             figures.average += seconds / (2 * NumSteps);
             figures.worst = std::max(figures.worst, seconds);
             figures.clusters += static_cast<double>(report.num_clusters) / (2 * NumSteps);

@@ -113,8 +113,8 @@ void print_row(float roughness, const Settings& settings, const Mesh& mesh,
                 seconds_frame.push_back(times.seconds_bin + times.seconds_trace +
                                         times.seconds_relight);
         }
-        const Verification check = verify(lit, 
-            {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
+        const Verification check = verify(
+            lit, {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
         errors += fmt::format(
             " {:.4f}{} |", check.error.relative_l2,
             check.surface ? fmt::format(", {:.4f}", check.surface->error.relative_l2) : "");

@@ -114,8 +114,8 @@ UnderCrosses under_crosses(LitScene& lit, const Settings& settings, const bench:
             inputs.environment(fmt::format("{}_cross.hdr", name), resolution);
         for (int i = 0; i < 5; ++i)
             result.times.push_back(lit.light(map));
-        const Verification check = verify(lit, 
-            {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
+        const Verification check = verify(
+            lit, {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
         result.num_samples = check.receivers.size();
         result.errors[name] = check.error.relative_l2;
         result.surface_errors[name] = check.surface.value().error.relative_l2;

@@ -204,8 +204,9 @@ private:
             fmt::print(stderr, "\r{}: exact integration of frame {} of {} ", sequence.name,
                        frame + 1, settings_.num_frames);
             const cubemap::CubeMap map = sequence.map(frame);
-            exact_.push_back(relight::exact_radiance(lit_.scene().receivers, sample_, lit_.rays(),
-                                                     map, {.bias = lit_.scene().settings.bias}));
+            exact_.push_back(relight::exact_radiance(lit_.scene().receivers, sample_,
+                                                     lit_.rays().of_mesh(), map,
+                                                     {.bias = lit_.scene().settings.bias}));
             images_.push_back(lights::lat_long_of(map));
             for (const glm::dvec3& value : exact_.back())
                 luminance += lights::luminance(value);
@@ -247,7 +248,7 @@ private:
         for (std::size_t frame = 0; frame < frames.num_frames(); ++frame) {
             meter.add_frame(relight::radiance_under(frames.at(frame),
                                                     lit_.scene().receivers.normals, sample_,
-                                                    lit_.shadow_rays()),
+                                                    lit_.relighter().shadow_rays()),
                             exact_[frame]);
             row.lights += static_cast<double>(frames.at(frame).size()) /
                           static_cast<double>(frames.num_frames());

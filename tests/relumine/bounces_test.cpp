@@ -30,7 +30,7 @@ cubemap::CubeMap sun_and_sky() {
 
 std::vector<glm::vec3> bounced(LitScene& lit) {
     lit.light(sun_and_sky());
-    lit.bounce(bounce_albedo(lit.scene()));
+    lit.bounce({.albedo = bounce_albedo(lit.scene())});
     return {lit.bounces().bounced().begin(), lit.bounces().bounced().end()};
 }
 
@@ -124,7 +124,7 @@ TEST(Bounces, OfBacksAreVerifiedAsTheyWereMade) {
         how.two_sided_bounces = two_sided;
         LitScene lit(precompute(floor_under_a_roof(), how));
         lit.light(cubemap::CubeMap(16, glm::vec3(1.0f)));
-        lit.bounce(std::vector(lit.scene().receivers.size(), glm::vec3(0.8f)));
+        lit.bounce({.albedo = std::vector(lit.scene().receivers.size(), glm::vec3(0.8f))});
         float largest = 0.0f;
         for (const glm::vec3& light : lit.bounces().bounced())
             largest = std::max(largest, light.g);
@@ -151,7 +151,7 @@ TEST(Bounces, GlossyReceiversGainTheDiffusePart) {
         EXPECT_EQ(lit.scene().transfer.glossy.has_value(), surface == glossy);
         lit.light(sun_and_sky());
         const std::vector<glm::vec3> direct(lit.radiance().begin(), lit.radiance().end());
-        lit.bounce(bounce_albedo(lit.scene()));
+        lit.bounce({.albedo = bounce_albedo(lit.scene())});
         for (std::size_t i = 0; i < direct.size(); ++i)
             ASSERT_EQ(lit.radiance()[i], direct[i] + lit.bounces().bounced()[i]);
         lights.emplace_back(lit.bounces().bounced().begin(), lit.bounces().bounced().end());
