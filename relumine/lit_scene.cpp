@@ -67,7 +67,7 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::Scen
                    const LightOptions& options)
     : scene_(std::move(scene)), rays_(std::make_unique<const SceneRays>(*scene_)),
       alone_(std::make_unique<prt::Alone>()),
-      team_(options.team != nullptr ? options.team : alone_.get()), path_(options.path) {
+      team_(part && options.team != nullptr ? options.team : alone_.get()), path_(options.path) {
     const bool has_clusters = relumine::has_clusters(*scene_);
     if (has_clusters && scene_->receivers.size() != scene_->transfer.num_receivers())
         throw std::invalid_argument(fmt::format("expected the transfer of {} receivers, got {}",

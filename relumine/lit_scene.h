@@ -30,7 +30,7 @@ using relight::UpdateReport;
 struct LightOptions {
     /// Lights the sun through its cluster too, without shadow rays of its own: faster, softer
     bool clusters_only = false;
-    /// Processes that share the light, each with its part of the receivers. It must outlive the
+    /// Of a part: the processes that share the light, each with its own. It must outlive the
     /// LitScene. Null: this one has no others.
     prt::Team* team = nullptr;
     /// The scene's file, for what is said where processes have different ones

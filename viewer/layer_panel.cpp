@@ -82,14 +82,14 @@ void add_buttons(ViewState& state) {
         add_image(state, state.path);
     hint("the picture named below, .exr or .hdr, as a layer; or drop one on the window");
     next("Undo Redo ");
-    ImGui::BeginDisabled(!state.desk.can_undo());
+    ImGui::BeginDisabled(!state.desk.history().can_undo());
     if (ImGui::Button("Undo"))
         later = [&state] {
             state.desk.undo();
         };
     ImGui::EndDisabled();
     ImGui::SameLine();
-    ImGui::BeginDisabled(!state.desk.can_redo());
+    ImGui::BeginDisabled(!state.desk.history().can_redo());
     if (ImGui::Button("Redo"))
         later = [&state] {
             state.desk.redo();

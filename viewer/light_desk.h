@@ -33,8 +33,7 @@ public:
     [[nodiscard]] const LitScene& lit() const { return lit_; }
     [[nodiscard]] const LightState& state() const { return lit_.state(); }
     [[nodiscard]] std::span<const cubemap::LightLayer> layers() const { return state().layers; }
-    [[nodiscard]] bool can_undo() const { return lit_.history().can_undo(); }
-    [[nodiscard]] bool can_redo() const { return lit_.history().can_redo(); }
+    [[nodiscard]] const LightHistory& history() const { return lit_.history(); }
 
     [[nodiscard]] std::optional<std::size_t> selected() const { return selected_; }
     void select(std::optional<std::size_t> index) { selected_ = index; }

@@ -261,7 +261,9 @@ private:
         std::vector<double> seconds;
         for (std::size_t i = 0; i < 3; ++i) {
             const std::size_t frame = i * (frames.num_frames() - 1) / 2;
-            const UpdateReport times = lit_.light(frames.at(frame));
+            const std::span<const lights::DistantLight> list = frames.at(frame);
+            const UpdateReport times =
+                lit_.light(std::vector<lights::DistantLight>(list.begin(), list.end()));
             seconds.push_back(times.seconds_bin + times.seconds_relight + times.seconds_trace);
         }
         row.seconds_light = bench::median(seconds);

@@ -15,7 +15,6 @@
 
 #include "files/parallel.h"
 #include "relight/kernels/block_kernels.h"
-#include "relight/light_editor.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"
 #include "tests/relight/arrays.h"
@@ -30,7 +29,6 @@ static_assert(std::is_constructible_v<Relighter, const prt::Transfer&>);
 static_assert(!std::is_constructible_v<Relighter, prt::Transfer>);
 static_assert(!std::is_constructible_v<Relighter, const prt::Transfer>);
 static_assert(!std::is_constructible_v<Relighter, prt::Transfer, ShadowRays>);
-static_assert(!std::is_constructible_v<LightEditor, prt::Transfer>);
 static_assert(!std::is_constructible_v<EnvironmentBinner, prt::Transfer, float>);
 
 using scenes::expect_close;

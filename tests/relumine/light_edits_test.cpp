@@ -22,26 +22,15 @@ namespace relumine {
 namespace {
 
 using relight::copy;
+using scenes::relative_difference;
 using scenes::relit_scene;
 
 Environment environment(cubemap::CubeMap map) {
     return {.map = std::move(map), .file = {}, .assumptions = {}};
 }
 
-/// ||a - b|| / ||b||.
-double relative_difference(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    double difference = 0.0;
-    double size = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const glm::dvec3 d = glm::dvec3(a[i]) - glm::dvec3(b[i]);
-        difference += glm::dot(d, d);
-        size += glm::dot(glm::dvec3(b[i]), glm::dvec3(b[i]));
-    }
-    return size == 0.0 ? std::sqrt(difference) : std::sqrt(difference / size);
-}
-
-cubemap::LightLayer disc(const std::string& name, const glm::dvec3& direction, double radius,
-                         const glm::vec3& radiance) {
+cubemap::LightLayer named_disc(const std::string& name, const glm::dvec3& direction, double radius,
+                               const glm::vec3& radiance) {
     cubemap::LightLayer layer;
     layer.name = name;
     layer.region = cubemap::Disc{.direction = direction, .radius_degrees = radius, .softness = 0.3};
@@ -52,8 +41,8 @@ cubemap::LightLayer disc(const std::string& name, const glm::dvec3& direction, d
 cubemap::LightLayer random_layer(std::mt19937& random) {
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     cubemap::LightLayer layer =
-        disc("layer", scenes::random_direction(random), 1.0 + 30.0 * unit(random),
-             glm::vec3(static_cast<float>(5.0 * unit(random))));
+        named_disc("layer", scenes::random_direction(random), 1.0 + 30.0 * unit(random),
+                   glm::vec3(static_cast<float>(5.0 * unit(random))));
     if (unit(random) < 0.4)
         layer.region = cubemap::Rectangle{.direction = scenes::random_direction(random),
                                           .width_degrees = 5.0 + 30.0 * unit(random),
@@ -193,12 +182,12 @@ TEST(LightEdits, UndoBringsBackRotationAndBaseBitwise) {
         states.push_back(copy(editor.radiance()));
         environments.push_back(environment_of(editor).texels);
     };
-    set_layers(editor, {disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f))});
+    set_layers(editor, {named_disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f))});
     keep();
     for (const double degrees : {5.0, 20.0, 33.0}) // as a slider moves
         set_rotation(editor, degrees);
     keep();
-    set_layers(editor, {disc("lamp", {1.0, 0.5, 0.0}, 9.0, glm::vec3(2.0f))});
+    set_layers(editor, {named_disc("lamp", {1.0, 0.5, 0.0}, 9.0, glm::vec3(2.0f))});
     keep();
     editor.light(scenes::random_environment(16, 3)); // another resolution, under the rotation
     keep();
@@ -237,7 +226,7 @@ TEST(LightEdits, TheHistoryKeepsNoMoreBasesThanItMay) {
         editor.light(scenes::random_environment(Resolution, i));
         mark(editor);
         bases.emplace_back(editor.state().base->map());
-        set_layers(editor, {disc("lamp", {0.2, 0.5, 1.0 + i}, 12.0, glm::vec3(3.0f))});
+        set_layers(editor, {named_disc("lamp", {0.2, 0.5, 1.0 + i}, 12.0, glm::vec3(3.0f))});
         mark(editor);
     }
     for (std::size_t i = 0; i < bases.size(); ++i)
@@ -264,7 +253,7 @@ TEST(LightEdits, RefusesABadBaseAndStaysAsItWas) {
     EXPECT_FALSE(editor.state().base);
     editor.light(scenes::random_environment(16, 2));
     set_rotation(editor, 30.0);
-    set_layers(editor, {disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    set_layers(editor, {named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     mark(editor);
     const std::vector<glm::vec3> before = copy(editor.radiance());
     const std::vector<glm::vec3> texels = environment_of(editor).texels;
@@ -272,7 +261,7 @@ TEST(LightEdits, RefusesABadBaseAndStaysAsItWas) {
     EXPECT_EQ(copy(editor.radiance()), before);
     EXPECT_EQ(environment_of(editor).texels, texels);
     set_layers(editor, {});
-    set_layers(editor, {disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    set_layers(editor, {named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     EXPECT_EQ(environment_of(editor).texels, texels) << "the turned base is the old one";
 }
 
@@ -285,7 +274,7 @@ TEST(LightEdits, PaintingOnTouchesOnlyTheNewPieceAndLeavesNoTrace) {
         editor.light(base);
         if (trial % 2 == 1)
             set_rotation(editor, 37.0);
-        cubemap::LightLayer layer = disc("stroke", {1, 0, 0}, 1.0, glm::vec3(2.0f));
+        cubemap::LightLayer layer = named_disc("stroke", {1, 0, 0}, 1.0, glm::vec3(2.0f));
         cubemap::Stroke stroke{.points = {scenes::random_direction(random)},
                                .radius_degrees = 0.5 + 12.0 * unit(random),
                                .softness = trial % 3 == 0 ? 0.0 : unit(random)};
@@ -357,18 +346,19 @@ TEST(LightEdits, SmallEditsTouchFewClusters) {
     LitScene editor = scenes::relit_clusters();
     editor.light(cubemap::CubeMap(64, glm::vec3(0.5f)));
     const UpdateReport report =
-        set_layers(editor, {disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))});
+        set_layers(editor, {named_disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))});
     EXPECT_GT(report.num_clusters, 0u);
     EXPECT_LT(report.num_clusters, relit_scene().transfer.num_clusters() / 4);
-    EXPECT_EQ(
-        set_layers(editor, {disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))}).num_clusters, 0u)
+    EXPECT_EQ(set_layers(editor, {named_disc("lamp", {0.3, 1.0, 0.2}, 3.0, glm::vec3(4.0f))})
+                  .num_clusters,
+              0u)
         << "nothing changed";
 }
 
 TEST(LightEdits, RotationTurnsBaseAndLayersTogether) {
     const cubemap::CubeMap base = scenes::random_environment(32, 9);
-    const cubemap::LightLayer lamp = disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f));
-    cubemap::LightLayer above = disc("above", {0.0, 1.0, 0.0}, 10.0, glm::vec3(2.0f));
+    const cubemap::LightLayer lamp = named_disc("lamp", {0.2, 0.5, 1.0}, 12.0, glm::vec3(3.0f));
+    cubemap::LightLayer above = named_disc("above", {0.0, 1.0, 0.0}, 10.0, glm::vec3(2.0f));
     above.region = cubemap::Rectangle{
         .direction = {0.0, 1.0, 0.0}, .width_degrees = 40.0, .height_degrees = 10.0};
     for (const double degrees : {90.0, 180.0, -90.0}) {
@@ -393,7 +383,7 @@ TEST(LightEdits, UpdateBaseTouchesOnlyWhatDiffers) {
     cubemap::CubeMap base = scenes::random_environment(64, 2);
     LitScene editor = scenes::relit_clusters();
     editor.light(base);
-    set_layers(editor, {disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    set_layers(editor, {named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     EXPECT_EQ(update(editor, environment(base)).num_clusters, 0u);
     base.at(cubemap::Face::PositiveY, 33, 20) = glm::vec3(50.0f);
     const UpdateReport report = update(editor, environment(base));
@@ -407,14 +397,14 @@ TEST(LightEdits, UpdateBaseTouchesOnlyWhatDiffers) {
 TEST(LightEdits, RefusesBadLayersAndStaysAsItWas) {
     LitScene editor = scenes::relit_clusters();
     editor.light(scenes::random_environment(16, 2));
-    set_layers(editor, {disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    set_layers(editor, {named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     const std::vector<glm::vec3> before = copy(editor.radiance());
-    const cubemap::LightLayer bad = disc("bad", {0.0, 0.0, 0.0}, 8.0, glm::vec3(3.0f));
+    const cubemap::LightLayer bad = named_disc("bad", {0.0, 0.0, 0.0}, 8.0, glm::vec3(3.0f));
     EXPECT_THROW(set_layers(editor, {bad}), std::invalid_argument);
     EXPECT_THROW(set_layer(editor, 0, bad), std::invalid_argument);
     EXPECT_THROW(set_layer(editor, 1, editor.state().layers[0]), std::out_of_range);
     // Two lights that are too bright only together; a base that is too bright only under them.
-    cubemap::LightLayer nearly = disc("nearly", {0.0, 1.0, 0.3}, 8.0, glm::vec3(0.9e30f));
+    cubemap::LightLayer nearly = named_disc("nearly", {0.0, 1.0, 0.3}, 8.0, glm::vec3(0.9e30f));
     EXPECT_THROW(set_layers(editor, {nearly, nearly}), std::invalid_argument);
     EXPECT_EQ(copy(editor.radiance()), before);
     EXPECT_EQ(editor.state().layers[0].name, "lamp");
@@ -422,7 +412,7 @@ TEST(LightEdits, RefusesBadLayersAndStaysAsItWas) {
     set_layers(editor, {nearly});
     EXPECT_THROW(update(editor, environment(cubemap::CubeMap(16, glm::vec3(0.5e30f)))),
                  std::invalid_argument);
-    set_layers(editor, {disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
+    set_layers(editor, {named_disc("lamp", {0.0, 1.0, 0.3}, 8.0, glm::vec3(3.0f))});
     EXPECT_EQ(environment_of(editor).texels, texels);
 }
 
@@ -430,8 +420,8 @@ TEST(LightEdits, SnapshotsNeverShowHalfAnUpdate) {
     // Two states, far apart everywhere; a reader may see either, never a mixture.
     LitScene editor = scenes::relit_clusters();
     editor.light(cubemap::CubeMap(8, glm::vec3(0.0f)));
-    const cubemap::LightLayer dark = disc("all", {0.0, 1.0, 0.0}, 180.0, glm::vec3(0.0f));
-    const cubemap::LightLayer bright = disc("all", {0.0, 1.0, 0.0}, 180.0, glm::vec3(1.0f));
+    const cubemap::LightLayer dark = named_disc("all", {0.0, 1.0, 0.0}, 180.0, glm::vec3(0.0f));
+    const cubemap::LightLayer bright = named_disc("all", {0.0, 1.0, 0.0}, 180.0, glm::vec3(1.0f));
     set_layers(editor, {bright});
     const std::vector<glm::vec3> lit = copy(editor.radiance());
     set_layers(editor, {dark});

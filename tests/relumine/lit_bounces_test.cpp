@@ -8,26 +8,17 @@
 #include "relumine/lit_scene.h"
 #include "relumine/questions.h"
 #include "tests/prt/scenes.h"
+#include "tests/relight/arrays.h"
 #include "tests/relumine/bouncing_lit_scene.h"
+#include "tests/relumine/relit_lit_scene.h"
 
 namespace relumine {
 namespace {
 
 using Colors = std::vector<glm::vec3>;
 
-Colors copy(std::span<const glm::vec3> values) {
-    return {values.begin(), values.end()};
-}
-
-double relative_difference(std::span<const glm::vec3> a, std::span<const glm::vec3> b) {
-    double difference = 0.0, all = 0.0;
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        const glm::dvec3 d = glm::dvec3(a[i]) - glm::dvec3(b[i]);
-        difference += glm::dot(d, d);
-        all += glm::dot(glm::dvec3(b[i]), glm::dvec3(b[i]));
-    }
-    return std::sqrt(difference / all);
-}
+using relight::copy;
+using scenes::relative_difference;
 
 class LitBounces : public testing::Test {
 protected:

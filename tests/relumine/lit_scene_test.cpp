@@ -11,6 +11,7 @@
 #include "cubemap/layers/layer_composite.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/questions.h"
+#include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
 
@@ -22,10 +23,7 @@ const Scene& boulder_scene() {
     return Boulder;
 }
 
-template<typename T>
-std::vector<T> copy(std::span<const T> values) {
-    return {values.begin(), values.end()};
-}
+using relight::copy;
 
 std::vector<glm::vec3> lit(const cubemap::CubeMap& map) {
     LitScene scene(boulder_scene());

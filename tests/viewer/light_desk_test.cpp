@@ -21,7 +21,7 @@ class LightDeskTest : public testing::Test {
 protected:
     LightDeskTest() {
         lit_.light(cubemap::CubeMap(64, glm::vec3(0.1f)));
-        desk_->emplace(lit_);
+        desk_.emplace(lit_);
         hand_.emplace(*desk_);
     }
 
