@@ -14,6 +14,7 @@
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
 #include "cubemap/resample/resample.h"
+#include "files/extension.h"
 #include "files/joined.h"
 #include "files/output_file.h"
 
@@ -213,13 +214,6 @@ EnvironmentImage understood(ImageFile file, const LoadOptions& options, const st
     return image;
 }
 
-std::string extension_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 } // namespace
 
 std::vector<std::filesystem::path> environment_files(const std::filesystem::path& path) {
@@ -311,7 +305,7 @@ ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
 }
 
 bool is_environment_name(const std::filesystem::path& path) {
-    const std::string extension = extension_of(path);
+    const std::string extension = files::extension_of(path);
     return extension == ".exr" || extension == ".hdr";
 }
 
@@ -319,7 +313,7 @@ void check_environment_name(const std::filesystem::path& path) {
     if (!is_environment_name(path))
         throw std::invalid_argument(
             fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(),
-                        extension_of(path)));
+                        files::extension_of(path)));
 }
 
 void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {
@@ -329,7 +323,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
         throw std::invalid_argument(fmt::format("{}: expected layout cube for six files, got {}",
                                                 path.string(), name(image.layout)));
     const auto encode = [&](const EnvironmentImage& part) {
-        return extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
+        return files::extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
     };
     std::vector<std::unique_ptr<files::OutputFile>> outputs;
     outputs.reserve(paths.size());
@@ -360,7 +354,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
 Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
     // The specification of the `envmap` attribute puts samples on the borders. It knows two
     // layouts; .hdr has no attribute.
-    const bool has_attribute = extension_of(path) == ".exr" &&
+    const bool has_attribute = files::extension_of(path) == ".exr" &&
                                environment_files(path).size() == 1 &&
                                (layout == Layout::LatLong || layout == Layout::Cube);
     return has_attribute ? Sampling::Borders : Sampling::TexelCentres;
