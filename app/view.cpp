@@ -111,8 +111,7 @@ void run(const Options& options, Session& session) {
     if (!options.script.empty())
         view.script = viewer::load_script(options.script);
     else if (!options.screenshot.empty())
-        view.script =
-            std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
+        view.script = viewer::parse_script("wait 2", "--screenshot");
 
     LitScene lit = lit_scene(options.scene);
     require_vertices(lit.scene(), options.scene.path);
@@ -132,14 +131,13 @@ void run(const Options& options, Session& session) {
         path.empty() ? viewer::LoadedEnvironment{.map = plain_grey(), .sharp = {}} : load(path);
     editor.set_base(std::move(first.map));
     options.bounces.bounce(lit, {}, options.scene.path);
-    viewer::LightDesk desk(editor, path);
+    viewer::LightDesk desk(editor);
     viewer::ViewState state{.mesh = lit.scene().mesh,
                             .rays = lit.rays(),
                             .desk = desk,
                             .shading = shading_of(lit.scene()),
                             .load_environment = load};
-    if (first.sharp)
-        state.sharp.emplace_back(editor.base(), std::move(first.sharp));
+    state.bases.add(editor.base(), {.path = path, .sharp = std::move(first.sharp)});
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = static_cast<float>(
