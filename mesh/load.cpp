@@ -11,7 +11,7 @@
 #include "files/extension.h"
 #include "files/hash.h"
 #include "files/output_file.h"
-#include "mesh/polygon_soup.h"
+#include "mesh/formats/polygon_soup.h"
 
 namespace relumine::mesh {
 

@@ -9,8 +9,8 @@
 
 #include "files/extension.h"
 #include "files/output_file.h"
-#include "mesh/glb_writer.h"
-#include "mesh/obj_writer.h"
+#include "mesh/formats/glb_writer.h"
+#include "mesh/formats/obj_writer.h"
 
 namespace relumine::mesh {
 
