@@ -131,13 +131,14 @@ void run(const Options& options, Session& session) {
         path.empty() ? viewer::LoadedEnvironment{.map = plain_grey(), .sharp = {}} : load(path);
     editor.set_base(std::move(first.map));
     options.bounces.bounce(lit, {}, options.scene.path);
-    viewer::LightDesk desk(editor);
+    viewer::LightDesk desk(editor, path);
     viewer::ViewState state{.mesh = lit.scene().mesh,
                             .rays = lit.rays(),
                             .desk = desk,
                             .shading = shading_of(lit.scene()),
                             .load_environment = load};
-    state.bases.add(editor.base(), {.path = path, .sharp = std::move(first.sharp)});
+    if (first.sharp)
+        state.sharp.emplace_back(editor.base(), std::move(first.sharp));
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = static_cast<float>(

@@ -36,7 +36,7 @@ void picture_tools(ViewState& state) {
     ImGui::SetNextItemWidth(slider_width);
     auto degrees = static_cast<float>(state.desk.editor().rotation());
     if (ImGui::SliderFloat("##rotate", &degrees, -180.0f, 180.0f, "%.0f\xc2\xb0"))
-        set_rotation(state.desk, degrees);
+        state.desk.set_rotation(degrees);
     if (ImGui::IsItemDeactivatedAfterEdit()) {
         state.desk.finish();
         state.heat_is_stale = true;
@@ -148,7 +148,7 @@ void draw_layers(const ViewState& state, const PixelRectangle& place) {
 
 /// Draws the current outline, closed.
 void draw_lasso(const ViewState& state, const PixelRectangle& place) {
-    std::vector<glm::dvec3> line(state.gesture.lasso().begin(), state.gesture.lasso().end());
+    std::vector<glm::dvec3> line(state.desk.lasso().begin(), state.desk.lasso().end());
     if (line.size() < 2)
         return;
     line.push_back(line.front());
@@ -158,7 +158,7 @@ void draw_lasso(const ViewState& state, const PixelRectangle& place) {
 
 void end_lasso(ViewState& state) {
     try {
-        const bool added = state.gesture.end_lasso(state.desk, state.lasso);
+        const bool added = state.desk.end_lasso(state.lasso);
         state.message = added ? "" : "a lasso needs an outline: drag around what is to change";
         state.message_is_error = !added;
         if (added)
@@ -179,19 +179,20 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
         state.lat_long.zoom_at(place, pixel, io.MouseWheel);
 
     const double tolerance = RimReach * 360.0 / (state.lat_long.zoom * std::max(place.width, 1));
-    const bool moves_layers = state.tool == Tool::Move && !state.gesture.changes_light();
-    const Held held =
-        hovered && direction && moves_layers ? held_at(state.desk, *direction, tolerance) : Held{};
+    const bool moves_layers = state.tool == Tool::Move && !state.desk.is_dragging();
+    const LightDesk::Held held = hovered && direction && moves_layers
+                                     ? state.desk.held_at(*direction, tolerance)
+                                     : LightDesk::Held{};
     if (held.grip != Grip::None)
         ImGui::SetMouseCursor(held.grip == Grip::Body ? ImGuiMouseCursor_Hand
                                                       : ImGuiMouseCursor_ResizeAll);
     if (hovered && direction && ImGui::IsMouseClicked(ImGuiMouseButton_Left)) {
         if (state.tool == Tool::Paint)
-            state.gesture.begin_stroke(state.desk, state.brush, *direction);
+            state.desk.begin_stroke(state.brush, *direction);
         else if (state.tool == Tool::Lasso)
-            state.gesture.begin_lasso(*direction);
+            state.desk.begin_lasso(*direction);
         else if (held.grip != Grip::None)
-            state.gesture.begin_drag(state.desk, held, *direction);
+            state.desk.begin_drag(held, *direction);
         else
             state.desk.select(std::nullopt);
     }
@@ -200,10 +201,13 @@ void point_and_drag(ViewState& state, const PixelRectangle& place) {
     const bool has_moved = io.MouseDelta.x != 0.0f || io.MouseDelta.y != 0.0f;
     if (!has_moved)
         return;
-    const bool is_drawing = state.gesture.changes_light() || !state.gesture.lasso().empty();
-    if (is_drawing && direction)
-        state.gesture.move_to(state.desk, *direction, 0.4 * tolerance);
-    else if (!is_drawing)
+    if (state.desk.is_dragging() && direction)
+        state.desk.drag_to(*direction);
+    else if (state.desk.is_painting() && direction)
+        state.desk.stroke_to(*direction);
+    else if (!state.desk.lasso().empty() && direction)
+        state.desk.lasso_to(*direction, 0.4 * tolerance);
+    else if (!state.desk.is_dragging() && !state.desk.is_painting() && state.desk.lasso().empty())
         state.lat_long.pan(place, {io.MouseDelta.x, io.MouseDelta.y});
 }
 
@@ -220,11 +224,13 @@ void environment_panel(ViewState& state, const PanelLayout& layout) {
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                ImGuiButtonFlags_MouseButtonMiddle);
     point_and_drag(state, layout.environment);
-    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && state.gesture.changes_light()) {
-        state.gesture.end(state.desk);
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+        (state.desk.is_dragging() || state.desk.is_painting())) {
+        state.desk.end_drag();
+        state.desk.end_stroke();
         state.heat_is_stale = true;
     }
-    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !state.gesture.lasso().empty())
+    if (ImGui::IsMouseReleased(ImGuiMouseButton_Left) && !state.desk.lasso().empty())
         end_lasso(state);
     draw_layers(state, layout.environment);
     draw_lasso(state, layout.environment);

@@ -51,23 +51,22 @@ void next(const char* label) {
 void add_buttons(ViewState& state) {
     std::function<void()> later;
     if (ImGui::Button("+ Disc"))
-        add_layer(state.desk,
-                  new_layer(state, "Disc", cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
-                            cubemap::Emit{}));
+        state.desk.add(new_layer(state, "Disc",
+                                 cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
+                                 cubemap::Emit{}));
     hint("a round light");
     next("+ Soft box");
     if (ImGui::Button("+ Soft box"))
-        add_layer(state.desk,
-                  new_layer(state, "Soft box",
-                            cubemap::Rectangle{
-                                .width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
-                            cubemap::Emit{}));
+        state.desk.add(new_layer(
+            state, "Soft box",
+            cubemap::Rectangle{.width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
+            cubemap::Emit{}));
     hint("a rectangle that gives light");
     next("+ Gain");
     if (ImGui::Button("+ Gain"))
-        add_layer(state.desk,
-                  new_layer(state, "Gain", cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
-                            cubemap::Gain{.factor = 0.25f}));
+        state.desk.add(new_layer(state, "Gain",
+                                 cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
+                                 cubemap::Gain{.factor = 0.25f}));
     hint("a disc that dims or brightens what is there");
     next("+ Lasso");
     if (ImGui::Button("+ Lasso"))
@@ -186,17 +185,17 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
     const std::size_t top = state.desk.layers().size() - 1;
     if (ImGui::ArrowButton("##up", ImGuiDir_Up) && index < top)
         later = [&state, index] {
-            reorder_layers(state.desk, index, index + 1);
+            state.desk.reorder(index, index + 1);
         };
     ImGui::SameLine(0.0f, 2.0f);
     if (ImGui::ArrowButton("##down", ImGuiDir_Down) && index > 0)
         later = [&state, index] {
-            reorder_layers(state.desk, index, index - 1);
+            state.desk.reorder(index, index - 1);
         };
     ImGui::SameLine(0.0f, 2.0f);
     if (ImGui::Button("x"))
         later = [&state, index] {
-            remove_layer(state.desk, index);
+            state.desk.remove(index);
         };
     ImGui::PopID();
     return later;
@@ -248,7 +247,7 @@ void layer_fields(ViewState& state, std::size_t index) {
     ImGui::PushItemWidth(ImGui::GetContentRegionAvail().x * 0.62f);
     std::string name = form.layer().name;
     const bool renamed = ImGui::InputText("Name", &name);
-    const std::optional<std::size_t> other = find_layer(state.desk, name);
+    const std::optional<std::size_t> other = state.desk.find(name);
     if (renamed && !name.empty() && (!other || *other == index))
         form.layer().name = name;
     form.note(renamed);

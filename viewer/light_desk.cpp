@@ -1,6 +1,7 @@
 #include "viewer/light_desk.h"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 #include <variant>
 
@@ -10,48 +11,17 @@
 
 namespace relumine::viewer {
 
-namespace {
-
-/// A direction as seen, before the rotation.
-glm::dvec3 unturned(const LightDesk& desk, const glm::dvec3& direction) {
-    return turned(direction, -desk.editor().rotation());
-}
-
-std::string unused_name(const LightDesk& desk, const std::string& name) {
-    std::string result = name;
-    for (int number = 2; find_layer(desk, result); ++number)
-        result = fmt::format("{} {}", name, number);
-    return result;
-}
-
-std::vector<cubemap::LightLayer> copy_of(std::span<const cubemap::LightLayer> layers) {
-    return {layers.begin(), layers.end()};
-}
-
-/// Replaces all layers; not yet a step of undo.
-void set_layers(LightDesk& desk, std::vector<cubemap::LightLayer> layers) {
-    desk.edit([&](relight::LightEditor& editor) { return editor.set_layers(std::move(layers)); });
-}
-
-/// Puts a layer on top and selects it; not yet a step of undo.
-void put_on_top(LightDesk& desk, cubemap::LightLayer layer) {
-    layer.name = unused_name(desk, layer.name);
-    std::vector<cubemap::LightLayer> changed = copy_of(desk.layers());
-    changed.push_back(std::move(layer));
-    set_layers(desk, std::move(changed));
-    desk.select(desk.layers().size() - 1);
-}
-
-} // namespace
-
-LightDesk::LightDesk(relight::LightEditor& editor) : editor_(editor) {
+LightDesk::LightDesk(relight::LightEditor& editor, const std::filesystem::path& base_path)
+    : editor_(editor) {
     editor_.forget_history();
+    note_base_path(base_path);
     note_all_texels();
 }
 
-void LightDesk::note_edit(const relight::UpdateReport& report,
-                          std::chrono::steady_clock::time_point start) {
-    last_cost_.report = report;
+template<typename Edit>
+void LightDesk::timed(Edit edit) {
+    const auto start = std::chrono::steady_clock::now();
+    last_cost_.report = edit();
     last_cost_.seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const std::span<const cubemap::TexelRectangle> changed = editor_.changed_texels();
@@ -59,12 +29,6 @@ void LightDesk::note_edit(const relight::UpdateReport& report,
     ++version_;
     if (selected_ && *selected_ >= layers().size())
         selected_.reset();
-}
-
-relight::UpdateReport LightDesk::report_of(const relight::RelightTimes& times) const {
-    return {.num_clusters = editor_.relighter().transfer().num_clusters(),
-            .num_receivers = editor_.radiance().size(),
-            .num_sharp_lights = times.num_sharp_lights};
 }
 
 void LightDesk::note_all_texels() {
@@ -79,17 +43,68 @@ std::vector<cubemap::TexelRectangle> LightDesk::take_changed_texels() {
     return std::exchange(changed_texels_, {});
 }
 
-void LightDesk::finish() {
+std::optional<std::size_t> LightDesk::find(const std::string& name) const {
+    const auto found = std::find_if(layers().begin(), layers().end(),
+                                    [&](const auto& layer) { return layer.name == name; });
+    return found == layers().end()
+               ? std::nullopt
+               : std::optional<std::size_t>(static_cast<std::size_t>(found - layers().begin()));
+}
+
+std::string LightDesk::unused_name(const std::string& name) const {
+    std::string result = name;
+    for (int number = 2; find(result); ++number)
+        result = fmt::format("{} {}", name, number);
+    return result;
+}
+
+std::size_t LightDesk::add(cubemap::LightLayer layer) {
+    layer.name = unused_name(layer.name);
+    std::vector<cubemap::LightLayer> changed = copy();
+    changed.push_back(std::move(layer));
+    const std::size_t index = changed.size() - 1;
+    replace(std::move(changed));
+    selected_ = index;
+    return index;
+}
+
+void LightDesk::remove(std::size_t index) {
+    std::vector<cubemap::LightLayer> changed = copy();
+    changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(index));
+    replace(std::move(changed));
+    selected_.reset();
+}
+
+void LightDesk::reorder(std::size_t from, std::size_t to) {
+    std::vector<cubemap::LightLayer> changed = copy();
+    cubemap::LightLayer layer = std::move(changed.at(from));
+    changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(from));
+    changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(std::min(to, changed.size())),
+                   std::move(layer));
+    replace(std::move(changed));
+    selected_ = std::min(to, layers().size() - 1);
+}
+
+void LightDesk::replace(std::vector<cubemap::LightLayer> changed) {
+    timed([&] { return editor_.set_layers(std::move(changed)); });
     editor_.mark();
-    ++version_;
 }
 
 void LightDesk::undo() {
-    edit([](relight::LightEditor& editor) { return editor.undo(); });
+    timed([&] { return editor_.undo(); });
 }
 
 void LightDesk::redo() {
-    edit([](relight::LightEditor& editor) { return editor.redo(); });
+    timed([&] { return editor_.redo(); });
+}
+
+void LightDesk::change(std::size_t index, const cubemap::LightLayer& layer) {
+    timed([&] { return editor_.set_layer(index, layer); });
+}
+
+void LightDesk::finish() {
+    editor_.mark();
+    ++version_;
 }
 
 void LightDesk::go_on() {
@@ -106,120 +121,127 @@ void LightDesk::settle() {
     ++version_;
 }
 
-std::optional<std::size_t> find_layer(const LightDesk& desk, const std::string& name) {
-    for (std::size_t i = 0; i < desk.layers().size(); ++i)
-        if (desk.layers()[i].name == name)
-            return i;
-    return std::nullopt;
-}
-
-std::size_t add_layer(LightDesk& desk, cubemap::LightLayer layer) {
-    put_on_top(desk, std::move(layer));
-    desk.finish();
-    return *desk.selected();
-}
-
-void remove_layer(LightDesk& desk, std::size_t index) {
-    std::vector<cubemap::LightLayer> changed = copy_of(desk.layers());
-    changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(index));
-    replace_layers(desk, std::move(changed));
-    desk.select(std::nullopt);
-}
-
-void reorder_layers(LightDesk& desk, std::size_t from, std::size_t to) {
-    std::vector<cubemap::LightLayer> changed = copy_of(desk.layers());
-    cubemap::LightLayer layer = std::move(changed.at(from));
-    changed.erase(changed.begin() + static_cast<std::ptrdiff_t>(from));
-    to = std::min(to, changed.size());
-    changed.insert(changed.begin() + static_cast<std::ptrdiff_t>(to), std::move(layer));
-    replace_layers(desk, std::move(changed));
-    desk.select(to);
-}
-
-void replace_layers(LightDesk& desk, std::vector<cubemap::LightLayer> layers) {
-    set_layers(desk, std::move(layers));
-    desk.finish();
-}
-
-void set_rotation(LightDesk& desk, double degrees) {
-    desk.edit([&](relight::LightEditor& editor) { return editor.set_rotation(degrees); });
-}
-
-Held held_at(const LightDesk& desk, const glm::dvec3& direction, double tolerance_degrees) {
-    const glm::dvec3 before_turn = unturned(desk, direction);
-    const auto held = [&](std::size_t i) {
-        return Held{i, grip_at(desk.layers()[i].region, before_turn, tolerance_degrees)};
-    };
-    if (desk.selected())
-        if (const Held found = held(*desk.selected()); found.grip != Grip::None)
-            return found;
-    for (std::size_t i = desk.layers().size(); i-- > 0;)
-        if (desk.layers()[i].on)
-            if (const Held found = held(i); found.grip != Grip::None)
-                return found;
+LightDesk::Held LightDesk::held_at(const glm::dvec3& direction, double tolerance_degrees) const {
+    const glm::dvec3 before_turn = turned(direction, -editor_.rotation());
+    if (selected_)
+        if (const Grip grip = grip_at(layers()[*selected_].region, before_turn, tolerance_degrees);
+            grip != Grip::None)
+            return {.index = *selected_, .grip = grip};
+    for (std::size_t i = layers().size(); i-- > 0;) {
+        if (!layers()[i].on)
+            continue;
+        if (const Grip grip = grip_at(layers()[i].region, before_turn, tolerance_degrees);
+            grip != Grip::None)
+            return {.index = i, .grip = grip};
+    }
     return {};
 }
 
-void Gesture::begin_drag(LightDesk& desk, const Held& held, const glm::dvec3& direction) {
+void LightDesk::begin_drag(const Held& held, const glm::dvec3& direction) {
     if (held.grip == Grip::None)
         return;
-    desk.select(held.index);
+    selected_ = held.index;
     drag_ = Drag{.index = held.index,
                  .grip = held.grip,
-                 .region = desk.layers()[held.index].region,
-                 .from = unturned(desk, direction)};
+                 .region = layers()[held.index].region,
+                 .from = turned(direction, -editor_.rotation())};
 }
 
-void Gesture::begin_stroke(LightDesk& desk, const cubemap::LightLayer& brush,
-                           const glm::dvec3& direction) {
+void LightDesk::drag_to(const glm::dvec3& direction) {
+    if (!drag_)
+        return;
+    const glm::dvec3 to = turned(direction, -editor_.rotation());
+    cubemap::LightLayer layer = layers()[drag_->index];
+    layer.region = drag_->grip == Grip::Body ? moved(drag_->region, drag_->from, to)
+                                             : resized(drag_->region, drag_->from, to);
+    change(drag_->index, layer);
+    drag_seconds_.push_back(last_cost_.seconds);
+}
+
+void LightDesk::end_drag() {
+    if (!drag_)
+        return;
+    drag_.reset();
+    finish();
+}
+
+void LightDesk::begin_stroke(const cubemap::LightLayer& brush, const glm::dvec3& direction) {
     cubemap::LightLayer layer = brush;
-    std::get<cubemap::Stroke>(layer.region).points = {unturned(desk, direction)};
-    put_on_top(desk, std::move(layer));
-    seconds_.push_back(desk.last_cost().seconds);
+    layer.name = unused_name(layer.name);
+    std::get<cubemap::Stroke>(layer.region).points = {turned(direction, -editor_.rotation())};
+    std::vector<cubemap::LightLayer> changed = copy();
+    changed.push_back(layer);
+    timed([&] { return editor_.set_layers(std::move(changed)); });
+    drag_seconds_.push_back(last_cost_.seconds);
+    selected_ = layers().size() - 1;
     painting_ = true;
 }
 
-void Gesture::move_to(LightDesk& desk, const glm::dvec3& direction, double spacing_degrees) {
-    if (!lasso_.empty()) {
-        if (angle_between(lasso_.back(), direction) >= spacing_degrees)
-            lasso_.push_back(direction);
+void LightDesk::stroke_to(const glm::dvec3& direction) {
+    if (!painting_)
         return;
-    }
-    if (!changes_light())
+    cubemap::LightLayer layer = layers().back();
+    auto& stroke = std::get<cubemap::Stroke>(layer.region);
+    const glm::dvec3 to = turned(direction, -editor_.rotation());
+    if (angle_between(stroke.points.back(), to) < 0.25 * stroke.radius_degrees)
         return;
-    const glm::dvec3 to = unturned(desk, direction);
-    const std::size_t index = drag_ ? drag_->index : desk.layers().size() - 1;
-    cubemap::LightLayer layer = desk.layers()[index];
-    if (drag_) {
-        layer.region = drag_->grip == Grip::Body ? moved(drag_->region, drag_->from, to)
-                                                 : resized(drag_->region, drag_->from, to);
-    } else {
-        auto& stroke = std::get<cubemap::Stroke>(layer.region);
-        if (angle_between(stroke.points.back(), to) < 0.25 * stroke.radius_degrees)
-            return;
-        stroke.points.push_back(to);
-    }
-    desk.change(index, layer);
-    seconds_.push_back(desk.last_cost().seconds);
+    stroke.points.push_back(to);
+    change(layers().size() - 1, layer);
+    drag_seconds_.push_back(last_cost_.seconds);
 }
 
-void Gesture::end(LightDesk& desk) {
-    if (!changes_light())
+void LightDesk::end_stroke() {
+    if (!std::exchange(painting_, false))
         return;
-    drag_.reset();
-    painting_ = false;
-    desk.finish();
+    finish();
 }
 
-bool Gesture::end_lasso(LightDesk& desk, cubemap::LightLayer layer) {
+void LightDesk::begin_lasso(const glm::dvec3& direction) {
+    lasso_ = {direction};
+}
+
+void LightDesk::lasso_to(const glm::dvec3& direction, double spacing_degrees) {
+    if (!lasso_.empty() && angle_between(lasso_.back(), direction) >= spacing_degrees)
+        lasso_.push_back(direction);
+}
+
+bool LightDesk::end_lasso(cubemap::LightLayer layer) {
     std::vector<glm::dvec3> points = std::exchange(lasso_, {});
     if (points.size() < 3)
         return false;
     for (glm::dvec3& point : points)
-        point = unturned(desk, point);
+        point = turned(point, -editor_.rotation());
     std::get<cubemap::Lasso>(layer.region).points = std::move(points);
-    add_layer(desk, std::move(layer));
+    add(std::move(layer));
     return true;
+}
+
+void LightDesk::set_rotation(double degrees) {
+    timed([&] { return whole(editor_.set_rotation(degrees)); });
+}
+
+void LightDesk::set_base(cubemap::CubeMap base, const std::filesystem::path& path) {
+    timed([&] { return whole(editor_.set_base(std::move(base))); });
+    note_base_path(path);
+}
+
+relight::UpdateReport LightDesk::whole(const relight::RelightTimes& times) const {
+    return {.num_clusters = editor_.relighter().transfer().num_clusters(),
+            .num_receivers = editor_.radiance().size(),
+            .num_sharp_lights = times.num_sharp_lights};
+}
+
+void LightDesk::note_base_path(const std::filesystem::path& path) {
+    std::erase_if(base_paths_, [](const auto& entry) { return entry.first.expired(); });
+    if (editor_.base())
+        base_paths_.emplace_back(editor_.base(), path);
+}
+
+std::filesystem::path LightDesk::base_path() const {
+    for (const auto& [base, path] : base_paths_)
+        if (base.lock() == editor_.base())
+            return path;
+    return {};
 }
 
 } // namespace relumine::viewer

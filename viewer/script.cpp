@@ -48,7 +48,7 @@ struct Step {
     }
     /// The layer that the command names.
     [[nodiscard]] std::size_t layer() const {
-        const std::optional<std::size_t> found = find_layer(state.desk, command.text);
+        const std::optional<std::size_t> found = state.desk.find(command.text);
         if (!found)
             fail(command, fmt::format("expected the name of a layer, got '{}'", command.text));
         return *found;
@@ -95,23 +95,23 @@ void click(Step& s) {
 }
 
 void add_disc(Step& s) {
-    add_layer(s.state.desk,
-              {.name = s.command.text,
-               .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)}});
+    s.state.desk.add(
+        {.name = s.command.text,
+         .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)}});
 }
 
 void add_rectangle(Step& s) {
-    add_layer(s.state.desk, {.name = s.command.text,
-                             .region = cubemap::Rectangle{.direction = s.direction(),
-                                                          .width_degrees = s.number(3),
-                                                          .height_degrees = s.number(4)}});
+    s.state.desk.add({.name = s.command.text,
+                      .region = cubemap::Rectangle{.direction = s.direction(),
+                                                   .width_degrees = s.number(3),
+                                                   .height_degrees = s.number(4)}});
 }
 
 void add_gain(Step& s) {
-    add_layer(s.state.desk,
-              {.name = s.command.text,
-               .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)},
-               .effect = cubemap::Gain{.factor = static_cast<float>(s.number(4))}});
+    s.state.desk.add(
+        {.name = s.command.text,
+         .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)},
+         .effect = cubemap::Gain{.factor = static_cast<float>(s.number(4))}});
 }
 
 void drag_layer(Step& s) {
@@ -119,12 +119,12 @@ void drag_layer(Step& s) {
     const std::size_t index = s.layer();
     if (s.is_first()) {
         s.from = turned(middle(desk.layers()[index].region), desk.editor().rotation());
-        s.state.gesture.begin_drag(desk, {.index = index, .grip = Grip::Body}, s.from);
+        desk.begin_drag({.index = index, .grip = Grip::Body}, s.from);
     }
     const glm::dvec3 on_way = s.from + (s.direction() - s.from) * s.part_done();
-    s.state.gesture.move_to(desk, glm::length(on_way) > 1e-6 ? on_way : s.direction());
+    desk.drag_to(glm::length(on_way) > 1e-6 ? on_way : s.direction());
     if (s.is_last())
-        s.state.gesture.end(desk);
+        desk.end_drag();
 }
 
 /// The radius or the width; null for a lasso, which has neither.
@@ -162,7 +162,7 @@ void set_gain(Step& s) {
 }
 
 void rotate(Step& s) {
-    set_rotation(s.state.desk, s.number(0));
+    s.state.desk.set_rotation(s.number(0));
     s.state.desk.finish();
 }
 

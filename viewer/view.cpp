@@ -79,7 +79,7 @@ public:
         }
         // The heat map stays as it was while a layer is dragged: it costs as much as a relighting.
         if (state.heat_is_stale && state.receiver && state.environment_look.heat &&
-            !state.gesture.changes_light()) {
+            !state.desk.is_dragging() && !state.desk.is_painting()) {
             environment_.upload_heat(
                 relight::contribution_map(editor.relighter(), {&*state.receiver, 1}));
             state.heat_is_stale = false;
@@ -102,8 +102,8 @@ public:
         if (at_once) {
             scene_.upload_picture(refiner_.draw(moment_of(state, size)));
             is_refined_ = is_refining_ = true;
-        } else if (!is_refining_ && seconds_since(since_) > Pause &&
-                   !state.gesture.changes_light()) {
+        } else if (!is_refining_ && seconds_since(since_) > Pause && !state.desk.is_dragging() &&
+                   !state.desk.is_painting()) {
             refiner_.start(moment_of(state, size));
             is_refining_ = true;
         }
@@ -155,8 +155,8 @@ void handle(Shortcut shortcut, ViewState& state, const PanelLayout& layout) {
         state.heat_is_stale = true;
         break;
     case Shortcut::Delete:
-        if (state.desk.selected() && !state.gesture.changes_light())
-            remove_layer(state.desk, *state.desk.selected());
+        if (state.desk.selected() && !state.desk.is_dragging() && !state.desk.is_painting())
+            state.desk.remove(*state.desk.selected());
         break;
     case Shortcut::FrameAll:
         state.camera = camera_on_all(state.mesh, layout.scene);
@@ -244,7 +244,7 @@ ViewReport view(ViewState& state, const ViewOptions& options) {
     }
     if (report.num_frames > 0)
         report.mean_frame_seconds = seconds / static_cast<double>(report.num_frames);
-    report.drag_seconds = state.gesture.seconds();
+    report.drag_seconds.assign(state.desk.drag_seconds().begin(), state.desk.drag_seconds().end());
     return report;
 }
 

@@ -32,11 +32,6 @@ bool reported(ViewState& state, Work work) {
     return !state.message_is_error;
 }
 
-/// The file of the present base, also after an undo; empty where there is none.
-std::filesystem::path base_path(const ViewState& state) {
-    return state.bases.file_of(state.desk.editor().base()).path;
-}
-
 /// Sets the environment; this is not a step of undo yet.
 void set_environment(ViewState& state, const std::filesystem::path& path) {
     set_base(state, state.load_environment(path), path);
@@ -47,7 +42,7 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
     cubemap::LightLayers file = cubemap::load_layers(path);
     if (file.base)
         if (const std::filesystem::path base = path.parent_path() / *file.base;
-            base.lexically_normal() != base_path(state).lexically_normal())
+            base.lexically_normal() != state.desk.base_path().lexically_normal())
             set_environment(state, base);
     // Layers may be saved to another folder than the one they came from.
     for (cubemap::LightLayer& layer : file.layers)
@@ -55,8 +50,8 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
             patch->path =
                 std::filesystem::absolute(path.parent_path() / patch->path).lexically_normal();
     if (file.rotate_degrees)
-        set_rotation(state.desk, *file.rotate_degrees);
-    replace_layers(state.desk, std::move(file.layers));
+        state.desk.set_rotation(*file.rotate_degrees);
+    state.desk.replace(std::move(file.layers));
     state.desk.select(std::nullopt);
     state.frames = std::move(file.frames);
     state.heat_is_stale = true;
@@ -65,30 +60,21 @@ std::string open_layers(ViewState& state, const std::filesystem::path& path) {
 
 } // namespace
 
-void KnownBases::add(const std::shared_ptr<const cubemap::CubeMap>& base, File file) {
-    std::erase_if(files_, [](const auto& known) { return known.first.expired(); });
-    if (base)
-        files_.emplace_back(base, std::move(file));
-}
-
-KnownBases::File KnownBases::file_of(const std::shared_ptr<const cubemap::CubeMap>& base) const {
-    for (const auto& [known, file] : files_)
-        if (known.lock() == base)
-            return file;
-    return {};
-}
-
 void set_base(ViewState& state, LoadedEnvironment environment, const std::filesystem::path& path) {
-    state.desk.edit(
-        [&](relight::LightEditor& editor) { return editor.set_base(std::move(environment.map)); });
-    state.bases.add(state.desk.editor().base(),
-                    {.path = path, .sharp = std::move(environment.sharp)});
+    state.desk.set_base(std::move(environment.map), path);
+    std::erase_if(state.sharp, [](const auto& each) { return each.first.expired(); });
+    if (environment.sharp)
+        state.sharp.emplace_back(state.desk.editor().base(), std::move(environment.sharp));
 }
 
 relight::Backdrop backdrop_of(const ViewState& state) {
     const relight::LightEditor& editor = state.desk.editor();
     const double degrees = editor.rotation();
-    const relight::Backdrop pixels = state.bases.file_of(editor.base()).sharp;
+    const auto known = std::find_if(state.sharp.begin(), state.sharp.end(), [&](const auto& each) {
+        return each.first.lock() == editor.base();
+    });
+    const relight::Backdrop pixels =
+        known == state.sharp.end() ? relight::Backdrop() : known->second;
     if (pixels && state.desk.layers().empty())
         return [sharp = pixels,
                 unturned = glm::dmat3(cubemap::turn_about_y(-degrees))](const glm::vec3& w) {
@@ -172,8 +158,7 @@ bool add_image(ViewState& state, const std::filesystem::path& path) {
         const auto degrees = [&](double pixels) {
             return std::max(0.1, 2.0 * std::atan(half * pixels / longer) * DegreesPerRadian);
         };
-        add_layer(
-            state.desk,
+        state.desk.add(
             {.name = path.stem().string(),
              .region = cubemap::Rectangle{.direction = turned(direction_at(state.lat_long.center),
                                                               -state.desk.editor().rotation()),
@@ -196,15 +181,15 @@ bool save_layers(ViewState& state, const std::filesystem::path& path) {
         const auto from_folder = [&](const std::filesystem::path& named) {
             return std::filesystem::absolute(named).lexically_normal().lexically_proximate(folder);
         };
-        if (const std::filesystem::path base = base_path(state); !base.empty())
-            file.base = from_folder(base);
+        if (!state.desk.base_path().empty())
+            file.base = from_folder(state.desk.base_path());
         for (cubemap::LightLayer& layer : file.layers)
             if (auto* patch = std::get_if<cubemap::ImagePatch>(&layer.effect))
                 patch->path = from_folder(patch->path);
         // Removes the key frames of layers that are gone.
         for (cubemap::KeyFrame& frame : file.frames)
             std::erase_if(frame.changes,
-                          [&](const auto& key) { return !find_layer(state.desk, key.layer); });
+                          [&](const auto& key) { return !state.desk.find(key.layer); });
         std::erase_if(file.frames, [](const auto& frame) { return frame.changes.empty(); });
         cubemap::save_layers(path, file);
         return fmt::format("{}: saved {} layers", path.string(), file.layers.size());

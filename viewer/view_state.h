@@ -32,22 +32,6 @@ struct LoadedEnvironment {
     relight::Backdrop sharp;
 };
 
-/// The files of environments that are still there.
-class KnownBases {
-public:
-    struct File {
-        /// Empty: of no file.
-        std::filesystem::path path = {};
-        /// The file's pixels, unturned.
-        relight::Backdrop sharp = {};
-    };
-    void add(const std::shared_ptr<const cubemap::CubeMap>& base, File file);
-    [[nodiscard]] File file_of(const std::shared_ptr<const cubemap::CubeMap>& base) const;
-
-private:
-    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, File>> files_;
-};
-
 struct ViewState {
     const mesh::TriangleMesh& mesh;
     const prt::RayScene& rays;
@@ -55,8 +39,8 @@ struct ViewState {
     Shading shading;
     /// Reads an environment file as the command line's options say. Throws std::runtime_error.
     std::function<LoadedEnvironment(const std::filesystem::path&)> load_environment;
-    /// Those that the desk's history may return to.
-    KnownBases bases = {};
+    /// The pixels of the files of bases that are still there, unturned.
+    std::vector<std::pair<std::weak_ptr<const cubemap::CubeMap>, relight::Backdrop>> sharp = {};
 
     OrbitCamera camera = {};
     LatLongView lat_long = {};
@@ -64,7 +48,6 @@ struct ViewState {
     EnvironmentLook environment_look = {};
 
     Tool tool = Tool::Move;
-    Gesture gesture = {};
     cubemap::LightLayer brush{.name = "Stroke",
                               .region = cubemap::Stroke{.points = {}, .radius_degrees = 4.0}};
     cubemap::LightLayer lasso{.name = "Lasso",
@@ -89,7 +72,7 @@ struct ViewState {
     double frame_seconds = 0.0;
 };
 
-/// Sets the base of the desk's editor, and remembers its file.
+/// Sets the base of the desk's editor, and remembers the pixels of its file.
 void set_base(ViewState& state, LoadedEnvironment environment, const std::filesystem::path& path);
 
 /// Returns what is seen behind the mesh now, for a Refiner. It does not change any more.

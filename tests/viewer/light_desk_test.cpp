@@ -1,30 +1,19 @@
 #include "viewer/light_desk.h"
 
-#include <filesystem>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "tests/relight/bounces/bouncing_scene.h"
 #include "tests/relight/relit_scene.h"
-#include "viewer/view_state.h"
 
 namespace relumine::viewer {
 namespace {
 
 class LightDeskTest : public testing::Test {
 protected:
-    LightDeskTest() { set_base(cubemap::CubeMap(64, glm::vec3(0.1f))); }
-
-    void set_base(cubemap::CubeMap base, const std::filesystem::path& path = {}) {
-        desk_.edit([&](relight::LightEditor& editor) { return editor.set_base(std::move(base)); });
-        bases_.add(editor_.base(), {.path = path});
-    }
-    [[nodiscard]] std::filesystem::path base_path() const {
-        return bases_.file_of(editor_.base()).path;
-    }
+    LightDeskTest() { desk_.set_base(cubemap::CubeMap(64, glm::vec3(0.1f))); }
 
     [[nodiscard]] std::vector<glm::vec3> radiance() const {
         return {editor_.radiance().begin(), editor_.radiance().end()};
@@ -39,19 +28,17 @@ protected:
 
     relight::LightEditor editor_{scenes::relit_scene().transfer};
     LightDesk desk_{editor_};
-    Gesture gesture_;
-    KnownBases bases_;
 };
 
 TEST_F(LightDeskTest, AddsNamesSelectsReordersAndRemoves) {
-    add_layer(desk_, disc({1, 1, 0}));
-    const std::size_t second = add_layer(desk_, disc({0, 1, 1}));
+    desk_.add(disc({1, 1, 0}));
+    const std::size_t second = desk_.add(disc({0, 1, 1}));
     EXPECT_EQ(desk_.layers()[second].name, "Disc 2");
     EXPECT_EQ(desk_.selected(), second);
-    reorder_layers(desk_, 1, 0);
+    desk_.reorder(1, 0);
     EXPECT_EQ(desk_.layers()[0].name, "Disc 2");
     EXPECT_EQ(desk_.selected(), 0u);
-    remove_layer(desk_, 0);
+    desk_.remove(0);
     EXPECT_EQ(desk_.layers().size(), 1u);
     EXPECT_FALSE(desk_.selected());
     for (int i = 0; i < 4; ++i)
@@ -60,19 +47,19 @@ TEST_F(LightDeskTest, AddsNamesSelectsReordersAndRemoves) {
 }
 
 TEST_F(LightDeskTest, ADragIsManyEditsAndOneStepOfUndo) {
-    add_layer(desk_, disc({1, 1, 0}));
+    desk_.add(disc({1, 1, 0}));
     const std::vector<glm::vec3> before = radiance();
-    const Held held = held_at(desk_, {1, 1, 0}, 1.0);
+    const LightDesk::Held held = desk_.held_at({1, 1, 0}, 1.0);
     ASSERT_EQ(held.grip, Grip::Body);
-    gesture_.begin_drag(desk_, held, {1, 1, 0});
+    desk_.begin_drag(held, {1, 1, 0});
     for (const double z : {0.2, 0.5, 1.0}) {
         const std::uint64_t version = desk_.version();
-        gesture_.move_to(desk_, {1, 1, z});
+        desk_.drag_to({1, 1, z});
         EXPECT_GT(desk_.version(), version);
         EXPECT_GT(desk_.last_cost().report.num_clusters, 0u);
     }
-    gesture_.end(desk_);
-    EXPECT_EQ(gesture_.seconds().size(), 3u);
+    desk_.end_drag();
+    EXPECT_EQ(desk_.drag_seconds().size(), 3u);
     EXPECT_LT(angle_between(direction_of(0), {1, 1, 1}), 1e-6);
     EXPECT_NE(radiance(), before);
     const std::vector<glm::vec3> after = radiance();
@@ -83,31 +70,31 @@ TEST_F(LightDeskTest, ADragIsManyEditsAndOneStepOfUndo) {
 }
 
 TEST_F(LightDeskTest, DirectionsAreAsSeenAfterTheRotation) {
-    set_rotation(desk_, 90.0);
-    add_layer(desk_, disc({0, 0, 1})); // is seen at +X
-    EXPECT_EQ(held_at(desk_, {0, 0, 1}, 1.0).grip, Grip::None);
-    ASSERT_EQ(held_at(desk_, {1, 0, 0}, 1.0).grip, Grip::Body);
-    gesture_.begin_drag(desk_, held_at(desk_, {1, 0, 0}, 1.0), {1, 0, 0});
-    gesture_.move_to(desk_, {1, 1, 0});
-    gesture_.end(desk_);
+    desk_.set_rotation(90.0);
+    desk_.add(disc({0, 0, 1})); // is seen at +X
+    EXPECT_EQ(desk_.held_at({0, 0, 1}, 1.0).grip, Grip::None);
+    ASSERT_EQ(desk_.held_at({1, 0, 0}, 1.0).grip, Grip::Body);
+    desk_.begin_drag(desk_.held_at({1, 0, 0}, 1.0), {1, 0, 0});
+    desk_.drag_to({1, 1, 0});
+    desk_.end_drag();
     EXPECT_LT(angle_between(direction_of(0), {0, 1, 1}), 1e-6);
 }
 
 TEST_F(LightDeskTest, RotationAndBaseAreStepsOfUndoAndTheFilesNameFollows) {
-    set_base(cubemap::CubeMap(64, glm::vec3(0.1f)), "first.exr");
-    add_layer(desk_, disc({1, 1, 0}));
+    desk_.set_base(cubemap::CubeMap(64, glm::vec3(0.1f)), "first.exr");
+    desk_.add(disc({1, 1, 0}));
     const std::vector<glm::vec3> before = radiance();
     for (const double degrees : {10.0, 20.0, 30.0}) // a slider moves: one step
-        set_rotation(desk_, degrees);
+        desk_.set_rotation(degrees);
     desk_.finish();
     const std::vector<glm::vec3> turned = radiance();
     EXPECT_NE(turned, before);
-    set_base(cubemap::CubeMap(32, glm::vec3(0.7f)), "second.hdr");
+    desk_.set_base(cubemap::CubeMap(32, glm::vec3(0.7f)), "second.hdr");
     desk_.finish();
-    EXPECT_EQ(base_path(), "second.hdr");
+    EXPECT_EQ(desk_.base_path(), "second.hdr");
     static_cast<void>(desk_.take_changed_texels());
     desk_.undo();
-    EXPECT_EQ(base_path(), "first.exr");
+    EXPECT_EQ(desk_.base_path(), "first.exr");
     EXPECT_EQ(radiance(), turned);
     EXPECT_EQ(desk_.take_changed_texels(), cubemap::all_texels(64));
     desk_.undo();
@@ -115,7 +102,7 @@ TEST_F(LightDeskTest, RotationAndBaseAreStepsOfUndoAndTheFilesNameFollows) {
     EXPECT_EQ(radiance(), before);
     desk_.redo();
     desk_.redo();
-    EXPECT_EQ(base_path(), "second.hdr");
+    EXPECT_EQ(desk_.base_path(), "second.hdr");
     EXPECT_EQ(editor_.environment().resolution, 32u);
 }
 
@@ -123,45 +110,45 @@ TEST_F(LightDeskTest, ALassoIsDrawnAsSeenAndIsOneStepOfUndo) {
     const cubemap::LightLayer dim{.name = "Lasso",
                                   .region = cubemap::Lasso{.points = {}, .softness_degrees = 2.0},
                                   .effect = cubemap::Gain{.factor = 0.0f}};
-    set_rotation(desk_, 90.0);
+    desk_.set_rotation(90.0);
     desk_.finish();
     const std::vector<glm::vec3> before = radiance();
-    gesture_.begin_lasso({1, 0.5, 0.5});
-    gesture_.move_to(desk_, {1, 0.501, 0.5}, 1.0); // too near to count
-    EXPECT_EQ(gesture_.lasso().size(), 1u);
-    gesture_.move_to(desk_, {1, 0.5, -0.5}, 1.0);
-    EXPECT_FALSE(gesture_.end_lasso(desk_, dim)) << "two points are no outline";
+    desk_.begin_lasso({1, 0.5, 0.5});
+    desk_.lasso_to({1, 0.501, 0.5}, 1.0); // too near to count
+    EXPECT_EQ(desk_.lasso().size(), 1u);
+    desk_.lasso_to({1, 0.5, -0.5}, 1.0);
+    EXPECT_FALSE(desk_.end_lasso(dim)) << "two points are no outline";
     EXPECT_TRUE(desk_.layers().empty());
 
-    gesture_.begin_lasso({1, 0.5, 0.5});
+    desk_.begin_lasso({1, 0.5, 0.5});
     for (const glm::dvec3 to : {glm::dvec3(1, 0.5, -0.5), {1, -0.5, -0.5}, {1, -0.5, 0.5}})
-        gesture_.move_to(desk_, to, 1.0);
+        desk_.lasso_to(to, 1.0);
     EXPECT_EQ(radiance(), before) << "nothing changes before the end";
-    EXPECT_TRUE(gesture_.end_lasso(desk_, dim));
-    EXPECT_TRUE(gesture_.lasso().empty());
+    EXPECT_TRUE(desk_.end_lasso(dim));
+    EXPECT_TRUE(desk_.lasso().empty());
     ASSERT_EQ(desk_.layers().size(), 1u);
     EXPECT_EQ(desk_.selected(), 0u);
-    EXPECT_EQ(held_at(desk_, {1, 0, 0}, 1.0).grip, Grip::Body) << "where it was drawn, turned";
+    EXPECT_EQ(desk_.held_at({1, 0, 0}, 1.0).grip, Grip::Body) << "where it was drawn, turned";
     EXPECT_EQ(cubemap::coverage(desk_.layers()[0].region, {0, 0, 1}), 1.0) << "before the turn";
     EXPECT_NE(radiance(), before);
     desk_.undo();
     EXPECT_TRUE(desk_.layers().empty());
     EXPECT_EQ(radiance(), before);
 
-    gesture_.begin_lasso({0, 1, 0.1});
+    desk_.begin_lasso({0, 1, 0.1});
     for (const glm::dvec3 to : {glm::dvec3(1, -0.2, 0), {-0.5, -0.2, 0.8}, {-0.5, -0.2, -0.8}})
-        gesture_.move_to(desk_, to, 1.0);
-    EXPECT_THROW(gesture_.end_lasso(desk_, dim), std::invalid_argument);
+        desk_.lasso_to(to, 1.0);
+    EXPECT_THROW(desk_.end_lasso(dim), std::invalid_argument);
     EXPECT_TRUE(desk_.layers().empty());
 }
 
 TEST_F(LightDeskTest, PaintsAStrokePointByPoint) {
     cubemap::LightLayer brush{.name = "Stroke",
                               .region = cubemap::Stroke{.points = {}, .radius_degrees = 4.0}};
-    gesture_.begin_stroke(desk_, brush, {0, 0.5, 1});
-    gesture_.move_to(desk_, {0.001, 0.5, 1}); // too near to count
-    gesture_.move_to(desk_, {0.2, 0.5, 1});
-    gesture_.end(desk_);
+    desk_.begin_stroke(brush, {0, 0.5, 1});
+    desk_.stroke_to({0.001, 0.5, 1}); // too near to count
+    desk_.stroke_to({0.2, 0.5, 1});
+    desk_.end_stroke();
     ASSERT_EQ(desk_.layers().size(), 1u);
     EXPECT_EQ(std::get<cubemap::Stroke>(desk_.layers()[0].region).points.size(), 2u);
     desk_.undo();
@@ -179,24 +166,24 @@ TEST_F(LightDeskTest, ToldTexelsHoldEveryChange) {
         return copy.texels == editor_.environment().texels;
     };
     EXPECT_TRUE(update());
-    add_layer(desk_, disc({1, 1, 1}));
+    desk_.add(disc({1, 1, 1}));
     EXPECT_TRUE(update());
-    gesture_.begin_drag(desk_, {.index = 0, .grip = Grip::Body}, {1, 1, 1});
-    gesture_.move_to(desk_, {1, -0.2, 1});
+    desk_.begin_drag({.index = 0, .grip = Grip::Body}, {1, 1, 1});
+    desk_.drag_to({1, -0.2, 1});
     EXPECT_TRUE(update());
-    gesture_.end(desk_);
+    desk_.end_drag();
     EXPECT_TRUE(update());
-    add_layer(desk_, {.name = "Gain",
-                      .region = cubemap::Disc{.direction = {1, 0, 1}, .radius_degrees = 30.0},
-                      .effect = cubemap::Gain{.factor = 0.5f}});
+    desk_.add({.name = "Gain",
+               .region = cubemap::Disc{.direction = {1, 0, 1}, .radius_degrees = 30.0},
+               .effect = cubemap::Gain{.factor = 0.5f}});
     EXPECT_TRUE(update());
-    reorder_layers(desk_, 0, 1);
+    desk_.reorder(0, 1);
     EXPECT_TRUE(update());
-    set_rotation(desk_, 33.0);
+    desk_.set_rotation(33.0);
     EXPECT_TRUE(update());
     desk_.undo();
     EXPECT_TRUE(update());
-    remove_layer(desk_, 0);
+    desk_.remove(0);
     EXPECT_TRUE(update());
 }
 
@@ -206,9 +193,7 @@ TEST(LightDeskBounces, GoOnFrameByFrameUntilTheLightStands) {
     editor.set_bounces(
         {.matrix = &scene.matrix, .albedo = std::vector(scene.receivers.size(), glm::vec3(0.8f))});
     LightDesk desk(editor);
-    desk.edit([](relight::LightEditor& changed) {
-        return changed.set_base(cubemap::CubeMap(16, glm::vec3(1.0f)));
-    });
+    desk.set_base(cubemap::CubeMap(16, glm::vec3(1.0f)));
     desk.settle();
     std::uint64_t version = desk.version();
     desk.go_on();
@@ -217,7 +202,7 @@ TEST(LightDeskBounces, GoOnFrameByFrameUntilTheLightStands) {
     cubemap::LightLayer disc{.name = "Disc"};
     disc.gain_ev = 3.0;
     disc.region = cubemap::Disc{.direction = {0, 1, 0}, .radius_degrees = 40.0};
-    const std::size_t index = add_layer(desk, disc);
+    const std::size_t index = desk.add(disc);
     EXPECT_TRUE(editor.is_settled()) << "a step of undo has all bounces";
     disc.gain_ev = 5.0;
     desk.change(index, disc);
