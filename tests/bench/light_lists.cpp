@@ -1,8 +1,10 @@
 // How well light lists light one scene: every method's error against exact integration, by number
 // of lights. See docs/light-lists.md.
 #include <cmath>
+#include <cstdio>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,7 +17,7 @@
 #include "relight/relighter.h"
 #include "relumine/scene.h"
 #include "tests/bench/inputs.h"
-#include "tests/bench/process_usage.h"
+#include "tests/bench/times.h"
 
 using namespace relumine;
 
