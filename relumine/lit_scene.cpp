@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "files/hash.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "relight/sharp/shadow_rays.h"
 
@@ -115,7 +116,7 @@ void LitScene::require_same_light(const Light& light) const {
         require_same(*team_, path_, map);
     else if (const auto* binned = std::get_if<BinnedEnvironment>(&light.environment))
         require_same(*team_, path_, binned->map.get());
-    require_same_hash(*team_, path_, prt::bytes_hash(std::as_bytes(std::span(light.lights))));
+    require_same_hash(*team_, path_, files::hash_of(std::as_bytes(std::span(light.lights))));
 }
 
 UpdateReport LitScene::light(Light light) {
@@ -413,8 +414,8 @@ void require_same(prt::Team& team, const std::filesystem::path& path,
     if (team.has_others())
         require_same_hash(team, path,
                           environment == nullptr
-                              ? prt::file_hash(path)
-                              : prt::bytes_hash(std::as_bytes(std::span(environment->texels))));
+                              ? files::file_hash(path)
+                              : files::hash_of(std::as_bytes(std::span(environment->texels))));
 }
 
 bool has_environment(const LitScene& lit) {
