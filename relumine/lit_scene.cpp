@@ -61,13 +61,12 @@ LitScene::LitScene(std::shared_ptr<const Scene> scene, const LightOptions& optio
     : LitScene(std::move(scene), nullptr, options) {}
 
 LitScene::LitScene(prt::ScenePart part, const LightOptions& options)
-    : LitScene(std::make_shared<const Scene>(std::move(part.scene)),
-               std::make_unique<prt::ScenePart>(std::move(part)), options) {}
+    : LitScene(nullptr, std::make_unique<prt::ScenePart>(std::move(part)), options) {}
 
 LitScene::LitScene(std::shared_ptr<const Scene> scene, std::unique_ptr<prt::ScenePart> part,
                    const LightOptions& options)
-    : scene_(std::move(scene)), rays_(std::make_unique<const SceneRays>(*scene_)),
-      alone_(std::make_unique<prt::Alone>()),
+    : scene_(part ? std::make_shared<const Scene>(std::move(part->scene)) : std::move(scene)),
+      rays_(std::make_unique<const SceneRays>(*scene_)), alone_(std::make_unique<prt::Alone>()),
       team_(part && options.team != nullptr ? options.team : alone_.get()), path_(options.path) {
     const bool has_clusters = relumine::has_clusters(*scene_);
     if (has_clusters && scene_->receivers.size() != scene_->transfer.num_receivers())
