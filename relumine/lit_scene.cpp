@@ -476,12 +476,4 @@ UpdateReport redo(LitScene& lit) {
     return after == nullptr ? UpdateReport() : lit.edit(*after, Ending::Exact);
 }
 
-Picture draw(const LitScene& lit, const OutputOptions& options) {
-    return Painter(lit, options).draw(lit.lighting());
-}
-
-void save(const LitScene& lit, const std::filesystem::path& path, const OutputOptions& options) {
-    Painter(lit, options).save(path, lit.lighting());
-}
-
 } // namespace relumine

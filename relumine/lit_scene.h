@@ -18,7 +18,7 @@
 #include "relight/relighter.h"
 #include "relumine/layer_compositor.h"
 #include "relumine/light.h"
-#include "relumine/output.h"
+#include "relumine/lighting.h"
 #include "relumine/scene.h"
 #include "relumine/scene_bounces.h"
 #include "relumine/scene_rays.h"
@@ -235,13 +235,5 @@ void forget_history(LitScene& lit);
 /// Returns an empty report where there is no such mark.
 UpdateReport undo(LitScene& lit);
 UpdateReport redo(LitScene& lit);
-
-/// The scene in its light. For many pictures of one view see Painter.
-///
-/// Throws:  as Painter; std::logic_error before the first light().
-[[nodiscard]] Picture draw(const LitScene& lit, const OutputOptions& options = {});
-/// Writes the lit scene by extension, as Painter::save().
-void save(const LitScene& lit, const std::filesystem::path& path,
-          const OutputOptions& options = {});
 
 } // namespace relumine

@@ -368,6 +368,14 @@ double Painter::exposure_ev(const std::filesystem::path& path) const {
     return is_linear_data(files::extension_of(path)) ? 0.0 : impl_->chosen_ev.value_or(0.0);
 }
 
+Picture draw(const LitScene& lit, const OutputOptions& options) {
+    return Painter(lit, options).draw(lit.lighting());
+}
+
+void save(const LitScene& lit, const std::filesystem::path& path, const OutputOptions& options) {
+    Painter(lit, options).save(path, lit.lighting());
+}
+
 bool is_output_of(const std::filesystem::path& path, const Scene& scene) {
     const std::string extension = files::extension_of(path);
     if (is_picture(extension) || extension == ".npy")

@@ -16,12 +16,11 @@
 #include "relight/pictures/picture.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/tone_curve.h"
-#include "relight/sharp/sharp_lights.h"
+#include "relumine/lighting.h"
+#include "relumine/lit_scene.h"
 #include "relumine/scene.h"
 
 namespace relumine {
-
-class LitScene;
 
 using relight::Picture;
 using relight::ToneCurve;
@@ -54,22 +53,6 @@ struct EnvironmentBehind {
 /// Nothing: the picture has alpha.
 struct NothingBehind {};
 using Background = std::variant<EnvironmentBehind, NothingBehind, glm::vec3>;
-
-/// What a picture is drawn of: the light of a scene's receivers.
-struct Lighting {
-    /// [num_receivers], as LitScene::radiance().
-    std::span<const glm::vec3> radiance;
-    /// Must outlive this object. Null: there is nothing behind the mesh but black.
-    const cubemap::CubeMap* environment = nullptr;
-    /// The environment from its own pixels. Empty: from the cube map.
-    relight::Backdrop sharp = {};
-    /// The lights that are traced one by one, and [num_receivers] radiance without them. Empty:
-    /// radiance has all light.
-    std::vector<relight::SharpLight> lights = {};
-    std::vector<glm::vec3> soft = {};
-    /// What `radiance` points to, where it was gathered from several processes.
-    std::shared_ptr<const std::vector<glm::vec3>> gathered = {};
-};
 
 struct OutputOptions {
     Albedo albedo = AutomaticAlbedo{};
@@ -172,6 +155,14 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// The scene in its light. For many pictures of one view see Painter.
+///
+/// Throws:  as Painter; std::logic_error before the first light().
+[[nodiscard]] Picture draw(const LitScene& lit, const OutputOptions& options = {});
+/// Writes the lit scene by extension, as Painter::save().
+void save(const LitScene& lit, const std::filesystem::path& path,
+          const OutputOptions& options = {});
 
 /// Returns true if save() can write the path's extension for this scene: ".png", ".exr" and ".npy"
 /// for all scenes, ".ply" and ".glb" for scenes of vertices. Capital letters are allowed.

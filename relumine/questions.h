@@ -17,8 +17,8 @@
 #include "prt/team.h"
 #include "relight/reference/exact.h"
 #include "relight/sharp/sharp_lights.h"
+#include "relumine/lighting.h"
 #include "relumine/lit_scene.h"
-#include "relumine/output.h"
 
 namespace relumine {
 

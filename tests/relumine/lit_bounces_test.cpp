@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "relumine/lit_scene.h"
+#include "relumine/output.h"
 #include "relumine/questions.h"
 #include "tests/prt/scenes.h"
 #include "tests/relight/arrays.h"

@@ -10,6 +10,7 @@
 
 #include "cubemap/layers/layer_composite.h"
 #include "relight/sharp/shadow_rays.h"
+#include "relumine/output.h"
 #include "relumine/questions.h"
 #include "tests/relight/arrays.h"
 #include "tests/relight/environments.h"

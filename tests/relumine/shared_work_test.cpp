@@ -8,6 +8,7 @@
 #include "prt/parts/scene_part.h"
 #include "relumine/lit_part.h"
 #include "relumine/lit_scene.h"
+#include "relumine/output.h"
 #include "relumine/questions.h"
 #include "tests/prt/thread_team.h"
 #include "tests/relumine/small_scenes.h"
