@@ -76,17 +76,11 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     for (const std::string& name : long_count_sections())
         streamed.push_back(name);
     streamed.push_back(EmitterSection);
-    std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version, streamed);
+    Sections sections = read_sections(path, streamed);
     const auto refuse = [&](const std::string& expected, const std::string& got) {
         throw std::runtime_error(
             fmt::format("{}: expected {}, got {}", path.string(), expected, got));
     };
-    // Before that the counts have another meaning.
-    constexpr std::uint32_t FirstVersion = 3;
-    if (version < FirstVersion)
-        refuse(fmt::format(".prt version {} or later for a part of the receivers", FirstVersion),
-               fmt::format("version {}", version));
     if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
         refuse("a scene", "a plan or a part");
     const SectionReader of_bounces(path, taken(sections, "bounce_"));
@@ -122,7 +116,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
         tiles.push_back(tile);
     transfer.counts =
-        read_counts_of_tiles(of_counts, version, shape, tiles, result.receivers.size());
+        read_counts_of_tiles(of_counts, shape, tiles, result.receivers.size());
     if (has_glossy(of_highlights)) {
         if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
             refuse("directions to the eye and surfaces with highlights", "none");

@@ -13,7 +13,6 @@
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/material_sections.h"
-#include "prt/scene/older_counts.h"
 #include "prt/scene/receiver_sections.h"
 #include "prt/scene/scene_check.h"
 #include "prt/scene/scene_sections.h"
@@ -58,8 +57,8 @@ std::vector<std::byte> settings_json(const SceneSettings& settings) {
 
 class SceneReader {
 public:
-    SceneReader(const std::filesystem::path& path, Sections&& sections, std::uint32_t version)
-        : reader_(path, std::move(sections)), version_(version) {}
+    SceneReader(const std::filesystem::path& path, Sections&& sections)
+        : reader_(path, std::move(sections)) {}
 
     /// A plan has no counts.
     Scene scene(bool is_plan) const {
@@ -75,7 +74,7 @@ public:
         scene.receivers = read_receivers(reader_, scene.layout, scene.mesh);
         scene.transfer = clusters(scene.receivers);
         if (!is_plan)
-            read_light(scene.transfer, scene.receivers, scene.settings);
+            read_light(scene.transfer, scene.receivers);
         scene.bounces = read_bounces(reader_, scene.receivers.size());
         check_scene(scene, reader_.path());
         return scene;
@@ -183,14 +182,10 @@ private:
         return transfer;
     }
 
-    void read_light(Transfer& transfer, const Receivers& receivers,
-                    const SceneSettings& settings) const {
+    void read_light(Transfer& transfer, const Receivers& receivers) const {
         transfer.counts.num_receivers = receivers.size();
         transfer.counts.num_leaves = transfer.quadtree.num_leaves();
-        read_counts(reader_, version_, transfer.counts);
-        if (version_ < 3)
-            count_above_horizon(transfer.counts, transfer.quadtree, transfer.normals,
-                                texel_level(settings.face_resolution));
+        read_counts(reader_, transfer.counts);
         if (has_glossy(reader_)) {
             if (receivers.to_eye.empty() || receivers.surfaces.empty())
                 reader_.fail("g_specular_b", "directions to the eye and surfaces with highlights");
@@ -200,7 +195,6 @@ private:
     }
 
     SectionReader reader_;
-    std::uint32_t version_;
 };
 
 } // namespace
@@ -254,13 +248,11 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene) 
 }
 
 Scene load_scene(const std::filesystem::path& path) {
-    std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version);
-    return scene_of(path, std::move(sections), version);
+    return scene_of(path, read_sections(path));
 }
 
-Scene scene_of(const std::filesystem::path& path, Sections&& sections, std::uint32_t version) {
-    return SceneReader(path, std::move(sections), version).scene(false);
+Scene scene_of(const std::filesystem::path& path, Sections&& sections) {
+    return SceneReader(path, std::move(sections)).scene(false);
 }
 
 Scene plan_of(const std::filesystem::path& path, Sections&& sections) {

@@ -1,7 +1,6 @@
 // A scene from the sections of its file.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 
 #include "prt/scene/scene_file.h"
@@ -9,12 +8,11 @@
 
 namespace relumine::prt {
 
-/// Does what load_scene() does, for a file's sections and version as read_sections() gives them.
+/// Does what load_scene() does, for a file's sections as read_sections() gives them.
 ///
 /// path:   for messages only.
 /// Throws: as load_scene() does.
-[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections,
-                             std::uint32_t version = SceneFileVersion);
+[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
 
 /// Does the same for a scene whose counts are missing, as sections_without_light() makes it.
 [[nodiscard]] Scene plan_of(const std::filesystem::path& path, Sections&& sections);

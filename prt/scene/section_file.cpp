@@ -75,11 +75,8 @@ class Reader {
 public:
     explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(files::read(path)) {}
 
-    Sections sections(std::uint32_t* version, std::span<const std::string> left_out) {
-        const Header header = checked_header();
-        if (version != nullptr)
-            *version = header.version;
-        std::vector<SectionEntry> table = checked_table(header);
+    Sections sections(std::span<const std::string> left_out) {
+        std::vector<SectionEntry> table = checked_table(checked_header());
         std::erase_if(table, [&](const SectionEntry& entry) {
             return std::find(left_out.begin(), left_out.end(), name(entry)) != left_out.end();
         });
@@ -142,11 +139,12 @@ private:
             fail("a little-endian .prt scene", "a big-endian one");
         if (header.byte_order_mark != ByteOrderMark)
             fail("a .prt scene", "a damaged header");
-        if (header.version > SceneFileVersion)
+        if (header.version != SceneFileVersion)
             fail(fmt::format(".prt version {}", SceneFileVersion),
-                 fmt::format("version {}, made by a newer relumine", header.version));
-        if (header.version == 0)
-            fail(fmt::format(".prt version 1 to {}", SceneFileVersion), "version 0");
+                 fmt::format("version {}, made by {}", header.version,
+                             header.version > SceneFileVersion
+                                 ? "a newer relumine"
+                                 : "an older relumine: run precompute again"));
         if (header.file_size != bytes_.size())
             fail(fmt::format("{} bytes", header.file_size),
                  fmt::format("{} (truncated or damaged)", bytes_.size()));
@@ -430,9 +428,8 @@ std::uint64_t write_sections(const std::filesystem::path& path, const NewSection
     return Writer(path, sections).write(sections);
 }
 
-Sections read_sections(const std::filesystem::path& path, std::uint32_t* version,
-                       std::span<const std::string> left_out) {
-    return Reader(path).sections(version, left_out);
+Sections read_sections(const std::filesystem::path& path, std::span<const std::string> left_out) {
+    return Reader(path).sections(left_out);
 }
 
 void stream_section(const std::filesystem::path& path, const std::string& name,
