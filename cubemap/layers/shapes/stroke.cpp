@@ -1,0 +1,92 @@
+#include "cubemap/layers/shapes/stroke.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "cubemap/layers/sphere_lines.h"
+
+namespace relumine::cubemap {
+
+std::vector<LayerField> Stroke::fields() {
+    return {points_field(points, 1),
+            {.name = "radius_degrees",
+             .required = true,
+             .range = {SmallestSize, 90.0},
+             .slider = FieldRange{0.05, 90.0},
+             .logarithmic_slider = true,
+             .number = &radius_degrees},
+            softness_field(softness)};
+}
+
+void Stroke::check() const {
+    for (std::size_t i = 0; i + 1 < points.size(); ++i)
+        if (angle_between(glm::normalize(points[i]), glm::normalize(points[i + 1])) > 179.999)
+            refuse("points", "whose neighbours are not opposite each other",
+                   fmt::format("points {} and {} that are", i, i + 1));
+}
+
+std::vector<glm::dvec3> Stroke::outline() const {
+    std::vector<glm::dvec3> line, units;
+    for (const glm::dvec3& unit : unit_vectors(points))
+        if (units.empty() || glm::length(units.back() - unit) > 1e-9)
+            units.push_back(unit);
+    if (units.size() == 1) {
+        append_circle(line, units[0], any_across(units[0]), radius_degrees, 0.0,
+                      2.0 * std::numbers::pi);
+        return line;
+    }
+    // The direction to the right of the line at a point, as seen from the centre of the sphere.
+    const auto side = [&](std::size_t i) {
+        const glm::dvec3& before = units[i > 0 ? i - 1 : i];
+        const glm::dvec3& after = units[i + 1 < units.size() ? i + 1 : i];
+        const glm::dvec3 across = glm::cross(after - before, units[i]);
+        return glm::length(across) > 1e-12 ? glm::normalize(across) : any_across(units[i]);
+    };
+    const double radius = radius_degrees * RadiansPerDegree;
+    for (std::size_t i = 0; i < units.size(); ++i)
+        line.push_back(std::cos(radius) * units[i] + std::sin(radius) * side(i));
+    append_circle(line, units.back(), side(units.size() - 1), radius_degrees, 0.0,
+                  std::numbers::pi);
+    for (std::size_t i = units.size(); i-- > 0;)
+        line.push_back(std::cos(radius) * units[i] - std::sin(radius) * side(i));
+    append_circle(line, units.front(), -side(0), radius_degrees, 0.0, std::numbers::pi);
+    line.push_back(line.front());
+    return line;
+}
+
+void Stroke::resize(const glm::dvec3& from, const glm::dvec3& to) {
+    const double grown = distance_to(points, to) - distance_to(points, from);
+    radius_degrees = std::clamp(radius_degrees + grown, 0.05, 90.0);
+}
+
+template<typename Arcs>
+StrokeRamps<Arcs>::StrokeRamps(const Stroke& stroke) requires std::same_as<Arcs, ArcTree>
+    : line_(unit_vectors(stroke.points), false) {
+    size_.outer = chord_of(stroke.radius_degrees);
+    size_.inner = chord_of(stroke.radius_degrees * (1.0 - stroke.softness));
+    size_.squared_outer = size_.outer * size_.outer;
+    size_.inverse_band = inverse_band(size_.outer, size_.inner);
+}
+
+template<typename Arcs>
+Overlap StrokeRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const {
+    const double reach = size_.outer + chord_radius;
+    const double squared = line_.squared_distance(w, reach * reach);
+    if (squared >= reach * reach)
+        return Overlap::None;
+    const double room = size_.inner - chord_radius;
+    return room >= 0.0 && squared <= room * room ? Overlap::All : Overlap::Part;
+}
+
+template<typename Arcs>
+std::array<double, 1> StrokeRamps<Arcs>::ramps(const glm::dvec3& w) const {
+    return {(size_.squared_outer - line_.squared_distance(w)) * size_.inverse_band};
+}
+
+template class StrokeRamps<ArcTree>;
+template class StrokeRamps<NearArcs>;
+
+} // namespace relumine::cubemap
