@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "prt/parts/team.h"
+#include "prt/team.h"
 
 namespace relumine::mpi {
 

@@ -10,7 +10,7 @@
 
 #include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
 
@@ -43,7 +43,7 @@ struct PrecomputeOptions {
     /// Where processes share the work: each has its part of the receivers, and what they decide
     /// follows from figures of all. Null: this process does it all. `plane_bytes` is then for all
     /// processes together, max_column_bytes for each; `stop` ends all when one is asked to.
-    Reduction* reduction = nullptr;
+    Team* reduction = nullptr;
     /// Stores the work now and then, and gives back the work of an earlier run; may be null. Where
     /// the receivers have highlights, a last checkpoint is left for precompute_glossy(), which
     /// follows.

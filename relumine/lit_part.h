@@ -7,7 +7,7 @@
 #include <span>
 
 #include "cubemap/cube_map.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "relight/relighter.h"
 
 namespace relumine {

@@ -125,7 +125,7 @@ void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* stat
         std::optional<prt::RayScene> of_mesh;
         if (scene.blockers)
             of_mesh.emplace(scene.mesh);
-        prt::NoReduction alone(options.part);
+        prt::Alone alone(options.part);
         plan.scene.transfer.counts = std::move(counts);
         light.bounces = bounce_samples(scene.mesh, scene.receivers, plan.scene.transfer,
                                        of_mesh ? *of_mesh : rays,

@@ -6,7 +6,7 @@
 
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/parts/part_file.h"
-#include "prt/parts/team.h"
+#include "prt/team.h"
 #include "relumine/precompute.h"
 
 namespace relumine {

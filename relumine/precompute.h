@@ -18,10 +18,10 @@
 #include "prt/glossy/surface_sampling.h"
 #include "prt/memory_estimate.h"
 #include "prt/parts/parts.h"
-#include "prt/parts/team.h"
 #include "prt/precompute.h"
 #include "prt/receivers/camera.h"
 #include "prt/receivers/texel_receivers.h"
+#include "prt/team.h"
 #include "relumine/mesh.h"
 #include "relumine/scene.h"
 

@@ -11,7 +11,7 @@
 #include "cubemap/cube_map.h"
 #include "lights/light_list.h"
 #include "prt/parts/scene_part.h"
-#include "prt/parts/team.h"
+#include "prt/team.h"
 #include "relight/binned_environment.h"
 #include "relumine/lit_scene.h"
 #include "relumine/output.h"

@@ -8,16 +8,16 @@
 #include <type_traits>
 #include <vector>
 
-#include "prt/reduction.h"
+#include "prt/team.h"
 
 namespace relumine {
 
 /// Returns compute(indices): a value for each index. Where processes share the work, each computes
 /// a slice of neighbours, and all get all values. Null: this process does it all.
 ///
-/// Throws:  as Reduction::sum().
+/// Throws:  as Team::sum().
 template<typename Value, typename Index, typename Compute>
-std::vector<Value> in_slices(prt::Reduction* reduction, std::span<const Index> indices,
+std::vector<Value> in_slices(prt::Team* reduction, std::span<const Index> indices,
                              const Compute& compute) {
     static_assert(std::is_trivially_copyable_v<Value>);
     if (reduction == nullptr)

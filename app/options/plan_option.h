@@ -4,7 +4,7 @@
 #include <string>
 
 #include "app/session.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "relumine/precompute.h"
 
 namespace relumine::app {

@@ -7,7 +7,7 @@
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
 #include "app/scenes/lit_scene.h"
-#include "prt/parts/team.h"
+#include "prt/team.h"
 
 namespace relumine::app {
 

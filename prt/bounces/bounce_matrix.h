@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "prt/reduction.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 

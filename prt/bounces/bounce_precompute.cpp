@@ -255,8 +255,8 @@ private:
     const Transfer& transfer_;
     const BounceSampler& sampler_;
     const BounceOptions& options_;
-    NoReduction alone_;
-    Reduction& reduction_;
+    Alone alone_;
+    Team& reduction_;
     /// [receivers of the part]
     std::vector<std::uint32_t> places_;
     std::vector<RayHits> hits_;

@@ -14,7 +14,7 @@
 #include "prt/bounces/bounce_samples.h"
 #include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "prt/transfer.h"
 #include "prt/visibility/ray_scene.h"
 
@@ -51,7 +51,7 @@ struct BounceOptions {
     std::uint64_t max_bytes = std::numeric_limits<std::uint64_t>::max();
     /// Where processes share the work: each has its part of the receivers. Null: this process does
     /// it all. max_bytes is for each.
-    Reduction* reduction = nullptr;
+    Team* reduction = nullptr;
     /// Parts of a plan know nothing of each other: how many rays a receiver needs follows from the
     /// receivers in its own tile.
     bool is_planned = false;

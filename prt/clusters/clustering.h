@@ -66,8 +66,8 @@ private:
 
     const PrecomputeOptions& options_;
     const PrecomputeContext context_;
-    NoReduction alone_;
-    Reduction& reduction_;
+    Alone alone_;
+    Team& reduction_;
     /// Of all receivers, as are the normals
     std::vector<std::uint32_t> order_;
     std::vector<glm::vec3> ordered_normals_;

@@ -9,7 +9,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "prt/reduction.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 
@@ -30,9 +30,9 @@ struct OwnPlace {
 /// Gives each process the values of all receivers: those of its own part are there already.
 ///
 /// Shape:   `values` is [num_receivers] by place, the same number in all processes.
-/// Throws:  as Reduction::sum().
+/// Throws:  as Team::sum().
 template<typename Value>
-void share_by_place(Reduction& reduction, std::span<Value> values) {
+void share_by_place(Team& reduction, std::span<Value> values) {
     static_assert(std::is_trivially_copyable_v<Value>);
     if (!reduction.has_others())
         return;

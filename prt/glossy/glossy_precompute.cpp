@@ -157,8 +157,8 @@ private:
     const Blockers& blockers_;
     const Transfer& transfer_;
     const GlossyOptions& options_;
-    NoReduction alone_;
-    Reduction& reduction_;
+    Alone alone_;
+    Team& reduction_;
     /// Finished blocks, from the first on.
     std::vector<EntriesOfBlock> blocks_;
     /// Entries of the finished blocks.

@@ -12,7 +12,7 @@
 #include "prt/checkpoint.h"
 #include "prt/glossy/glossy_transfer.h"
 #include "prt/receivers/receivers.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
 
@@ -36,7 +36,7 @@ struct GlossyOptions {
     /// Where processes share the work, each gives its own receivers and their transfer: blocks
     /// depend on nothing else. What stops one stops all, and checkpoints are saved together. May be
     /// null.
-    Reduction* reduction = nullptr;
+    Team* reduction = nullptr;
     /// Stores finished blocks now and then, and gives back the blocks of an earlier run. May be
     /// null.
     Checkpoint* checkpoint = nullptr;

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include "prt/reduction.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 

@@ -179,7 +179,7 @@ VisibleCounts part_counts(const Receivers& receivers, const Transfer& plan,
         throw std::invalid_argument(fmt::format("expected a part among {} at most, got {} of {}",
                                                 MaxParts, std::uint64_t{part.index} + 1,
                                                 part.count));
-    NoReduction alone(part);
+    Alone alone(part);
     PrecomputeOptions of_part = options;
     of_part.reduction = &alone;
     const std::size_t plane_bytes = (receivers.size() + 63) / 64 * 8;

@@ -13,7 +13,7 @@
 #include "prt/glossy/glossy_transfer.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "prt/transfer.h"
 #include "prt/visibility/blockers.h"
 

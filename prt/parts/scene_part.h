@@ -11,8 +11,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/reduction.h"
 #include "prt/scene/scene_file.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 

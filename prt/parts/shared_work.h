@@ -10,9 +10,9 @@
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/parts.h"
-#include "prt/parts/team.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 

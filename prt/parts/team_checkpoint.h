@@ -2,7 +2,7 @@
 #pragma once
 
 #include "prt/checkpoint.h"
-#include "prt/parts/team.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 

@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/bounces/bounce_matrix.h"
-#include "prt/reduction.h"
+#include "prt/team.h"
 #include "prt/transfer.h"
 
 namespace relumine::relight {
@@ -27,7 +27,7 @@ struct BounceLimits {
 /// others are empty.
 struct SharedRows {
     /// Null: this process has all rows.
-    prt::Reduction* reduction = nullptr;
+    prt::Team* reduction = nullptr;
     /// prt::first_emitter() of all rows
     std::size_t first = 0;
     /// [num_rows] emitters of all rows

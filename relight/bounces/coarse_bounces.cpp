@@ -89,7 +89,7 @@ CoarseBounces::Rows CoarseBounces::rows_of_groups(std::size_t num_rows, std::siz
 
 /// Gives all processes the groups of each. Groups lie within runs of rows, so each is in one
 /// process.
-void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Reduction& reduction) {
+void CoarseBounces::share(Rows& rows, std::size_t group_size, prt::Team& reduction) {
     const prt::Part part = reduction.part();
     const auto has_group = [&](std::uint32_t process, std::size_t group) {
         return prt::has_row({process, part.count}, group * group_size, 0);

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "prt/parts/team.h"
+#include "prt/team.h"
 
 namespace relumine::prt {
 

@@ -255,7 +255,7 @@ TEST_F(SharedWork, ProcessesFindTheFramesOfOne) {
 TEST_F(SharedWork, ProcessesFindTheErrorOfOne) {
     make_scene();
     const auto scene = std::make_shared<const Scene>(load_scene(file("scene.prt")));
-    const auto verified = [&](prt::Reduction* reduction) {
+    const auto verified = [&](prt::Team* reduction) {
         LitScene lit(scene);
         lit.light(sun_and_sky(60.0f));
         lit.bounce(bounce_albedo(*scene));

@@ -74,7 +74,7 @@ TEST(SharedBounces, PartsThatKnowNothingOfEachOtherMakeOneMatrix) {
     for (const std::uint32_t count : {1u, 3u, 7u}) {
         std::vector<prt::BounceSamples> parts;
         for (std::uint32_t index = 0; index < count; ++index) {
-            prt::NoReduction alone({index, count});
+            prt::Alone alone({index, count});
             prt::BounceOptions planned = options();
             planned.reduction = &alone;
             planned.is_planned = true;
@@ -93,7 +93,7 @@ TEST(SharedBounces, PartsThatKnowNothingOfEachOtherMakeOneMatrix) {
 }
 
 TEST(SharedBounces, PartsOfDifferentKindsAreRefused) {
-    prt::NoReduction alone;
+    prt::Alone alone;
     prt::BounceOptions whole = options();
     whole.reduction = &alone;
     const prt::BounceSamples all = samples({}, whole);
