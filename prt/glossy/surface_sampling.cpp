@@ -5,12 +5,11 @@
 
 #include <glm/common.hpp>
 
+#include "prt/glossy/lobe_list.h"
+
 namespace relumine::prt {
 
 namespace {
-
-/// glTF 2.0, Appendix B.
-constexpr float DielectricF0 = 0.04f;
 
 /// Interpolates an attribute of the corners at a point.
 template<class Value>
@@ -80,7 +79,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
 }
 
 Surface without_highlight(Surface surface) {
-    if (surface.highlight == Highlight::Ggx)
+    if (facts_of(surface.highlight).has_fresnel)
         surface.albedo =
             glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);
     surface.highlight = Highlight::None;

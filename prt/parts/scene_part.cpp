@@ -115,8 +115,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     std::vector<std::size_t> tiles;
     for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
         tiles.push_back(tile);
-    transfer.counts =
-        read_counts_of_tiles(of_counts, shape, tiles, result.receivers.size());
+    transfer.counts = read_counts_of_tiles(of_counts, shape, tiles, result.receivers.size());
     if (has_glossy(of_highlights)) {
         if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
             refuse("directions to the eye and surfaces with highlights", "none");

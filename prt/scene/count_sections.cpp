@@ -8,6 +8,7 @@
 
 #include "files/parallel.h"
 #include "prt/clusters/lattice.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_picker.h"
 #include "prt/scene/small_numbers.h"
 
@@ -178,5 +179,18 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCou
 std::vector<std::string> long_count_sections() {
     return {Visible, Mixed, Codes};
 }
+
+const SectionGroup CountSections = {
+    .add = [](NewSections& sections,
+              const Scene& scene) { add_counts(sections, scene.transfer.counts); },
+    .read =
+        [](const SectionReader& reader, Scene& scene) {
+            VisibleCounts& counts = scene.transfer.counts;
+            counts.num_receivers = scene.receivers.size();
+            counts.num_leaves = scene.transfer.quadtree.num_leaves();
+            read_counts(reader, counts);
+        },
+    .check = [](const SceneCheck&, const Scene&) {},
+    .is_light = true};
 
 } // namespace relumine::prt

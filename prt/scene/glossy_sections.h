@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "prt/glossy/glossy_transfer.h"
-#include "prt/scene/section_file.h"
-#include "prt/scene/section_reader.h"
+#include "prt/scene/section_group.h"
 
 namespace relumine::prt {
 
@@ -36,6 +35,9 @@ struct BlockRange {
 /// Throws:  as SectionReader.
 [[nodiscard]] GlossyTransfer read_glossy_part(const SectionReader& reader, std::size_t num_blocks,
                                               std::span<const BlockRange> blocks);
+
+/// Checks that highlights can be lit.
+void check_highlights(const SceneCheck& check, const GlossyTransfer& glossy);
 
 /// The long glossy sections.
 [[nodiscard]] std::vector<std::string> long_glossy_sections();

@@ -5,6 +5,9 @@
 #include <map>
 #include <optional>
 
+#include "prt/scene/json_members.h"
+#include "prt/scene/section_group.h"
+
 namespace relumine::prt {
 
 namespace {
@@ -192,5 +195,15 @@ void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mes
     mesh.corner_uvs =
         reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
 }
+
+const SectionGroup MaterialSections = {
+    .add =
+        [](NewSections& sections, const Scene& scene) {
+            if (on_vertices(scene.layout) && !scene.receivers.surfaces.empty())
+                add_material_sections(sections, scene.mesh);
+        },
+    .read = [](const SectionReader& reader,
+               Scene& scene) { read_material_sections(reader, scene.mesh); },
+    .check = [](const SceneCheck&, const Scene&) {}};
 
 } // namespace relumine::prt

@@ -4,8 +4,7 @@
 #include "mesh/triangle_mesh.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
-#include "prt/scene/section_file.h"
-#include "prt/scene/section_reader.h"
+#include "prt/scene/section_group.h"
 
 namespace relumine::prt {
 

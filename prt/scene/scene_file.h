@@ -67,8 +67,8 @@ struct Scene {
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
 /// Reads a scene and checks all of it: sizes against the file before anything is allocated,
-/// checksums, indices, the tree, the counts, the range of every number. A scene that was read can be
-/// lit and drawn.
+/// checksums, indices, the tree, the counts, the range of every number. A scene that was read can
+/// be lit and drawn.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);

@@ -16,6 +16,7 @@
 #include "prt/precompute.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
+#include "prt/scene/section_reader.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/every_target.h"

@@ -50,11 +50,10 @@ void Lasso::resize(const glm::dvec3& from, const glm::dvec3& to) {
     }
 }
 
-template<typename Arcs>
-LassoRamps<Arcs>::LassoRamps(const Lasso& lasso) requires std::same_as<Arcs, ArcTree>
-    : mean_(mean_direction(lasso.points)), outline_(unit_vectors(lasso.points), true) {
-    first_ = any_across(mean_);
-    second_ = glm::cross(mean_, first_);
+LassoShape::LassoShape(const Lasso& lasso)
+    : mean_(mean_direction(lasso.points)), first_(any_across(mean_)),
+      second_(glm::cross(mean_, first_)),
+      tree_(std::make_shared<ArcTree>(unit_vectors(lasso.points), true)), outline_(*tree_) {
     std::vector<glm::dvec2> on_plane;
     on_plane.reserve(lasso.points.size());
     for (const glm::dvec3& point : lasso.points) {
@@ -62,13 +61,12 @@ LassoRamps<Arcs>::LassoRamps(const Lasso& lasso) requires std::same_as<Arcs, Arc
         on_plane.emplace_back(glm::dot(point, first_) / depth, glm::dot(point, second_) / depth);
         extent_ = std::max(extent_, glm::length(glm::normalize(point) - mean_));
     }
-    outline_.set_plane(on_plane);
+    tree_->set_plane(on_plane);
     extent_ = std::max(extent_, HardEdge);
     band_ = std::max(chord_of(lasso.softness_degrees), HardEdge * extent_);
 }
 
-template<typename Arcs>
-bool LassoRamps<Arcs>::inside(const glm::dvec3& w) const {
+bool LassoShape::inside(const glm::dvec3& w) const {
     if (side_)
         return *side_;
     const double depth = glm::dot(w, mean_);
@@ -77,8 +75,7 @@ bool LassoRamps<Arcs>::inside(const glm::dvec3& w) const {
     return outline_.encloses({glm::dot(w, first_) / depth, glm::dot(w, second_) / depth});
 }
 
-template<typename Arcs>
-Overlap LassoRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const {
+Overlap LassoShape::bound(const glm::dvec3& w, double chord_radius) const {
     const double away = glm::length(w - mean_) - extent_;
     if (away >= chord_radius)
         return Overlap::None;
@@ -92,31 +89,25 @@ Overlap LassoRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const 
     return depth >= band_ + chord_radius ? Overlap::All : Overlap::Part;
 }
 
-template<typename Arcs>
-std::array<double, 1> LassoRamps<Arcs>::ramps(const glm::dvec3& w) const {
+std::array<double, 1> LassoShape::ramps(const glm::dvec3& w) const {
     const double distance = std::sqrt(outline_.squared_distance(w));
     return {(inside(w) ? distance : -distance) / band_};
 }
 
-template<typename Arcs>
-bool LassoRamps<Arcs>::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
+bool LassoShape::has_kink(std::size_t, const glm::dvec3& w, double chord_radius) const {
     // At a corner two edges come near. Below 1/64 of the size, a corner hides less than 1/4096. In
     // squares of more than 1/16 a sample may see a corner that lies outside the square.
     return chord_radius > extent_ / 64.0 &&
            (chord_radius > extent_ / 16.0 || outline_.several_within(w, chord_radius));
 }
 
-template<typename Arcs>
-LassoRamps<NearArcs> LassoRamps<Arcs>::within(const glm::dvec3& w, double chord_radius) const {
+LassoShape LassoShape::within(const glm::dvec3& w, double chord_radius) const {
     const NearArcs outline(outline_, w, chord_radius);
-    LassoRamps<NearArcs> result(*this, outline);
+    LassoShape result(*this, outline);
     // A ball that the outline does not meet lies on one side of it. The margin is for rounding.
     if (!side_ && outline.distance() > 1.000001 * chord_radius + 1e-9)
         result.side_ = inside(w);
     return result;
 }
-
-template class LassoRamps<ArcTree>;
-template class LassoRamps<NearArcs>;
 
 } // namespace relumine::cubemap

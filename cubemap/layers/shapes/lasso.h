@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,8 +14,7 @@
 
 namespace relumine::cubemap {
 
-template<typename Arcs>
-class LassoRamps;
+class LassoShape;
 
 /// A polygon on the sphere. Its edges are arcs of great circles; the last point joins the first. An
 /// area that the polygon encloses twice is outside. Coverage rises smoothly from 0 at the outline
@@ -26,7 +26,7 @@ struct Lasso {
     double softness_degrees = 0.0;
     bool operator==(const Lasso&) const = default;
 
-    using Prepared = LassoRamps<ArcTree>;
+    using Prepared = LassoShape;
     static constexpr ShapeWords Words{
         .name = "lasso",
         .label = "lasso",
@@ -40,38 +40,35 @@ struct Lasso {
     void turn_upright(double) {}
 };
 
-/// A lasso with all arcs of its outline (ArcTree), or with the arcs that matter in a ball
-/// (NearArcs).
-template<typename Arcs>
-class LassoRamps {
+/// A lasso with the arcs of its outline that matter.
+class LassoShape {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    explicit LassoRamps(const Lasso& lasso) requires std::same_as<Arcs, ArcTree>;
+    explicit LassoShape(const Lasso& lasso);
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
     [[nodiscard]] bool has_kink(std::size_t i, const glm::dvec3& w, double chord) const;
     [[nodiscard]] double smallest_feature() const { return extent_ / 256.0; }
-    [[nodiscard]] LassoRamps<NearArcs> within(const glm::dvec3& w, double chord) const;
+    [[nodiscard]] LassoShape within(const glm::dvec3& w, double chord) const;
 
 private:
-    template<typename>
-    friend class LassoRamps;
-    template<typename Wider>
-    LassoRamps(const LassoRamps<Wider>& wider, const Arcs& outline)
+    LassoShape(const LassoShape& wider, const NearArcs& outline)
         : mean_(wider.mean_), first_(wider.first_), second_(wider.second_), band_(wider.band_),
           extent_(wider.extent_), outline_(outline), side_(wider.side_) {}
     [[nodiscard]] bool inside(const glm::dvec3& w) const;
 
     /// Axes of the plane that touches the sphere at the lasso's mean.
-    glm::dvec3 mean_{0.0}, first_{0.0}, second_{0.0};
+    glm::dvec3 mean_, first_, second_;
     /// Chords.
-    double band_ = 0.0, extent_ = 0.0;
-    Arcs outline_;
+    double band_, extent_ = 0.0;
+    /// Of the whole lasso alone.
+    std::shared_ptr<ArcTree> tree_ = nullptr;
+    NearArcs outline_;
     /// True or false if all directions in the ball are inside or outside. Empty: the outline may
     /// cross the ball.
-    std::optional<bool> side_;
+    std::optional<bool> side_ = {};
 };
 
 } // namespace relumine::cubemap

@@ -62,31 +62,23 @@ void Stroke::resize(const glm::dvec3& from, const glm::dvec3& to) {
     radius_degrees = std::clamp(radius_degrees + grown, 0.05, 90.0);
 }
 
-template<typename Arcs>
-StrokeRamps<Arcs>::StrokeRamps(const Stroke& stroke) requires std::same_as<Arcs, ArcTree>
-    : line_(unit_vectors(stroke.points), false) {
-    size_.outer = chord_of(stroke.radius_degrees);
-    size_.inner = chord_of(stroke.radius_degrees * (1.0 - stroke.softness));
-    size_.squared_outer = size_.outer * size_.outer;
-    size_.inverse_band = inverse_band(size_.outer, size_.inner);
-}
+StrokeShape::StrokeShape(const Stroke& stroke)
+    : outer_(chord_of(stroke.radius_degrees)),
+      inner_(chord_of(stroke.radius_degrees * (1.0 - stroke.softness))),
+      squared_outer_(outer_ * outer_), inverse_band_(inverse_band(outer_, inner_)),
+      tree_(std::make_shared<ArcTree>(unit_vectors(stroke.points), false)), line_(*tree_) {}
 
-template<typename Arcs>
-Overlap StrokeRamps<Arcs>::bound(const glm::dvec3& w, double chord_radius) const {
-    const double reach = size_.outer + chord_radius;
+Overlap StrokeShape::bound(const glm::dvec3& w, double chord_radius) const {
+    const double reach = outer_ + chord_radius;
     const double squared = line_.squared_distance(w, reach * reach);
     if (squared >= reach * reach)
         return Overlap::None;
-    const double room = size_.inner - chord_radius;
+    const double room = inner_ - chord_radius;
     return room >= 0.0 && squared <= room * room ? Overlap::All : Overlap::Part;
 }
 
-template<typename Arcs>
-std::array<double, 1> StrokeRamps<Arcs>::ramps(const glm::dvec3& w) const {
-    return {(size_.squared_outer - line_.squared_distance(w)) * size_.inverse_band};
+std::array<double, 1> StrokeShape::ramps(const glm::dvec3& w) const {
+    return {(squared_outer_ - line_.squared_distance(w)) * inverse_band_};
 }
-
-template class StrokeRamps<ArcTree>;
-template class StrokeRamps<NearArcs>;
 
 } // namespace relumine::cubemap

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -12,8 +13,7 @@
 
 namespace relumine::cubemap {
 
-template<typename Arcs>
-class StrokeRamps;
+class StrokeShape;
 
 /// A brush stroke: all directions within `radius` of a line of great-circle arcs from point to
 /// point. One point is a dab. Coverage depends on the distance to the line as in a Disc.
@@ -26,7 +26,7 @@ struct Stroke {
     double softness = 0.5;
     bool operator==(const Stroke&) const = default;
 
-    using Prepared = StrokeRamps<ArcTree>;
+    using Prepared = StrokeShape;
     static constexpr ShapeWords Words{.name = "stroke",
                                       .label = "stroke",
                                       .hint = "paint light: drag in the environment",
@@ -40,35 +40,32 @@ struct Stroke {
     void turn_upright(double) {}
 };
 
-/// A stroke with all arcs of its line (ArcTree), or with the arcs that matter in a ball (NearArcs).
-template<typename Arcs>
-class StrokeRamps {
+/// A stroke with the arcs of its line that matter.
+class StrokeShape {
 public:
     static constexpr std::size_t NumRamps = 1;
     static constexpr bool HasConcaveRamps = false;
-    explicit StrokeRamps(const Stroke& stroke) requires std::same_as<Arcs, ArcTree>;
+    explicit StrokeShape(const Stroke& stroke);
 
     [[nodiscard]] Overlap bound(const glm::dvec3& w, double chord) const;
     [[nodiscard]] std::array<double, NumRamps> ramps(const glm::dvec3& w) const;
     [[nodiscard]] static bool has_kink(std::size_t, const glm::dvec3&, double) { return false; }
-    [[nodiscard]] double smallest_feature() const { return size_.outer / 64.0; }
-    [[nodiscard]] StrokeRamps<NearArcs> within(const glm::dvec3& w, double chord) const {
-        return {size_, NearArcs(line_, w, chord)};
+    [[nodiscard]] double smallest_feature() const { return outer_ / 64.0; }
+    [[nodiscard]] StrokeShape within(const glm::dvec3& w, double chord) const {
+        return {*this, NearArcs(line_, w, chord)};
     }
 
 private:
-    /// Chords.
-    struct Size {
-        double outer, inner, squared_outer, inverse_band;
-    };
-    template<typename>
-    friend class StrokeRamps;
-    template<typename OtherSize>
-    StrokeRamps(const OtherSize& size, const Arcs& line)
-        : size_{size.outer, size.inner, size.squared_outer, size.inverse_band}, line_(line) {}
+    StrokeShape(const StrokeShape& wider, const NearArcs& line)
+        : outer_(wider.outer_), inner_(wider.inner_), squared_outer_(wider.squared_outer_),
+          inverse_band_(wider.inverse_band_), line_(line) {}
 
-    Size size_;
-    Arcs line_;
+    /// Chords.
+    double outer_, inner_;
+    double squared_outer_, inverse_band_;
+    /// Of the whole stroke alone.
+    std::shared_ptr<ArcTree> tree_ = nullptr;
+    NearArcs line_;
 };
 
 } // namespace relumine::cubemap

@@ -99,8 +99,8 @@ TEST_F(CountSectionsTest, TilesAreReadAlone) {
                 mixed.push_back(counts_.mixed[word]);
                 const std::uint8_t* of_word = counts_.mixed_counts(word, 0);
                 entries.insert(entries.end(), of_word,
-                               of_word + BlockSize * static_cast<std::size_t>(
-                                                         std::popcount(mixed.back())));
+                               of_word + BlockSize *
+                                             static_cast<std::size_t>(std::popcount(mixed.back())));
             }
         }
         const VisibleCounts part = read_counts_of_tiles(reader, counts_, tiles, num_own);
