@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "cubemap/layers/sphere_lines.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 #include "files/parallel.h"
 
 namespace relumine::relight {

@@ -13,6 +13,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "cubemap/resample/save_environment.h"
+#include "files/one_of_each.h"
 #include "viewer/panels.h"
 
 namespace relumine::viewer {
@@ -62,7 +64,7 @@ void next(const char* label) {
 
 void add_buttons(ViewState& state) {
     std::function<void()> later;
-    for (const cubemap::Region& shape : cubemap::one_of_each<cubemap::Region>())
+    for (const cubemap::Region& shape : files::one_of_each<cubemap::Region>())
         if (has_direction(shape)) {
             const std::string name = capitalised(words(shape).label);
             if (ImGui::Button(("+ " + name).c_str()))

@@ -4,7 +4,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/layers/light_layer.h"
-#include "cubemap/layers/sphere_lines.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 
 namespace relumine::viewer {
 

@@ -13,6 +13,7 @@
 #include "files/joined.h"
 #include "files/json_value.h"
 #include "files/nearest_name.h"
+#include "files/one_of_each.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -89,7 +90,7 @@ private:
                  std::string_view (*name)(const Variant&)) const {
         const std::string& text = json_.string(value, what);
         std::vector<std::string_view> names;
-        for (const Variant& candidate : one_of_each<Variant>()) {
+        for (const Variant& candidate : files::one_of_each<Variant>()) {
             if (name(candidate) == text)
                 return candidate;
             names.push_back(name(candidate));

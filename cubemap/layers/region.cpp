@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 
-#include "cubemap/layers/sphere_lines.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 
 namespace relumine::cubemap {
 

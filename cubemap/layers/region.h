@@ -1,9 +1,7 @@
 // The region of a layer: one of the shapes that are listed here.
 #pragma once
 
-#include <array>
 #include <string_view>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -59,15 +57,6 @@ void validate(const Region& region);
 
 /// Returns the region after its rim was dragged. The result is valid if the region was.
 [[nodiscard]] Region resized(Region region, const glm::dvec3& from, const glm::dvec3& to);
-
-/// Returns a default value of each type of a variant.
-template<typename Variant>
-[[nodiscard]] auto one_of_each() {
-    return []<std::size_t... I>(std::index_sequence<I...>) {
-        return std::array{Variant(std::in_place_index<I>)...};
-    }
-    (std::make_index_sequence<std::variant_size_v<Variant>>{});
-}
 
 namespace detail {
 template<typename Shapes>

@@ -10,8 +10,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "prt/glossy/lobes/blinn_phong-inl.h"
-#include "prt/glossy/lobes/ggx-inl.h"
+#include "prt/glossy/blinn_phong_lobe-inl.h"
+#include "prt/glossy/ggx_lobe-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::prt::HWY_NAMESPACE {

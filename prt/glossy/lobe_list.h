@@ -5,9 +5,9 @@
 #include <cstddef>
 #include <tuple>
 
-#include "prt/glossy/lobes/blinn_phong.h"
-#include "prt/glossy/lobes/ggx.h"
-#include "prt/glossy/surface.h"
+#include "prt/glossy/blinn_phong_lobe.h"
+#include "prt/glossy/ggx_lobe.h"
+#include "prt/receivers/surface.h"
 
 namespace relumine::prt {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "prt/glossy/glossy_transfer.h"
 #include "prt/scene/section_group.h"
+#include "prt/transfer/glossy_transfer.h"
 
 namespace relumine::prt {
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
 #include "prt/visibility/ray_scene.h"

@@ -10,11 +10,12 @@
 #include "arrays.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/layers/layer_list.h"
+#include "files/one_of_each.h"
 #include "files/json_value.h"
 #include "lights.h"
 #include "options.h"
+#include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/picture.h"
-#include "relight/transfer_lights.h"
 #include "run.h"
 #include "scene.h"
 
@@ -177,7 +178,7 @@ py::tuple set_layer(Lit& own, std::size_t index, const std::string& json) {
 /// default or None.
 py::list layer_shapes() {
     py::list result;
-    for (cubemap::Region& shape : cubemap::one_of_each<cubemap::Region>()) {
+    for (cubemap::Region& shape : files::one_of_each<cubemap::Region>()) {
         py::list all;
         for (const cubemap::LayerField& field : cubemap::fields(shape)) {
             py::object value = py::none();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "cubemap/layers/sphere_lines.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 
 namespace relumine::cubemap {
 

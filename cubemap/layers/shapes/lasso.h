@@ -9,8 +9,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "cubemap/layers/arc_tree.h"
-#include "cubemap/layers/layer_shape.h"
+#include "cubemap/layers/shapes/arc_tree.h"
+#include "cubemap/layers/shapes/layer_shape.h"
 
 namespace relumine::cubemap {
 

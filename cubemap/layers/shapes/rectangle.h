@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "cubemap/layers/layer_shape.h"
+#include "cubemap/layers/shapes/layer_shape.h"
 
 namespace relumine::cubemap {
 

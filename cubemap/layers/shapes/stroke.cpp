@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/layers/sphere_lines.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 
 namespace relumine::cubemap {
 
