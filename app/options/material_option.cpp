@@ -61,9 +61,9 @@ const prt::LobeFacts& Parser::take_model(std::string_view& rest, SurfaceMaterial
     }
     std::vector<std::string> forms;
     for (std::size_t i = 1; i <= prt::NumHighlights; ++i) // lambert last
-        forms.push_back(fmt::format(
-            "[GROUP=]{}:...",
-            prt::facts_of(static_cast<prt::Highlight>(i % prt::NumHighlights)).name));
+        forms.push_back(
+            fmt::format("[GROUP=]{}:...",
+                        prt::facts_of(static_cast<prt::Highlight>(i % prt::NumHighlights)).name));
     const std::string last = std::exchange(forms.back(), "");
     forms.pop_back();
     fail(files::joined(forms, ", ") + " or " + last, text);

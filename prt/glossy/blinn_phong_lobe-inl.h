@@ -1,7 +1,7 @@
 // The highlight of blinn_phong.h, 16 receivers at a time. For lobe_kernel.cpp, once per instruction
 // set.
-#include "prt/glossy/lobe_terms-inl.h"
 #include "prt/glossy/blinn_phong_lobe.h"
+#include "prt/glossy/lobe_terms-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::prt::HWY_NAMESPACE {

@@ -1,6 +1,6 @@
 // The highlight of ggx.h, 16 receivers at a time. For lobe_kernel.cpp, once per instruction set.
-#include "prt/glossy/lobe_terms-inl.h"
 #include "prt/glossy/ggx_lobe.h"
+#include "prt/glossy/lobe_terms-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace relumine::prt::HWY_NAMESPACE {
@@ -18,8 +18,7 @@ inline Vector specular(GgxLobe, const LobeTerms& terms) {
         hn::Div(a2, hn::Mul(hn::Set(d, std::numbers::pi_v<float>), hn::Mul(t, t)));
     const auto rest = hn::Sub(one, a2);
     const auto mask_v = hn::Mul(terms.n_w, hn::Sqrt(hn::MulAdd(hn::Mul(n_v, n_v), rest, a2)));
-    const auto mask_w =
-        hn::Mul(n_v, hn::Sqrt(hn::MulAdd(hn::Mul(terms.n_w, terms.n_w), rest, a2)));
+    const auto mask_w = hn::Mul(n_v, hn::Sqrt(hn::MulAdd(hn::Mul(terms.n_w, terms.n_w), rest, a2)));
     const auto visibility = hn::Div(hn::Mul(hn::Set(d, 0.5f), terms.n_w), hn::Add(mask_v, mask_w));
     return hn::Mul(distribution, visibility);
 }

@@ -187,7 +187,8 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
         // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
         if (lobe == GlossyLobe::DiffuseGrazing)
             limits.reference_power =
-                std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) * 2.0 / (3.0 * std::numbers::pi);
+                std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) * 2.0 /
+                (3.0 * std::numbers::pi);
         const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
         if (lobe == GlossyLobe::Specular)
             limits.reference_power = cut.power;

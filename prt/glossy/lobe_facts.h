@@ -18,8 +18,8 @@ struct LobeFacts {
     float largest_shape = 1e6f;
     /// The specular colour must be given, and with the albedo it is at most 1.
     bool needs_specular = false;
-    /// The specular colour is F0. Fresnel makes the highlight white at grazing angles, and takes its
-    /// light from the diffuse part.
+    /// The specular colour is F0. Fresnel makes the highlight white at grazing angles, and takes
+    /// its light from the diffuse part.
     bool has_fresnel = false;
     /// The shape is a roughness: cells of the quadtree cannot hold the smallest.
     bool is_roughness = false;

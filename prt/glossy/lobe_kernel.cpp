@@ -85,8 +85,9 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
     if (!(normal_dot_eye[lane] > 0.0f) || surface.highlight == Highlight::None)
         return;
     lanes[static_cast<std::size_t>(surface.highlight)] |= 1u << lane;
-    const std::array<float, 2> own = with_lobe(
-        surface.highlight, [&](auto lobe) { return lobe.parameters(surface.roughness_or_exponent); });
+    const std::array<float, 2> own = with_lobe(surface.highlight, [&](auto lobe) {
+        return lobe.parameters(surface.roughness_or_exponent);
+    });
     for (std::size_t i = 0; i < own.size(); ++i)
         parameters[i][lane] = own[i];
 }

@@ -41,9 +41,8 @@ auto with_lobe(Highlight highlight, const Use& use) {
 /// Returns the angle over which a highlight changes, as seen from the light: twice the angle of the
 /// half vector. 0 for none.
 [[nodiscard]] inline float narrowness_of(const Surface& surface) {
-    return with_lobe(surface.highlight, [&](auto lobe) {
-        return lobe.narrowness(surface.roughness_or_exponent);
-    });
+    return with_lobe(surface.highlight,
+                     [&](auto lobe) { return lobe.narrowness(surface.roughness_or_exponent); });
 }
 
 } // namespace relumine::prt

@@ -15,6 +15,7 @@
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
+#include "prt/scene/json_members.h"
 #include "prt/scene/scene_check.h"
 #include "prt/scene/scene_sections.h"
 #include "prt/scene/section_file.h"
@@ -92,10 +93,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     const std::size_t num_receivers = whole.receivers.size();
     if (has_bounces(of_bounces)) {
         BounceRows rows = read_bounce_rows(of_bounces, num_receivers, part);
-        if (!std::holds_alternative<VertexLayout>(whole.layout))
-            for (const std::uint32_t place : rows.matrix.emitters.places)
-                if (whole.transfer.order[place] < whole.receivers.num_own())
-                    refuse("light that comes from vertices", "other light");
+        check_emitters(SceneCheck(path), whole, rows.matrix);
         result.scene.bounces = std::move(rows.matrix);
         result.bounces = {.first = rows.first, .num_emitters = std::move(rows.num_emitters)};
     }
@@ -124,7 +122,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         for (const std::size_t tile : tiles)
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
         transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
-        check_highlights(*transfer.glossy, path);
+        check_highlights(SceneCheck(path), *transfer.glossy);
         for (const std::uint32_t receiver : result.receivers)
             transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
     }

@@ -47,8 +47,8 @@ void TexelLayout::check() const {
 }
 
 const ReceiverKind& kind_of(const ReceiverLayout& layout) {
-    return std::visit([]<typename Layout>(const Layout&) -> const ReceiverKind& { return Layout::Kind; },
-                      layout);
+    return std::visit(
+        []<typename Layout>(const Layout&) -> const ReceiverKind& { return Layout::Kind; }, layout);
 }
 
 std::string description(const ReceiverLayout& layout) {
@@ -61,8 +61,8 @@ std::size_t num_places(const ReceiverLayout& layout) {
 
 std::span<const std::uint32_t> places(const ReceiverLayout& layout) {
     // Only read.
-    const std::vector<std::uint32_t>* found = std::visit(
-        [](auto& own) { return own.places(); }, const_cast<ReceiverLayout&>(layout));
+    const std::vector<std::uint32_t>* found =
+        std::visit([](auto& own) { return own.places(); }, const_cast<ReceiverLayout&>(layout));
     return found == nullptr ? std::span<const std::uint32_t>() : *found;
 }
 

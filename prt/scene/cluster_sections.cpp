@@ -12,8 +12,7 @@ const std::string Order = "order", Tree = "quadtree";
 /// Split flags have their number in front.
 void add_clusters(NewSections& sections, const Scene& scene) {
     const std::vector<bool> flags = scene.transfer.quadtree.split_flags();
-    std::vector<std::byte> bytes =
-        bytes_of(std::vector{static_cast<std::uint32_t>(flags.size())});
+    std::vector<std::byte> bytes = bytes_of(std::vector{static_cast<std::uint32_t>(flags.size())});
     const std::vector<std::byte> bits = packed(flags);
     bytes.insert(bytes.end(), bits.begin(), bits.end());
     sections[Tree] = std::move(bytes);
@@ -27,8 +26,7 @@ Quadtree read_tree(const SectionReader& reader) {
         reader.fail(Tree, "split flags");
     std::memcpy(&num_flags, bytes.data(), sizeof num_flags);
     try {
-        return Quadtree(
-            unpacked(std::span(bytes).subspan(sizeof num_flags), num_flags));
+        return Quadtree(unpacked(std::span(bytes).subspan(sizeof num_flags), num_flags));
     } catch (const std::length_error&) {
         reader.fail(Tree, "split flags");
     } catch (const std::invalid_argument&) {

@@ -204,6 +204,8 @@ const SectionGroup MaterialSections = {
         },
     .read = [](const SectionReader& reader,
                Scene& scene) { read_material_sections(reader, scene.mesh); },
-    .check = [](const SceneCheck&, const Scene&) {}};
+    .check =
+        [](const SceneCheck&, const Scene&) {
+        }};
 
 } // namespace relumine::prt

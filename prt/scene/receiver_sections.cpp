@@ -132,12 +132,12 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
               [](const Surface& s) { return s.albedo; });
     check.all("surfaces of specular colour 0 to 1", surfaces, is_color,
               [](const Surface& s) { return s.specular; });
-    for (const Surface& surface : surfaces) {
-        const LobeFacts& lobe = facts_of(surface.highlight);
-        const float shape = surface.roughness_or_exponent;
-        check.that(shape >= 0.0f && shape <= lobe.largest_shape * (1.0f + RangeSlack),
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const LobeFacts& lobe = facts_of(surfaces[i].highlight);
+        const float shape = surfaces[i].roughness_or_exponent;
+        check.that(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack,
                    fmt::format("{} of 0 to {}", lobe.shape, lobe.largest_shape),
-                   SceneCheck::text_of(shape));
+                   fmt::format("element {}: {}", i, shape));
     }
 }
 

@@ -33,9 +33,8 @@ public:
     template<typename Element, typename IsGood, typename Field>
     void all(const std::string& expected, const std::vector<Element>& elements,
              const IsGood& is_good, const Field& field) const {
-        const auto bad = std::find_if_not(elements.begin(), elements.end(), [&](const Element& e) {
-            return is_good(field(e));
-        });
+        const auto bad = std::find_if_not(elements.begin(), elements.end(),
+                                          [&](const Element& e) { return is_good(field(e)); });
         if (bad != elements.end())
             fail(expected,
                  fmt::format("element {}: {}", bad - elements.begin(), text_of(field(*bad))));

@@ -16,7 +16,7 @@ namespace relumine::prt {
 namespace {
 
 /// The list, in the order in which groups are read and checked.
-const std::array AllSections = {&SettingsSections, &MeshSections,  &MaterialSections,
+const std::array AllSections = {&SettingsSections, &MeshSections,    &MaterialSections,
                                 &ReceiverSections, &ClusterSections, &CountSections,
                                 &GlossySections,   &BounceSections};
 

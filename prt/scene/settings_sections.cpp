@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "prt/transfer/quadtree.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/section_group.h"
+#include "prt/transfer/quadtree.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {
