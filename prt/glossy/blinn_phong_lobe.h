@@ -27,6 +27,7 @@ namespace relumine::prt {
 
 /// `specular` is Ks.
 struct BlinnPhongLobe {
+    static constexpr Highlight Kind = Highlight::BlinnPhong;
     static constexpr LobeFacts Facts{.name = "blinn",
                                      .about = "A normalised Blinn-Phong surface.",
                                      .albedo = "kd",

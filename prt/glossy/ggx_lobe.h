@@ -18,6 +18,7 @@ namespace relumine::prt {
 
 /// Trowbridge-Reitz distribution and height-correlated Smith visibility. `specular` is F0.
 struct GgxLobe {
+    static constexpr Highlight Kind = Highlight::Ggx;
     static constexpr LobeFacts Facts{
         .name = "ggx",
         .about = "A metallic-roughness surface, as in glTF. Colours that are None stay the mesh's.",

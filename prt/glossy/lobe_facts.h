@@ -3,6 +3,8 @@
 
 #include <string_view>
 
+#include "prt/receivers/surface.h"
+
 namespace relumine::prt {
 
 /// How a lobe is called, and what its numbers may be.

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <tuple>
+#include <utility>
 
 #include "prt/glossy/blinn_phong_lobe.h"
 #include "prt/glossy/ggx_lobe.h"
@@ -13,6 +14,7 @@ namespace relumine::prt {
 
 /// No highlight.
 struct MattLobe {
+    static constexpr Highlight Kind = Highlight::None;
     static constexpr LobeFacts Facts{
         .name = "lambert", .about = "A matt surface.", .albedo = "albedo"};
     static float narrowness(float) { return 0.0f; }
@@ -24,6 +26,9 @@ struct MattLobe {
 using LobeList = std::tuple<MattLobe, GgxLobe, BlinnPhongLobe>;
 
 inline constexpr std::size_t NumHighlights = std::tuple_size_v<LobeList>;
+static_assert([]<std::size_t... I>(std::index_sequence<I...>) {
+    return ((static_cast<std::size_t>(std::tuple_element_t<I, LobeList>::Kind) == I) && ...);
+}(std::make_index_sequence<NumHighlights>{}));
 
 /// Returns what `use` returns for the lobe of a highlight.
 template<typename Use, std::size_t I = 0>

@@ -136,7 +136,8 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
         const LobeFacts& lobe = facts_of(surfaces[i].highlight);
         const float shape = surfaces[i].roughness_or_exponent;
         check.that(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack,
-                   fmt::format("{} of 0 to {}", lobe.shape, lobe.largest_shape),
+                   fmt::format("{} of 0 to {}", lobe.shape.empty() ? "roughness" : lobe.shape,
+                               lobe.largest_shape),
                    fmt::format("element {}: {}", i, shape));
     }
 }

@@ -360,7 +360,7 @@ TEST_F(SceneFileTest, RefusesValuesThatCannotBeLitOrDrawn) {
                 [&](Scene& s) { s.receivers.to_eye[2] *= value * 1.01f; });
         refused("normals of length 1 or 0", [&](Scene& s) { s.mesh.normals[5] *= value * 1.01f; });
     }
-    refused("exponents of 0 to 1000000", [](Scene& s) {
+    refused("exponent of 0 to 1000000", [](Scene& s) {
         s.receivers.surfaces[1].highlight = Highlight::BlinnPhong;
         s.receivers.surfaces[1].roughness_or_exponent = 1e30f;
     });
