@@ -1,12 +1,6 @@
-// The highlight of blinn_phong.h, 16 receivers at a time. For lobe_kernel.cpp, once per instruction
-// set.
-#include "prt/glossy/blinn_phong_lobe.h"
-#include "prt/glossy/lobe_terms-inl.h"
+// The highlight of blinn_phong_lobe.h, 16 receivers at a time. A part of lobe_kernel.cpp.
 
-HWY_BEFORE_NAMESPACE();
-namespace relumine::prt::HWY_NAMESPACE {
-
-inline Vector specular(BlinnPhongLobe, const LobeTerms& terms) {
+Vector specular(BlinnPhongLobe, const LobeTerms& terms) {
     const Tag d;
     // log1p keeps digits that 1 - sin^2 would round away.
     const auto sin2 = hn::Min(terms.sin2, hn::Set(d, 1.0f - 6e-8f));
@@ -14,6 +8,3 @@ inline Vector specular(BlinnPhongLobe, const LobeTerms& terms) {
     const auto power = hn::Exp(d, hn::Mul(terms.parameter(0), log_cos));
     return hn::Mul(hn::Mul(terms.parameter(1), power), terms.n_w);
 }
-
-} // namespace relumine::prt::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();

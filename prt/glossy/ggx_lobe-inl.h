@@ -1,12 +1,7 @@
-// The highlight of ggx.h, 16 receivers at a time. For lobe_kernel.cpp, once per instruction set.
-#include "prt/glossy/ggx_lobe.h"
-#include "prt/glossy/lobe_terms-inl.h"
-
-HWY_BEFORE_NAMESPACE();
-namespace relumine::prt::HWY_NAMESPACE {
+// The highlight of ggx_lobe.h, 16 receivers at a time. A part of lobe_kernel.cpp.
 
 /// Returns D V n.w of glTF 2.0, Appendix B.
-inline Vector specular(GgxLobe, const LobeTerms& terms) {
+Vector specular(GgxLobe, const LobeTerms& terms) {
     const Tag d;
     const auto one = hn::Set(d, 1.0f);
     const auto a2 = terms.parameter(0);
@@ -22,6 +17,3 @@ inline Vector specular(GgxLobe, const LobeTerms& terms) {
     const auto visibility = hn::Div(hn::Mul(hn::Set(d, 0.5f), terms.n_w), hn::Add(mask_v, mask_w));
     return hn::Mul(distribution, visibility);
 }
-
-} // namespace relumine::prt::HWY_NAMESPACE
-HWY_AFTER_NAMESPACE();
