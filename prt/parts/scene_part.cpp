@@ -17,7 +17,7 @@
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/json_members.h"
 #include "prt/scene/scene_check.h"
-#include "prt/scene/scene_sections.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
 

@@ -8,55 +8,31 @@ namespace relumine::prt {
 
 namespace {
 
-/// Before anything is done with a size: sizes of a file may be any.
-void check_size(std::uint32_t width, std::uint32_t height) {
-    for (const std::uint32_t size : {width, height})
-        if (size < 1 || size > MaxPictureSize)
-            throw std::invalid_argument(
-                fmt::format("expected 1 to {} places a side, got {}", MaxPictureSize, size));
-}
-
-void check_number(std::size_t num_places) {
-    if (num_places > MaxLayoutPlaces)
-        throw std::invalid_argument(
-            fmt::format("expected at most {} places, got {}", MaxLayoutPlaces, num_places));
+PlaceGrid grid_of(const ReceiverLayout& layout) {
+    return std::visit([](const auto& own) { return own.grid(); }, layout);
 }
 
 } // namespace
 
-std::string PixelLayout::description() const {
-    return samples_per_axis == 1 ? fmt::format("pixels {} x {}", width, height)
-                                 : fmt::format("pixels {} x {}, {} x {} samples each", width,
-                                               height, samples_per_axis, samples_per_axis);
-}
-
-void PixelLayout::check() const {
-    check_size(width, height);
-    // Throws for a camera without a direction, and for sizes out of bounds.
-    static_cast<void>(PictureRays(camera, width, height, samples_per_axis));
-    check_number(num_samples());
-}
-
-std::string TexelLayout::description() const {
-    return fmt::format("texels {} x {}", width, height);
-}
-
-void TexelLayout::check() const {
-    check_size(width, height);
-    check_number(num_texels());
-}
-
 const ReceiverKind& kind_of(const ReceiverLayout& layout) {
-    return std::visit(
-        []<typename Layout>(const Layout&) -> const ReceiverKind& { return Layout::Kind; }, layout);
+    return *std::visit([]<typename Layout>(const Layout&) { return &Layout::Kind; }, layout);
+}
+
+bool on_vertices(const ReceiverLayout& layout) {
+    return kind_of(layout).are_vertices;
 }
 
 std::string description(const ReceiverLayout& layout) {
-    return std::visit([](const auto& own) { return own.description(); }, layout);
+    const auto [width, height, n] = grid_of(layout);
+    std::string text(kind_of(layout).name);
+    if (width != 0 || height != 0)
+        text += fmt::format(" {} x {}", width, height);
+    return n == 1 ? text : fmt::format("{}, {} x {} samples each", text, n, n);
 }
 
 std::size_t num_places(const ReceiverLayout& layout) {
-    return std::visit([](const auto& own) { return own.num_places(); }, layout);
+    const auto [width, height, n] = grid_of(layout);
+    return std::size_t{width} * height * n * n;
 }
 
 std::span<const std::uint32_t> places(const ReceiverLayout& layout) {
@@ -68,6 +44,16 @@ std::span<const std::uint32_t> places(const ReceiverLayout& layout) {
 
 const Camera* own_camera(const ReceiverLayout& layout) {
     return std::visit([](const auto& own) { return own.own_camera(); }, layout);
+}
+
+void check_size(const ReceiverLayout& layout) {
+    const auto [width, height, n] = grid_of(layout);
+    const Camera* camera = own_camera(layout);
+    // Throws for sizes out of bounds, and for a camera without a direction.
+    static_cast<void>(PictureRays(camera == nullptr ? Camera() : *camera, width, height, n));
+    if (num_places(layout) > MaxLayoutPlaces)
+        throw std::invalid_argument(
+            fmt::format("expected at most {} places, got {}", MaxLayoutPlaces, num_places(layout)));
 }
 
 } // namespace relumine::prt

@@ -29,20 +29,23 @@ struct ReceiverKind {
     bool are_seen = true;
 };
 
+/// The size of a picture or a lightmap; 0 x 0 for vertices.
+struct PlaceGrid {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t samples_per_axis = 1;
+};
+
 /// Receiver i is vertex i of the mesh.
 struct VertexLayout {
     static constexpr ReceiverKind Kind{
         .name = "vertices", .one = "vertex", .whole = "the mesh", .are_vertices = true};
     bool operator==(const VertexLayout&) const = default;
 
-    // As the other kinds have them.
-    [[nodiscard]] static std::string description() { return "vertices"; }
-    [[nodiscard]] static std::size_t num_places() { return 0; }
+    [[nodiscard]] static PlaceGrid grid() { return {}; }
     [[nodiscard]] static std::vector<std::uint32_t>* places() { return nullptr; }
     [[nodiscard]] static const Camera* own_camera() { return nullptr; }
-    static void check() {}
-    template<typename Members>
-    static void members(Members&) {}
+    static void members(auto&) {}
 };
 
 /// Receivers are the points where the rays of a picture first meet the mesh. The other samples see
@@ -67,13 +70,10 @@ struct PixelLayout {
     }
     bool operator==(const PixelLayout&) const = default;
 
-    [[nodiscard]] std::string description() const;
-    [[nodiscard]] std::size_t num_places() const { return num_samples(); }
+    [[nodiscard]] PlaceGrid grid() const { return {width, height, samples_per_axis}; }
     [[nodiscard]] std::vector<std::uint32_t>* places() { return &samples; }
     [[nodiscard]] const Camera* own_camera() const { return &camera; }
-    void check() const;
-    template<typename Members>
-    void members(Members& member) {
+    void members(auto& member) {
         member("width", width);
         member("height", height);
         member("samples_per_axis", samples_per_axis);
@@ -96,13 +96,10 @@ struct TexelLayout {
     [[nodiscard]] std::size_t num_texels() const { return std::size_t{width} * height; }
     bool operator==(const TexelLayout&) const = default;
 
-    [[nodiscard]] std::string description() const;
-    [[nodiscard]] std::size_t num_places() const { return num_texels(); }
+    [[nodiscard]] PlaceGrid grid() const { return {width, height}; }
     [[nodiscard]] std::vector<std::uint32_t>* places() { return &texels; }
     [[nodiscard]] static const Camera* own_camera() { return nullptr; }
-    void check() const;
-    template<typename Members>
-    void members(Members& member) {
+    void members(auto& member) {
         member("width", width);
         member("height", height);
     }
@@ -118,9 +115,7 @@ inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 [[nodiscard]] const ReceiverKind& kind_of(const ReceiverLayout& layout);
 
 /// Whether the receivers are the mesh's vertices.
-[[nodiscard]] inline bool on_vertices(const ReceiverLayout& layout) {
-    return kind_of(layout).are_vertices;
-}
+[[nodiscard]] bool on_vertices(const ReceiverLayout& layout);
 
 /// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each" or "texels 512 x 512".
 [[nodiscard]] std::string description(const ReceiverLayout& layout);
@@ -133,5 +128,9 @@ inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 
 /// Returns the camera that the receivers belong to. Null: none.
 [[nodiscard]] const Camera* own_camera(const ReceiverLayout& layout);
+
+/// Checks the size and the camera of pixels or texels, before anything is done with them.
+/// Throws:  std::invalid_argument.
+void check_size(const ReceiverLayout& layout);
 
 } // namespace relumine::prt

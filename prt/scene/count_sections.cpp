@@ -190,7 +190,6 @@ const SectionGroup CountSections = {
             counts.num_leaves = scene.transfer.quadtree.num_leaves();
             read_counts(reader, counts);
         },
-    .check = [](const SceneCheck&, const Scene&) {},
     .is_light = true};
 
 } // namespace relumine::prt

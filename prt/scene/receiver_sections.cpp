@@ -1,5 +1,3 @@
-#include "prt/scene/receiver_sections.h"
-
 #include <algorithm>
 #include <stdexcept>
 
@@ -9,6 +7,7 @@
 #include "prt/glossy/lobe_list.h"
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/json_members.h"
+#include "prt/scene/section_group.h"
 
 namespace relumine::prt {
 
@@ -113,12 +112,8 @@ ReceiverLayout layout_of(const files::Json& json) {
         if (on_vertices(layout) || kind_of(layout).name != json.at("kind").string())
             continue;
         JsonMembers members(json);
-        std::visit(
-            [&](auto& own) {
-                own.members(members);
-                own.check();
-            },
-            layout);
+        std::visit([&](auto& own) { own.members(members); }, layout);
+        check_size(layout);
         return layout;
     }
     throw std::out_of_range("expected pixels or texels");
@@ -135,10 +130,10 @@ void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surface
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
         const LobeFacts& lobe = facts_of(surfaces[i].highlight);
         const float shape = surfaces[i].roughness_or_exponent;
-        check.that(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack,
-                   fmt::format("{} of 0 to {}", lobe.shape.empty() ? "roughness" : lobe.shape,
-                               lobe.largest_shape),
-                   fmt::format("element {}: {}", i, shape));
+        if (!(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack))
+            check.fail(fmt::format("{} of 0 to {}", lobe.shape.empty() ? "roughness" : lobe.shape,
+                                   lobe.largest_shape),
+                       fmt::format("element {}: {}", i, shape));
     }
 }
 
@@ -156,10 +151,9 @@ void check_receivers(const SceneCheck& check, const Scene& scene) {
     check_surfaces(check, receivers.surfaces);
 }
 
-} // namespace
-
-void add_receiver_sections(NewSections& sections, const Receivers& receivers,
-                           const ReceiverLayout& layout) {
+/// What the mesh alone does not tell. Plain vertices add nothing.
+void add_receivers(NewSections& sections, const Scene& scene) {
+    const Receivers& receivers = scene.receivers;
     const auto fits = [&](std::size_t size) {
         return size == 0 || size == receivers.size();
     };
@@ -167,14 +161,15 @@ void add_receiver_sections(NewSections& sections, const Receivers& receivers,
         throw std::invalid_argument(
             fmt::format("expected none or {} directions to the eye and surfaces, got {} and {}",
                         receivers.size(), receivers.to_eye.size(), receivers.surfaces.size()));
-    if (!on_vertices(layout))
-        add_places(sections, layout, receivers);
+    if (!on_vertices(scene.layout))
+        add_places(sections, scene.layout, receivers);
     if (!receivers.to_eye.empty())
         sections["r_to_eye"] = SectionContent::view(receivers.to_eye);
     if (!receivers.surfaces.empty())
         add_surfaces(sections, receivers.surfaces);
 }
 
+/// A file without a layout has vertices.
 ReceiverLayout read_layout(const SectionReader& reader) {
     ReceiverLayout layout;
     if (!reader.has(Layout))
@@ -193,13 +188,14 @@ ReceiverLayout read_layout(const SectionReader& reader) {
     return layout;
 }
 
-Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layout,
-                         const mesh::TriangleMesh& mesh) {
-    Receivers receivers;
-    if (on_vertices(layout)) {
+void read_receivers(const SectionReader& reader, Scene& scene) {
+    const mesh::TriangleMesh& mesh = scene.mesh;
+    scene.layout = read_layout(reader);
+    Receivers& receivers = scene.receivers;
+    if (on_vertices(scene.layout)) {
         receivers = vertex_receivers(mesh);
     } else {
-        const std::size_t num_own = places(layout).size();
+        const std::size_t num_own = places(scene.layout).size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
         // A plan has no bounces yet.
@@ -214,19 +210,11 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
     }
     receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());
-    return receivers;
 }
 
+} // namespace
+
 const SectionGroup ReceiverSections = {
-    .add =
-        [](NewSections& sections, const Scene& scene) {
-            add_receiver_sections(sections, scene.receivers, scene.layout);
-        },
-    .read =
-        [](const SectionReader& reader, Scene& scene) {
-            scene.layout = read_layout(reader);
-            scene.receivers = read_receivers(reader, scene.layout, scene.mesh);
-        },
-    .check = check_receivers};
+    .add = add_receivers, .read = read_receivers, .check = check_receivers};
 
 } // namespace relumine::prt

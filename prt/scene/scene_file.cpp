@@ -8,7 +8,6 @@
 #include <xxhash.h>
 
 #include "files/output_file.h"
-#include "prt/scene/scene_sections.h"
 #include "prt/scene/section_group.h"
 
 namespace relumine::prt {

@@ -17,7 +17,9 @@ struct SectionGroup {
     /// Throws: as SectionReader.
     void (*read)(const SectionReader& reader, Scene& scene);
     /// Checks that the values can be lit and drawn, before a write and after a read.
-    void (*check)(const SceneCheck& check, const Scene& scene);
+    void (*check)(const SceneCheck& check, const Scene& scene) = [](const SceneCheck&,
+                                                                    const Scene&) {
+    };
     /// Light that plans do not have yet.
     bool is_light = false;
 };
@@ -30,5 +32,19 @@ extern const SectionGroup SettingsSections, MeshSections, MaterialSections, Rece
 /// Returns what a place should be, for messages.
 [[nodiscard]] std::string expected_place(const Scene& scene);
 void check_camera(const SceneCheck& check, const Scene& scene, const Camera& camera);
+
+/// Does what load_scene() does, for a file's sections as read_sections() gives them. `path` is for
+/// messages only.
+/// Throws: as load_scene() does.
+[[nodiscard]] Scene scene_of(const std::filesystem::path& path, Sections&& sections);
+
+/// Does the same for a scene whose counts are missing, as sections_without_light() makes it.
+[[nodiscard]] Scene plan_of(const std::filesystem::path& path, Sections&& sections);
+
+/// Returns the sections of a scene without counts, highlights and bounces. They refer to the scene,
+/// which must last until they are written.
+/// Throws: as save_scene() does.
+[[nodiscard]] NewSections sections_without_light(const std::filesystem::path& path,
+                                                 const Scene& scene);
 
 } // namespace relumine::prt

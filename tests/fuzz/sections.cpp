@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "prt/scene/scene_sections.h"
+#include "prt/scene/section_group.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/scene_target.h"
 #include "tests/fuzz/section_names.h"

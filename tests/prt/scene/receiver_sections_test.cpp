@@ -1,4 +1,4 @@
-#include "prt/scene/receiver_sections.h"
+#include "prt/scene/section_group.h"
 
 #include <cstring>
 #include <filesystem>
@@ -152,8 +152,8 @@ TEST_F(ReceiverSectionsTest, TheSameSceneGivesTheSameBytes) {
     Scene scene = pixel_scene();
     add_surfaces(scene);
     NewSections first, second;
-    add_receiver_sections(first, scene.receivers, scene.layout);
-    add_receiver_sections(second, scene.receivers, scene.layout);
+    ReceiverSections.add(first, scene);
+    ReceiverSections.add(second, scene);
     EXPECT_EQ(scenes::made(first), scenes::made(second));
 }
 
