@@ -212,7 +212,7 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     const std::vector<std::pair<const char*, const char*>> floats = {
         {"r_positions", "coordinates"},           {"r_normals", "normals of length 1 or 0"},
         {"r_to_eye", "to the eye of length 1"},   {"r_albedo", "albedo 0 to 1"},
-        {"r_specular", "specular colour 0 to 1"}, {"r_shape", "roughness of 0 to 1"},
+        {"r_specular", "specular colour 0 to 1"}, {"r_shape", "exponent of 0 to 1000000"},
         {"r_barycentric", "'r_barycentric'"}};
     for (const auto& [name, reason] : floats)
         for (const float value : {nan, std::numeric_limits<float>::infinity(), 3e38f, -1e20f})
