@@ -1,6 +1,5 @@
 #include "prt/scene/scene_file.h"
 
-#include <array>
 #include <stdexcept>
 #include <utility>
 
@@ -13,11 +12,6 @@
 namespace relumine::prt {
 
 namespace {
-
-/// The list, in the order in which groups are read and checked.
-const std::array AllSections = {&SettingsSections, &MeshSections,    &MaterialSections,
-                                &ReceiverSections, &ClusterSections, &CountSections,
-                                &GlossySections,   &BounceSections};
 
 void check_scene(const Scene& scene, const std::filesystem::path& path) {
     const SceneCheck check(path);

@@ -1,6 +1,8 @@
 // A group of sections of the .prt file: what is written, read and checked together.
 #pragma once
 
+#include <array>
+
 #include "prt/scene/scene_check.h"
 #include "prt/scene/scene_file.h"
 #include "prt/scene/section_file.h"
@@ -8,7 +10,6 @@
 
 namespace relumine::prt {
 
-/// The list of groups is in scene_file.cpp.
 struct SectionGroup {
     /// Adds the sections that the scene needs. They refer to the scene.
     /// Throws: std::invalid_argument for parts of a scene that do not fit each other.
@@ -26,6 +27,11 @@ struct SectionGroup {
 
 extern const SectionGroup SettingsSections, MeshSections, MaterialSections, ReceiverSections,
     ClusterSections, CountSections, GlossySections, BounceSections;
+
+/// The list, in the order in which groups are read and checked.
+inline const std::array AllSections = {&SettingsSections, &MeshSections,    &MaterialSections,
+                                       &ReceiverSections, &ClusterSections, &CountSections,
+                                       &GlossySections,   &BounceSections};
 
 /// Whether rays can start at a place of the scene, lifted by its bias.
 [[nodiscard]] bool can_start_rays(const Scene& scene, const glm::vec3& place);
