@@ -105,7 +105,8 @@ void ReceiverOptions::check() const {
 Report layout_json(const prt::Scene& scene) {
     if (prt::on_vertices(scene.layout))
         return {};
-    Report report = {{"kind", prt::kind_of(scene.layout).name}};
+    Report report;
+    report.set("kind", prt::kind_of(scene.layout).name);
     prt::ReceiverLayout layout = scene.layout;
     std::visit(
         [&](auto& own) {

@@ -40,12 +40,12 @@ public:
     /// A member that is left out where the value is the usual one.
     template<typename Value>
     void unusual(const char* name, Value& value, const Value& usual) {
-        if (from_ != nullptr ? from_->contains(name) : value != usual)
+        if (from_ != nullptr ? from_->find(name) != nullptr : value != usual)
             (*this)(name, value);
     }
 
     /// What was written.
-    files::Json json = files::Json::object();
+    files::Json json = files::Json::Object();
 
 private:
     template<typename Value>
@@ -64,7 +64,8 @@ private:
     static void take(const files::Json& from, glm::vec3& value) {
         if (from.values().size() != 3)
             throw std::out_of_range("expected three numbers");
-        value = {real(from.at(0)), real(from.at(1)), real(from.at(2))};
+        const files::Json::Array& v = from.values();
+        value = {real(v[0]), real(v[1]), real(v[2])};
     }
     template<typename Element>
     static void take(const files::Json& from, std::vector<Element>& values) {

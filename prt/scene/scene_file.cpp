@@ -4,7 +4,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "files/output_file.h"
 #include "prt/scene/section_group.h"
@@ -81,11 +80,6 @@ Scene scene_of(const std::filesystem::path& path, Sections&& sections) {
 
 Scene plan_of(const std::filesystem::path& path, Sections&& sections) {
     return read_scene({path, std::move(sections)}, true);
-}
-
-std::uint64_t file_hash(const std::filesystem::path& path) {
-    const std::vector<std::byte> bytes = files::read(path);
-    return XXH64(bytes.data(), bytes.size(), 0);
 }
 
 } // namespace relumine::prt

@@ -15,6 +15,7 @@
 #include <zstd.h>
 
 #include "files/compression.h"
+#include "files/hash.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
 
@@ -68,7 +69,7 @@ std::uint64_t table_checksum(const Header& header, std::span<const SectionEntry>
     std::memcpy(bytes.data(), &header, offsetof(Header, checksum));
     if (!table.empty())
         std::memcpy(bytes.data() + offsetof(Header, checksum), table.data(), table.size_bytes());
-    return XXH64(bytes.data(), bytes.size(), 0);
+    return files::hash_of(bytes);
 }
 
 class Reader {
@@ -179,7 +180,7 @@ private:
     }
 
     void check(const SectionEntry& entry) const {
-        if (XXH64(bytes_.data() + entry.offset, entry.stored_size, 0) != entry.checksum)
+        if (files::hash_of({bytes_.data() + entry.offset, entry.stored_size}) != entry.checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
     }
 
