@@ -22,7 +22,8 @@ mesh::TriangleMesh read(Sections sections, const mesh::TriangleMesh& from) {
 
 Sections written(const mesh::TriangleMesh& mesh) {
     NewSections sections;
-    Scene scene{.mesh = mesh};
+    Scene scene;
+    scene.mesh = mesh;
     scene.receivers.surfaces.resize(1); // textures are for surfaces
     MaterialSections.add(sections, scene);
     return scenes::made(sections);
