@@ -16,12 +16,12 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
-#include "relight/block_kernels.h"
-#include "relight/cluster_lights.h"
-#include "relight/glossy_kernels.h"
-#include "relight/light_packets.h"
+#include "relight/kernels/block_kernels.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/kernels/glossy_kernels.h"
 #include "relight/light_pyramid.h"
-#include "relight/traced_light.h"
+#include "relight/sharp/light_packets.h"
+#include "relight/sharp/traced_light.h"
 
 namespace relumine::relight {
 
@@ -494,7 +494,7 @@ glm::dvec3 Relighter::Impl::from_cluster(std::size_t place, std::size_t cluster)
                                                   block % prt::VisibleCounts::TileBlocks);
     const glm::vec3& normal = transfer_.normals[place];
     return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
-                                                        : lights_.of_beams(cluster, normal));
+                                                        : lights_.of_directional(cluster, normal));
 }
 
 /// Updates the radiance for the clusters in `changed_`, which ascend and whose sums_ are new.
