@@ -40,7 +40,7 @@ void set_embree(const char* settings) {
 } // namespace relumine::processor
 
 /// Stands before Embree's own function, which it calls.
-RTC_API extern "C" RTCDevice rtcNewDevice(const char* config) {
+RTC_API RTCDevice rtcNewDevice(const char* config) {
     using Start = RTCDevice (*)(const char*);
     static const auto start = reinterpret_cast<Start>(::dlsym(RTLD_NEXT, "rtcNewDevice"));
     if (embree_settings != nullptr)

@@ -18,10 +18,10 @@
 #include "prt/scene/section_file.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
+#include "tests/processor/limits.h"
 #include "tests/prt/every_target.h"
 #include "tests/prt/older_sections.h"
 #include "tests/prt/scenes.h"
-#include "tests/processor/limits.h"
 
 namespace relumine::prt {
 namespace {
