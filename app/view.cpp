@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -14,7 +16,6 @@
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
-#include "app/options/size_text.h"
 #include "app/scenes/lit_scene.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
@@ -32,9 +33,8 @@ struct Options {
     std::string layers;
     std::string script;
     std::string screenshot;
-    std::string size = "1440x860";
-    std::string exposure = "auto";
-    std::string tone_map = "neutral";
+    /// The window's size, the exposure and the tone curve of pictures count.
+    relumine::OutputOptions picture = {.width = 1440, .height = 860};
 };
 
 #ifdef RELUMINE_VIEWER_MISSING
@@ -45,17 +45,6 @@ void run(const Options& /*options*/, Session& /*session*/) {
 }
 
 #else
-
-void set_size(const std::string& text, viewer::ViewOptions& view) {
-    const std::optional<SizeText> size = parse_size_text(text);
-    const auto fits = [](std::uint32_t side) {
-        return side >= 320 && side <= 16384;
-    };
-    if (!size || !fits(size->width) || !fits(size->height))
-        throw UsageError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
-    view.width = static_cast<int>(size->width);
-    view.height = static_cast<int>(size->height);
-}
 
 /// Without an environment: an even grey, in which layers show.
 cubemap::CubeMap plain_grey() {
@@ -103,8 +92,9 @@ void report(const viewer::ViewReport& result, const relight::LightEditor& editor
 
 void run(const Options& options, Session& session) {
     viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
-    set_size(options.size, view);
-    const std::optional<double> exposure_ev = parse_exposure(options.exposure);
+    view.width = static_cast<int>(options.picture.width);
+    view.height = static_cast<int>(options.picture.height);
+    const std::optional<double> exposure_ev = options.picture.exposure_ev;
     if (!options.screenshot.empty())
         check_output(options.screenshot,
                      {options.scene.path, options.environment.path, options.script});
@@ -145,7 +135,7 @@ void run(const Options& options, Session& session) {
     state.scene_look.exposure_ev = static_cast<float>(
         exposure_ev ? *exposure_ev : Painter(lit, {}).choose_exposure_ev(lit.lighting()));
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
-    state.scene_look.tone = relight::tone_curve(options.tone_map).value_or(ToneCurve::Neutral);
+    state.scene_look.tone = options.picture.tone;
     state.environment_look.tone = state.scene_look.tone;
     report(viewer::view(state, view), editor, session);
     session.poll();
@@ -162,8 +152,10 @@ void add_view(Command& program, Session& session) {
     options->environment.add_to(command).required(false);
     options->bounces.add_to(command);
     command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
-    add_exposure_options(command, options->exposure, options->tone_map);
-    command.add_option("--size", options->size, "the window's size").show_default();
+    constexpr std::array<std::string_view, 2> OfPictures = {"--exposure", "--tone-map"};
+    command.add(only(OfPictures, options_of(options->picture)));
+    command.add(
+        size_row(options->picture.width, options->picture.height, "the window's size", 320));
     command
         .add_option("--script", options->script,
                     "play a script instead of waiting for a person (docs/viewer.md)")

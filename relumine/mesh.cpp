@@ -124,6 +124,50 @@ std::string prefix_of(const Mesh& mesh) {
 
 } // namespace
 
+OptionRow crease_row(std::optional<float>& degrees) {
+    return row("--crease", degrees,
+               "normals from the faces: smooth over edges up to so many degrees, broken beyond")
+        .between(0, 180)
+        .called("DEGREES");
+}
+
+OptionTable options_of(MeshOptions& o) {
+    return {
+        row("--floor", o.floor_vertices,
+            "add a floor of N x N vertices under the mesh; 193 when no N is given")
+            .between(2, 65535)
+            .when_bare("193", "[N]"),
+        row("--floor-scale", o.floor_scale,
+            "side of the floor over the mesh's width, or half its height if that is more")
+            .between(1e-6, 1e6)
+            .needing("--floor"),
+        row("--up", o.up, "the mesh's axis that points up (y; z for .stl, which comes from CAD)"),
+        row("--normals", o.normals,
+            "vertex normals: the file's where it has them, or always smooth"),
+        crease_row(o.crease)};
+}
+
+OptionTable options_of(RefineOptions& o) {
+    return {row("--error", o.error,
+                "split edges while the light at their middle may differ so much from the mean of "
+                "their ends: RMS of the transfer, 1/sr")
+                .between(0, 1),
+            row("--max-vertices", o.max_vertices,
+                "let the mesh grow to so many vertices; the edges that matter most come first")
+                .between(1, 4294967294.0)
+                .called("N")
+                .without_default(),
+            row("--min-edge", o.min_edge,
+                "leave no edges shorter than this, in the mesh's unit (1/1000 of its diagonal)")
+                .between(0, LargestPosition)
+                .called("LENGTH"),
+            row("--max-edge", o.max_edge, "split all edges that are longer than this")
+                .between(0, LargestPosition)
+                .called("LENGTH"),
+            row("--curved", o.curved,
+                "put new vertices on the smooth surface that the normals pretend")};
+}
+
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
     Mesh mesh(mesh::load(path, options.normals));
     mesh.source = path.string();

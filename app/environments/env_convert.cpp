@@ -10,7 +10,6 @@
 #include "app/environments/split_sun.h"
 #include "app/options/environment_options.h"
 #include "app/options/output_options.h"
-#include "app/options/size_text.h"
 #include "cubemap/doctor/statistics.h"
 #include "cubemap/image/convention.h"
 #include "cubemap/image/image_layout.h"
@@ -24,7 +23,7 @@ struct ConvertArguments {
     EnvironmentOptions input;
     std::string output;
     /// Empty: what `to` usually reads
-    std::string to_layout;
+    std::optional<cubemap::Layout> to_layout;
     std::string to = "openexr";
     /// W or WxH
     std::string size;
@@ -37,8 +36,8 @@ struct ConvertArguments {
 std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
     if (text.empty())
         return std::nullopt;
-    if (const auto size = parse_size_text(text))
-        return cubemap::ImageSize{size->width, size->height};
+    if (const auto sides = parse_sides(text))
+        return cubemap::ImageSize{sides->first, sides->second};
     const auto width = parse_count(text);
     if (!width)
         throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
@@ -92,8 +91,7 @@ cubemap::Layout target_layout(const ConvertArguments& options,
     cubemap::Layout layout = to.has_attribute ? image.layout : to.usual_layout;
     if (six_files)
         layout = cubemap::Layout::Cube;
-    if (!options.to_layout.empty())
-        layout = parse_layout(options.to_layout);
+    layout = options.to_layout.value_or(layout);
     if (!to.reads(layout))
         throw UsageError("--to-layout",
                          fmt::format("expected {} with --to {}, got {}", layouts_of(to), to.name,
@@ -144,7 +142,8 @@ void run(const ConvertArguments& options, Session& session) {
         sampling = cubemap::Sampling::TexelCentres;
     Report result = {{"input", described(from, image, cubemap::statistics(image))}};
     watch.lap();
-    const glm::dmat3 world_from_image = options.input.world_from_image(image.layout);
+    const glm::dmat3 world_from_image =
+        relumine::world_from_image(image.layout, options.input);
     SunFile::Split sun;
     if (sun_file)
         sun = sun_file->split(image, world_from_image, options.input.path);
@@ -180,13 +179,10 @@ void run(const ConvertArguments& options, Session& session) {
 void add_convert(Command& group, Session& session) {
     Command command = group.add_command("convert", "from one layout and program to another");
     auto options = std::make_shared<ConvertArguments>();
-    std::vector<std::string> names;
     std::string list =
         "\n\nCONVENTIONS (u to the right, v down, both in [0, 1]; docs/environments.md)\n";
-    for (const cubemap::Convention& convention : cubemap::conventions()) {
-        names.emplace_back(convention.name);
+    for (const cubemap::Convention& convention : cubemap::conventions())
         list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
-    }
     command.footer(list);
     command
         .add_option("IN", options->input.path,
@@ -197,13 +193,12 @@ void add_convert(Command& group, Session& session) {
         .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
         .file()
         .required();
-    options->input.add_reading_to(command);
-    command
-        .add_option("--to-layout", options->to_layout,
-                    "layout of OUT (IN's; with --to, what that program reads)")
-        .one_of(layout_names());
-    command.add_option("--to", options->to, "whose convention OUT follows")
-        .one_of(names)
+    OptionTable reading = options_of(options->input);
+    reading.pop_back(); // --face-resolution, which is OUT's here
+    command.add(std::move(reading));
+    command.add_option<LayoutText>("--to-layout", options->to_layout,
+                                   "layout of OUT (IN's; with --to, what that program reads)");
+    command.add_option<ConventionText>("--to", options->to, "whose convention OUT follows")
         .show_default();
     command.add_option(
         "--size", options->size,

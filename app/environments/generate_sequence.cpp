@@ -68,7 +68,7 @@ void generate_sequence(const GenerateSequenceOptions& options, const std::string
     const std::string name =
         (std::filesystem::path(folder) / fmt::format("{}.%04d.exr", sequence.name)).string();
     const std::optional<cubemap::FramePattern> pattern = cubemap::FramePattern::parse(name);
-    const cubemap::Layout layout = parse_layout(options.layout);
+    const cubemap::Layout layout = LayoutText::read(options.layout);
     make_folder(folder);
     const auto progress = session.progress("frames");
     std::uint32_t resolution = 0;

@@ -92,7 +92,7 @@ void check_outputs(const LightsArguments& options) {
 /// resolution, by way of a cube map.
 cubemap::EnvironmentImage load_lat_long(const EnvironmentOptions& options, Session& session) {
     cubemap::EnvironmentImage image = load_image(options, session);
-    const bool is_turned = options.world_from_image(image.layout) != glm::dmat3(1.0);
+    const bool is_turned = world_from_image(image.layout, options) != glm::dmat3(1.0);
     if (image.layout == cubemap::Layout::LatLong && options.face_resolution == 0 && !is_turned) {
         warn_about(options, image, cubemap::statistics(image).light_from_below, session);
         return image;

@@ -32,7 +32,7 @@ struct MeshFiles {
         command.add_option("-o,--output", output, "the mesh file to write, .ply, .glb or .obj")
             .file()
             .required();
-        add_crease_option(command, crease);
+        command.add(crease_row(crease));
     }
 
     void check() const {
@@ -179,15 +179,6 @@ Mesh simplified_to(Mesh mesh, std::uint32_t num_vertices, const Session& session
     session.add_to_report("simplified",
                           Report({{"vertices_before", num_before}, {"vertices", num_after}}));
     return result;
-}
-
-void add_crease_option(Command& command, std::optional<float>& degrees) {
-    command
-        .add_option("--crease", degrees,
-                    "normals from the faces: smooth over edges up to so many degrees, broken "
-                    "beyond")
-        .between(0.0, 180.0)
-        .type_name("DEGREES");
 }
 
 void add_mesh(Command& program, Session& session) {

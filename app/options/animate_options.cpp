@@ -17,16 +17,29 @@ namespace relumine::app {
 namespace fs = std::filesystem;
 
 void AnimateOptions::add_to(Command& command) {
+    command_ = command;
     scene.add_to(command);
     command
         .add_option(
             "FRAMES", frames,
             "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
         .file()
-        .required();
-    command.add_option("--frames", range,
-                       "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)");
-    environment.add_conversion_to(command);
+        .required()
+        .shapes_no_frame();
+    command
+        .add_option("--frames", range,
+                    "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)")
+        .shapes_no_frame();
+    command.add(options_of(environment));
+    add_methods_to(command);
+    bounces.add_to(command);
+    output.add_to(command).required(false).description(
+        "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
+        "(numbers), .ply, .glb");
+    add_outputs_to(command);
+}
+
+void AnimateOptions::add_methods_to(Command& command) {
     command
         .add_option("--method", method,
                     "prt: clusters' transfer, exact; clusters: lights that live over many frames "
@@ -56,27 +69,24 @@ void AnimateOptions::add_to(Command& command) {
     command.add_flag("--even", even,
                      "clusters: lights are equally strong over all their frames, as in the paper");
     command.add_option("--seed", seed, "of the random numbers").show_default();
-    bounces.add_to(command);
-    output.add_to(command).required(false).description(
-        "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
-        "(numbers), .ply, .glb");
-    command
-        .add_option("--vertices", vertices,
-                    "all frames in one .npy [frames x receivers x 3]: radiance times albedo")
-        .file();
-    command
-        .add_option("--measure", reference,
-                    "another --vertices file of the same frames: says how much this one flickers "
-                    "against it")
-        .file();
-    command.add_option("--plot", plot, "of --measure: flicker over frames, .svg").file();
-    command.add_option("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed")
-        .file();
+}
+
+void AnimateOptions::add_outputs_to(Command& command) {
+    const auto file = [&](const std::string& name, std::string& path, const std::string& help) {
+        command.add_option(name, path, help).file().shapes_no_frame();
+    };
+    file("--vertices", vertices,
+         "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
+    file("--measure", reference,
+         "another --vertices file of the same frames: says how much this one flickers against it");
+    file("--plot", plot, "of --measure: flicker over frames, .svg");
+    file("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
     command.add_option("--fps", frames_per_second, "frames per second of the movie")
         .between(0.01, 1000.0)
-        .show_default();
-    command.add_flag("--resume", resume,
-                     "keep frames that are there already, from the same inputs");
+        .show_default()
+        .shapes_no_frame();
+    command.add_flag("--resume", resume, "keep frames that are there already, from the same inputs")
+        .shapes_no_frame();
 }
 
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {
@@ -131,17 +141,12 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
 }
 
 std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
-    std::string all = fmt::format(
-        "{} {} {}\n{}\n{} {} {} {}\n{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
-        scene.clusters_only, environment.settings(), method, bound, num_lights, seed, output.path,
-        output.settings(),
-        bounces.limits().num_bounces ? fmt::format("{}", *bounces.limits().num_bounces) : "all");
-    if (method == "clusters") { // every frame depends on all
-        all += fmt::format("\n{} {} {} {}", num_clusters, num_samples, fade, even);
+    std::string all = fmt::format("{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
+                                  command_->settings());
+    if (method == "clusters") // every frame depends on all
         for (const cubemap::FrameFile& frame : sequence.files())
             for (const fs::path& file : cubemap::environment_files(frame.path))
                 all += '\n' + FrameRecord::stamp(file);
-    }
     return all;
 }
 

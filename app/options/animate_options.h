@@ -60,6 +60,12 @@ struct AnimateOptions {
     [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
     /// All that shapes every frame, for FrameRecord.
     [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
+
+private:
+    void add_methods_to(Command& command);
+    void add_outputs_to(Command& command);
+
+    std::optional<Command> command_;
 };
 
 } // namespace relumine::app

@@ -24,7 +24,7 @@ namespace {
 
 struct InfoArguments {
     std::string path;
-    std::string layout;
+    std::optional<cubemap::Layout> layout;
     std::string picture;
     bool check = false;
 };
@@ -123,10 +123,8 @@ void add_info(Command& program, Session& session) {
                     ".prt, .exr, .hdr, .obj, .gltf, .glb, .ply, .off or .stl")
         .file()
         .required();
-    command
-        .add_option("--layout", options->layout,
-                    "layout of an environment, where the file does not tell")
-        .one_of(layout_names());
+    command.add_option<LayoutText>("--layout", options->layout,
+                                   "layout of an environment, where the file does not tell");
     command
         .add_option("--picture", options->picture,
                     "draw an environment, lat-long with the axes and the sun marked, or a mesh "

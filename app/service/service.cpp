@@ -53,11 +53,11 @@ std::string with_dashes(std::string name) {
 }
 
 /// The name of an option's member: "exposure" of --exposure, "scene" of SCENE.
-std::string member_of(const OptionTable& option) {
-    std::string name = option.argument;
+std::string member_of(const OptionRow& option) {
+    std::string name = option.name;
     std::transform(name.begin(), name.end(), name.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const std::string& each : option.names)
+    for (const std::string& each : option.names())
         if (each.starts_with("--"))
             name = each.substr(2);
     return name;
@@ -90,13 +90,13 @@ Report id_of(double number) {
                : Report(number);
 }
 
-Argument argument_of(const JsonReader& json, const OptionTable& option, const JsonValue& value) {
+Argument argument_of(const JsonReader& json, const OptionRow& option, const JsonValue& value) {
     const std::string name = member_of(option);
-    if (option.value == OptionTable::Value::None)
+    if (option.kind == OptionRow::Kind::Flag)
         return {.option = json.boolean(value, fmt::format("\"{}\"", name)) ? "--" + name : "",
                 .value = {}};
     const std::string text = value_text(json, value, name);
-    if (option.names.empty())
+    if (option.is_argument())
         return {.option = {}, .value = text};
     return {.option = fmt::format("--{}={}", name, text), .value = {}};
 }
@@ -306,9 +306,9 @@ void Service::Impl::declare_help(Command& command) {
             (this->*request.declare)(below);
             Report members;
             const CommandTable table = line.table();
-            for (const OptionTable& option : table.commands.front().options)
+            for (const OptionRow& option : table.commands.front().options)
                 if (member_of(option) != "help")
-                    members.set(member_of(option), option.description);
+                    members.set(member_of(option), option.help);
             all.push_back(
                 {{"do", request.name}, {"description", request.description}, {"members", members}});
         }
@@ -333,9 +333,9 @@ void Service::Impl::perform(const JsonReader& reader, const JsonValue& root) {
     Command command = line.root().add_command(request.name, request.description);
     (this->*request.declare)(command);
 
-    const std::vector<OptionTable> options = line.table().commands.front().options;
+    const OptionTable options = line.table().commands.front().options;
     std::vector<std::string> known = {"do", "id"};
-    for (const OptionTable& option : options)
+    for (const OptionRow& option : options)
         if (member_of(option) != "help")
             known.push_back(member_of(option));
     std::vector<std::string> words = {request.name};
@@ -349,9 +349,9 @@ void Service::Impl::perform(const JsonReader& reader, const JsonValue& root) {
                                                 files::did_you_mean(member, known)));
         if (member == "do" || member == "id")
             continue;
-        const OptionTable& option =
+        const OptionRow& option =
             *std::find_if(options.begin(), options.end(),
-                          [&](const OptionTable& each) { return member_of(each) == member; });
+                          [&](const OptionRow& each) { return member_of(each) == member; });
         if (member == "layers" && std::holds_alternative<JsonValue::Array>(value.value)) {
             layers = &value;
             words.emplace_back("--layers=a list");

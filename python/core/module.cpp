@@ -6,6 +6,7 @@
 
 #include "arrays.h"
 #include "files/parallel.h"
+#include "options.h"
 #include "relumine/relumine.h"
 #include "run.h"
 #include "scene.h"
@@ -39,6 +40,7 @@ PYBIND11_MODULE(_core, module) {
     });
     bind_arrays(module);
     bind_run(module);
+    bind_options(module);
     bind_scenes(module);
     bind_environments(module);
     bind_lights(module);

@@ -1,0 +1,287 @@
+// Options as data. Each is declared once, in options_of() beside the struct that it fills: name,
+// variable, help, range, and where it counts. The command line, `relumine serve`, Python, manual
+// pages, completion, docs/command-line.md and the record of `animate --resume` read these rows.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+namespace relumine {
+
+/// An option that does not fit: "--fov: expected 0.01 to 179, got '200'".
+class OptionError : public std::invalid_argument {
+public:
+    explicit OptionError(const std::string& message) : std::invalid_argument(message) {}
+    OptionError(std::string name, const std::string& why)
+        : std::invalid_argument(name + ": " + why), option(std::move(name)), reason(why) {}
+    /// "--fov"; empty where the message is of no single option
+    std::string option = {};
+    std::string reason = {};
+};
+
+/// One option, bound to its variable. The variable must outlive the row.
+struct OptionRow {
+    enum class Kind { Flag, Text, Choice, File, Folder };
+    /// Kinds of receivers, to be joined
+    enum Receivers : unsigned { Vertices = 1, Pixels = 2, Texels = 4 };
+
+    /// "--fov", "-o,--output"; "MESH" for an argument
+    std::string name = {};
+    std::string help = {};
+    Kind kind = Kind::Text;
+    /// What the help calls the value: "FLOAT"
+    std::string type = {};
+    /// The allowed words of a Kind::Choice
+    std::vector<std::string> choices = {};
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
+    /// A value for tests and documents, where the type does not tell of one
+    std::string example = {};
+    /// The variable as text when it was declared: its default
+    std::string initial = {};
+    /// Stands for a value that is left out; none: it may not be.
+    std::optional<std::string> bare = {};
+    /// Another option, by its name: this one is refused without it, or beside it.
+    std::string needs = {};
+    std::string excludes = {};
+    bool is_required = false;
+    /// May be given several times
+    bool repeats = false;
+    /// The help shows the value that the variable has at first.
+    bool shows_default = true;
+    /// Files made under another value differ: the record of `animate --resume` has the option.
+    bool shapes_frames = true;
+    /// The receivers of scenes that have a use for it; "camera": what the others have not
+    unsigned receivers = Vertices | Pixels | Texels;
+    std::string part = {};
+
+    /// Sets the variable from one text, or several where it repeats. Throws std::invalid_argument.
+    std::function<void(std::span<const std::string>)> read = {};
+    /// The variable as a text that read() takes; empty: nothing is set.
+    std::function<std::string()> show = {};
+
+    // Settings, to be chained: row(...).between(0, 1)
+    OptionRow between(double least, double most) &&;
+    OptionRow example_of(std::string text) &&;
+    OptionRow only_for(unsigned kinds_of_receivers, std::string part_of_picture) &&;
+    OptionRow when_bare(std::string text, std::string type_name) &&;
+    OptionRow called(std::string type_name) &&;
+    OptionRow without_default() &&;
+    OptionRow needing(std::string other) &&;
+    OptionRow excluding(std::string other) &&;
+
+    [[nodiscard]] bool is_argument() const { return !name.starts_with('-'); }
+    /// "-o", "--output"; none for an argument
+    [[nodiscard]] std::vector<std::string> names() const;
+    /// "--output"; "MESH" for an argument
+    [[nodiscard]] std::string long_name() const;
+    /// "floor_fade" of --floor-fade: as Python and requests spell it
+    [[nodiscard]] std::string key() const;
+    /// "0.01 to 179"; empty: all numbers
+    [[nodiscard]] std::string range() const;
+    /// What the help shows as default
+    [[nodiscard]] std::string shown_default() const { return shows_default ? initial : ""; }
+
+    /// Checks texts and sets the variable. Throws OptionError.
+    void set(std::span<const std::string> texts) const;
+    void set(const std::string& text) const { set(std::span(&text, 1)); }
+};
+
+using OptionTable = std::vector<OptionRow>;
+
+/// Returns the rows of these names, in the table's order.
+[[nodiscard]] OptionTable only(std::span<const std::string_view> names, OptionTable table);
+/// Returns all rows but those of these names.
+[[nodiscard]] OptionTable without(std::span<const std::string_view> names, OptionTable table);
+[[nodiscard]] OptionTable joined(std::initializer_list<OptionTable> tables);
+
+/// Returns all options as one text, to tell whether files were made with the same.
+[[nodiscard]] std::string settings_of(const OptionTable& table);
+
+/// The words of an enumeration, in the order of its values. Specialised beside the enumeration.
+template<typename Enum>
+inline constexpr std::span<const std::string_view> WordsOf = {};
+
+/// A number and nothing else, as options read it: "1.5", "-2e3". None for other text.
+[[nodiscard]] std::optional<double> parse_number(const std::string& text);
+
+/// Decimal digits and nothing else, not above 2^32 - 1. None for other text.
+[[nodiscard]] std::optional<std::uint32_t> parse_count(std::string_view text);
+
+/// Two sides with a small x between them: "640x480". None for other text.
+[[nodiscard]] std::optional<std::pair<std::uint32_t, std::uint32_t>>
+parse_sides(std::string_view text);
+
+/// "a,b" as its words; an empty text is one empty word.
+[[nodiscard]] std::vector<std::string> split(std::string_view text, char separator);
+
+/// Numbers with commas between. None for other text.
+[[nodiscard]] std::optional<std::vector<double>> parse_numbers(const std::string& text);
+
+/// Throws std::invalid_argument "expected X, got 'TEXT'".
+[[noreturn]] void refuse_text(const std::string& expected, std::string_view text);
+
+/// "fast, exact or slow"
+[[nodiscard]] std::string one_of_text(std::span<const std::string> choices);
+
+// How values are written: read() and show() are each other's inverse. Options of a kind of their
+// own name a struct like these: row<ColorText>("--albedo", ...).
+
+namespace option_text {
+
+[[nodiscard]] std::uint64_t whole(const std::string& text, std::uint64_t max);
+[[nodiscard]] long double real(const std::string& text, double max);
+[[nodiscard]] std::size_t word(std::span<const std::string_view> words, const std::string& text);
+[[nodiscard]] std::string shown(float number);
+[[nodiscard]] std::string shown(double number);
+
+} // namespace option_text
+
+template<typename T>
+struct ValueText;
+
+template<>
+struct ValueText<std::string> {
+    static constexpr const char* Type = "TEXT";
+    static std::string read(const std::string& text) { return text; }
+    static std::string show(const std::string& value) { return value; }
+};
+
+template<>
+struct ValueText<bool> {
+    static constexpr const char* Type = "";
+    static bool read(const std::string& text);
+    static std::string show(bool value) { return value ? "true" : "false"; }
+};
+
+template<typename T>
+requires std::is_unsigned_v<T>
+struct ValueText<T> {
+    static constexpr const char* Type = "UINT";
+    static T read(const std::string& text) {
+        return static_cast<T>(option_text::whole(text, std::numeric_limits<T>::max()));
+    }
+    static std::string show(T value) { return std::to_string(value); }
+};
+
+template<typename T>
+requires std::is_floating_point_v<T>
+struct ValueText<T> {
+    static constexpr const char* Type = "FLOAT";
+    static T read(const std::string& text) {
+        return static_cast<T>(option_text::real(text, std::numeric_limits<T>::max()));
+    }
+    static std::string show(T value) { return option_text::shown(value); }
+};
+
+template<typename T>
+requires std::is_enum_v<T>
+struct ValueText<T> {
+    static constexpr const char* Type = "TEXT";
+    static std::span<const std::string_view> choices() { return WordsOf<T>; }
+    static T read(const std::string& text) {
+        return static_cast<T>(option_text::word(WordsOf<T>, text));
+    }
+    static std::string show(T value) {
+        return std::string(WordsOf<T>[static_cast<std::size_t>(value)]);
+    }
+};
+
+/// A colour "R,G,B" or one number for all three, each of 0 to 1e6
+struct ColorText {
+    static constexpr const char* Type = "TEXT";
+    static glm::vec3 read(const std::string& text);
+    static std::string show(const glm::vec3& color);
+};
+
+/// Options take no position farther from the origin on any axis: rays begin there, and they must
+/// stay within prt::LargestCoordinate.
+inline constexpr double LargestPosition = 1e18;
+
+/// A point or a direction "X,Y,Z", each within LargestPosition
+struct PointText {
+    static constexpr const char* Type = "TEXT";
+    static glm::vec3 read(const std::string& text);
+    static std::string show(const glm::vec3& point);
+};
+
+/// Declares one option. `Text` says how its value is written; otherwise its type does.
+template<typename Text = void, typename T>
+[[nodiscard]] OptionRow row(std::string name, T& value, std::string help);
+
+// Implementation
+
+namespace option_text {
+
+template<typename T>
+struct Unwrapped {
+    using Type = T;
+};
+template<typename T>
+struct Unwrapped<std::optional<T>> : Unwrapped<T> {};
+template<typename T>
+struct Unwrapped<std::vector<T>> : Unwrapped<T> {};
+
+template<typename T>
+inline constexpr bool IsVector = false;
+template<typename T>
+inline constexpr bool IsVector<std::vector<T>> = true;
+
+template<typename Text, typename T>
+std::string show(const T& value) {
+    if constexpr (requires { Text::show(value); }) {
+        return Text::show(value);
+    } else if constexpr (IsVector<T>) {
+        std::string all;
+        for (const auto& each : value)
+            all += (all.empty() ? "" : " ") + Text::show(each);
+        return all;
+    } else {
+        return value ? Text::show(*value) : std::string();
+    }
+}
+
+} // namespace option_text
+
+template<typename Text, typename T>
+OptionRow row(std::string name, T& value, std::string help) {
+    using Own = typename option_text::Unwrapped<T>::Type;
+    using How = std::conditional_t<std::is_void_v<Text>, ValueText<Own>, Text>;
+    OptionRow result{.name = std::move(name), .help = std::move(help), .type = How::Type};
+    result.repeats = option_text::IsVector<T>;
+    if constexpr (std::is_same_v<T, bool>)
+        result.kind = OptionRow::Kind::Flag;
+    if constexpr (requires { How::choices(); }) {
+        result.kind = OptionRow::Kind::Choice;
+        for (const std::string_view choice : How::choices())
+            result.choices.emplace_back(choice);
+    }
+    result.read = [&value](std::span<const std::string> texts) {
+        if constexpr (option_text::IsVector<T>) {
+            value.clear();
+            for (const std::string& text : texts)
+                value.push_back(How::read(text));
+        } else {
+            value = How::read(texts.back());
+        }
+    };
+    result.show = [&value] {
+        return option_text::show<How>(value);
+    };
+    result.initial = result.show();
+    return result;
+}
+
+} // namespace relumine
