@@ -1,12 +1,13 @@
 // What stands around a precompute: the trial, the longer run or the test that it is a part of.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 
-#include "prt/glossy/glossy_precompute.h"
-#include "prt/precompute.h"
+#include "prt/precompute_options.h"
+#include "prt/receivers/receivers.h"
+#include "prt/transfer/transfer.h"
+#include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
 
@@ -27,13 +28,5 @@ struct PrecomputeContext {
                                   const PrecomputeOptions& options,
                                   const PrecomputeContext& context,
                                   PrecomputeStatistics* statistics = nullptr);
-
-/// Does what precompute_glossy() does, and looks at the checkpoint after every `blocks_per_step`
-/// blocks. For tests.
-[[nodiscard]] GlossyTransfer precompute_glossy_in_steps(const Receivers& receivers,
-                                                        const Blockers& blockers,
-                                                        const Transfer& transfer,
-                                                        const GlossyOptions& options,
-                                                        std::size_t blocks_per_step);
 
 } // namespace relumine::prt

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "prt/precompute.h"
+#include "prt/precompute_options.h"
 
 namespace relumine::prt {
 

@@ -15,8 +15,8 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/image/convention.h"
 #include "cubemap/image/environment.h"
-#include "relight/exact.h"
 #include "relight/pictures/backdrop.h"
+#include "relight/reference/exact.h"
 #include "relumine/mesh.h"
 #include "relumine/option_table.h"
 
@@ -68,7 +68,7 @@ struct FlipText {
 struct Environment {
     cubemap::CubeMap map;
     /// What the map was made from
-    relight::EnvironmentFile file;
+    cubemap::EnvironmentFile file;
     /// One sentence: which layout and sampling the file has, and why
     std::string assumptions;
     /// Pixels that were replaced

@@ -13,7 +13,7 @@
 #include "relight/pictures/picture.h"
 #include "relight/pictures/picture_view.h"
 #include "relight/relighter.h"
-#include "relight/sharp_lights.h"
+#include "relight/sharp/sharp_lights.h"
 #include "relumine/output_options.h"
 #include "relumine/scene.h"
 

@@ -11,7 +11,7 @@
 #include "prt/parts/team_checkpoint.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/bounces/probe_lights.h"
+#include "relight/probe_lights.h"
 
 namespace relumine {
 

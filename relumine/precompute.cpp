@@ -18,8 +18,8 @@
 #include "prt/scene/fingerprint.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/bounces/probe_lights.h"
 #include "relight/pictures/framing.h"
+#include "relight/probe_lights.h"
 #include "relumine/memory_limit.h"
 #include "relumine/part_work.h"
 

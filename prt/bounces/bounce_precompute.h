@@ -15,7 +15,7 @@
 #include "prt/checkpoint.h"
 #include "prt/receivers/receivers.h"
 #include "prt/team.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {

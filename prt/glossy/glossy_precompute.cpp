@@ -19,12 +19,11 @@
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
-#include "prt/clusters/cell_index.h"
 #include "prt/free_memory.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/lobe_refinement.h"
-#include "prt/precompute.h"
-#include "prt/precompute_context.h"
+#include "prt/precompute_options.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 

@@ -10,10 +10,9 @@
 #include <stop_token>
 
 #include "prt/checkpoint.h"
-#include "prt/glossy/glossy_transfer.h"
 #include "prt/receivers/receivers.h"
 #include "prt/team.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {
@@ -95,5 +94,13 @@ struct TooManyEntries : std::runtime_error {
                                                     const Blockers& blockers,
                                                     const Transfer& transfer,
                                                     const GlossyOptions& options);
+
+/// Does what precompute_glossy() does, and looks at the checkpoint after every `blocks_per_step`
+/// blocks. For tests.
+[[nodiscard]] GlossyTransfer precompute_glossy_in_steps(const Receivers& receivers,
+                                                        const Blockers& blockers,
+                                                        const Transfer& transfer,
+                                                        const GlossyOptions& options,
+                                                        std::size_t blocks_per_step);
 
 } // namespace relumine::prt

@@ -8,9 +8,9 @@
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"
-#include "prt/clusters/cell_index.h"
 #include "prt/glossy/brdf.h"
 #include "prt/precompute_context.h"
+#include "prt/transfer/cell_index.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"

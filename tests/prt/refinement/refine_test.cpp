@@ -11,7 +11,7 @@
 
 #include "cubemap/cube_map.h"
 #include "files/parallel.h"
-#include "mesh/half_edge/edge_uses.h"
+#include "mesh/edge_uses.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
 #include "prt/visibility/beam_scene.h"

@@ -11,7 +11,7 @@
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/bounces/bounce_light.h"
-#include "relight/bounces/probe_lights.h"
+#include "relight/probe_lights.h"
 
 namespace relumine::relight {
 
