@@ -116,7 +116,7 @@ Patience::~Patience() {
 void Session::add_common_options(Command& command) {
     OptionTable table = {
         row("--json", json, "print one JSON object with all figures on stdout"),
-        row("--threads", num_threads, "threads to use, 0 for all").between(0, 4096),
+        row("--threads", num_threads, "threads to use, 0 for all", {.min = 0, .max = 4096}),
         row("-q,--quiet", quiet, "print errors only"), row("-v,--verbose", verbose, "print more")};
     for (OptionRow& each : table) {
         each.shapes_frames = false;

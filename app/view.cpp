@@ -151,19 +151,18 @@ void add_view(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
     options->bounces.add_to(command);
-    command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
-    constexpr std::array<std::string_view, 2> OfPictures = {"--exposure", "--tone-map"};
-    command.add(only(OfPictures, options_of(options->picture)));
     command.add(
-        size_row(options->picture.width, options->picture.height, "the window's size", 320));
-    command
-        .add_option("--script", options->script,
-                    "play a script instead of waiting for a person (docs/viewer.md)")
-        .file();
-    command
-        .add_option("--screenshot", options->screenshot,
-                    "write the last frame of the script, or the first there is, as .png or .exr")
-        .file();
+        row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
+    constexpr std::array<std::string_view, 2> OfPictures = {"--exposure", "--tone-map"};
+    command.add_all(only(OfPictures, options_of(options->picture)));
+    command.add(size_row(options->picture.width, options->picture.height, "the window's size",
+                         {.min = 320}));
+    command.add(row("--script", options->script,
+                    "play a script instead of waiting for a person (docs/viewer.md)",
+                    {.file = true}));
+    command.add(row("--screenshot", options->screenshot,
+                    "write the last frame of the script, or the first there is, as .png or .exr",
+                    {.file = true}));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -127,14 +127,14 @@ OptionTable options_of(EnvironmentOptions& o) {
                           "mirror the environment along an axis, before --tilt: y turns it upside "
                           "down"),
             row("--tilt", o.tilt_degrees,
-                "turn the environment about +X, degrees, before --rotate: +Y goes to +Z at 90")
-                .between(-36000, 36000),
+                "turn the environment about +X, degrees, before --rotate: +Y goes to +Z at 90",
+                {.min = -36000, .max = 36000}),
             row("--rotate", o.rotate_degrees,
-                "turn the environment about +Y, degrees: +Z goes to +X at 90")
-                .between(-36000, 36000),
+                "turn the environment about +Y, degrees: +Z goes to +X at 90",
+                {.min = -36000, .max = 36000}),
             row("--face-resolution", o.face_resolution,
-                "texels along a cube face's edge, 0 for the environment's own")
-                .between(0, 16384)};
+                "texels along a cube face's edge, 0 for the environment's own",
+                {.min = 0, .max = 16384})};
 }
 
 cubemap::EnvironmentImage load_environment_image(const std::filesystem::path& path,

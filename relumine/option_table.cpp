@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 
 #include <fmt/format.h>
 
@@ -49,49 +50,6 @@ bool are_within(const glm::vec3& values, double min, double max) {
 
 } // namespace
 
-OptionRow OptionRow::between(double least, double most) && {
-    min = least;
-    max = most;
-    return std::move(*this);
-}
-
-OptionRow OptionRow::example_of(std::string text) && {
-    example = std::move(text);
-    return std::move(*this);
-}
-
-OptionRow OptionRow::only_for(unsigned kinds_of_receivers, std::string part_of_picture) && {
-    receivers = kinds_of_receivers;
-    part = std::move(part_of_picture);
-    return std::move(*this);
-}
-
-OptionRow OptionRow::when_bare(std::string text, std::string type_name) && {
-    bare = std::move(text);
-    type = std::move(type_name);
-    return std::move(*this);
-}
-
-OptionRow OptionRow::called(std::string type_name) && {
-    type = std::move(type_name);
-    return std::move(*this);
-}
-
-OptionRow OptionRow::without_default() && {
-    shows_default = false;
-    return std::move(*this);
-}
-
-OptionRow OptionRow::needing(std::string other) && {
-    needs = std::move(other);
-    return std::move(*this);
-}
-
-OptionRow OptionRow::excluding(std::string other) && {
-    excludes = std::move(other);
-    return std::move(*this);
-}
-
 std::vector<std::string> OptionRow::names() const {
     return is_argument() ? std::vector<std::string>() : split(name, ',');
 }
@@ -116,7 +74,7 @@ void OptionRow::set(std::span<const std::string> given) const {
     std::vector<std::string> texts(given.begin(), given.end());
     try {
         for (std::string& text : texts) {
-            if (text.empty() && kind != Kind::Flag)
+            if (text.empty() && !is_flag)
                 text = bare ? *bare : throw std::invalid_argument("expected a value, got ''");
             if (!choices.empty() &&
                 std::find(choices.begin(), choices.end(), text) == choices.end())
@@ -134,6 +92,20 @@ void OptionRow::set(std::span<const std::string> given) const {
     } catch (const std::invalid_argument& error) {
         throw OptionError(long_name(), error.what());
     }
+}
+
+OptionRow row(std::string name, std::function<void(const std::string&)> read, std::string help,
+              OptionFacts facts) {
+    OptionRow result{std::move(facts), std::move(name), std::move(help)};
+    auto given = std::make_shared<std::string>();
+    result.read = [read = std::move(read), given](std::span<const std::string> texts) {
+        read(texts.back());
+        *given = texts.back();
+    };
+    result.show = [given] {
+        return *given;
+    };
+    return result;
 }
 
 OptionTable only(std::span<const std::string_view> names, OptionTable table) {

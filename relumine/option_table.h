@@ -31,56 +31,51 @@ public:
     std::string reason = {};
 };
 
-/// One option, bound to its variable. The variable must outlive the row.
-struct OptionRow {
-    enum class Kind { Flag, Text, Choice, File, Folder };
-    /// Kinds of receivers, to be joined
-    enum Receivers : unsigned { Vertices = 1, Pixels = 2, Texels = 4 };
+/// What there is to say of an option beside its name, its variable and its help.
+struct OptionFacts {
+    /// The receivers of scenes, to be joined
+    enum Receivers : unsigned { OnVertices = 1, OnPixels = 2, OnTexels = 4, OnAll = 7 };
 
-    /// "--fov", "-o,--output"; "MESH" for an argument
-    std::string name = {};
-    std::string help = {};
-    Kind kind = Kind::Text;
-    /// What the help calls the value: "FLOAT"
-    std::string type = {};
-    /// The allowed words of a Kind::Choice
-    std::vector<std::string> choices = {};
+    /// The value names a file, or a folder.
+    bool file = false, folder = false;
+    bool required = false;
     double min = -std::numeric_limits<double>::infinity();
     double max = std::numeric_limits<double>::infinity();
-    /// A value for tests and documents, where the type does not tell of one
-    std::string example = {};
-    /// The variable as text when it was declared: its default
-    std::string initial = {};
+    /// What the help calls the value: "FLOAT"
+    std::string type = {};
+    /// The only words that are allowed; empty: any text
+    std::vector<std::string> choices = {};
     /// Stands for a value that is left out; none: it may not be.
     std::optional<std::string> bare = {};
+    /// A value for tests, where the type does not tell of one
+    std::string example = {};
     /// Another option, by its name: this one is refused without it, or beside it.
-    std::string needs = {};
-    std::string excludes = {};
-    bool is_required = false;
-    /// May be given several times
-    bool repeats = false;
+    std::string needs = {}, excludes = {};
+    /// Between the values of one argument; 0: an argument is one value.
+    char separator = 0;
     /// The help shows the value that the variable has at first.
     bool shows_default = true;
     /// Files made under another value differ: the record of `animate --resume` has the option.
     bool shapes_frames = true;
-    /// The receivers of scenes that have a use for it; "camera": what the others have not
-    unsigned receivers = Vertices | Pixels | Texels;
+    /// Scenes of other receivers have no use for it: "camera" is what they have not.
+    unsigned receivers = OnAll;
     std::string part = {};
+};
 
+/// One option, bound to its variable, which must outlive the row.
+struct OptionRow : OptionFacts {
+    /// "--fov", "-o,--output"; "MESH" for an argument
+    std::string name = {};
+    std::string help = {};
+    bool is_flag = false;
+    /// May be given several times
+    bool repeats = false;
+    /// The variable as text when it was declared: its default
+    std::string initial = {};
     /// Sets the variable from one text, or several where it repeats. Throws std::invalid_argument.
     std::function<void(std::span<const std::string>)> read = {};
     /// The variable as a text that read() takes; empty: nothing is set.
     std::function<std::string()> show = {};
-
-    // Settings, to be chained: row(...).between(0, 1)
-    OptionRow between(double least, double most) &&;
-    OptionRow example_of(std::string text) &&;
-    OptionRow only_for(unsigned kinds_of_receivers, std::string part_of_picture) &&;
-    OptionRow when_bare(std::string text, std::string type_name) &&;
-    OptionRow called(std::string type_name) &&;
-    OptionRow without_default() &&;
-    OptionRow needing(std::string other) &&;
-    OptionRow excluding(std::string other) &&;
 
     [[nodiscard]] bool is_argument() const { return !name.starts_with('-'); }
     /// "-o", "--output"; none for an argument
@@ -92,7 +87,9 @@ struct OptionRow {
     /// "0.01 to 179"; empty: all numbers
     [[nodiscard]] std::string range() const;
     /// What the help shows as default
-    [[nodiscard]] std::string shown_default() const { return shows_default ? initial : ""; }
+    [[nodiscard]] std::string shown_default() const {
+        return shows_default && !required && !is_flag ? initial : "";
+    }
 
     /// Checks texts and sets the variable. Throws OptionError.
     void set(std::span<const std::string> texts) const;
@@ -219,57 +216,42 @@ struct PointText {
 
 /// Declares one option. `Text` says how its value is written; otherwise its type does.
 template<typename Text = void, typename T>
-[[nodiscard]] OptionRow row(std::string name, T& value, std::string help);
+[[nodiscard]] OptionRow row(std::string name, T& value, std::string help, OptionFacts facts = {});
+
+/// The same for a value of its own kind: `read` throws std::invalid_argument for wrong text.
+[[nodiscard]] OptionRow row(std::string name, std::function<void(const std::string&)> read,
+                            std::string help, OptionFacts facts = {});
 
 // Implementation
 
 namespace option_text {
 
+/// What is inside of an optional or a vector
 template<typename T>
-struct Unwrapped {
+struct Inner {
     using Type = T;
 };
 template<typename T>
-struct Unwrapped<std::optional<T>> : Unwrapped<T> {};
+struct Inner<std::optional<T>> : Inner<T> {};
 template<typename T>
-struct Unwrapped<std::vector<T>> : Unwrapped<T> {};
-
-template<typename T>
-inline constexpr bool IsVector = false;
-template<typename T>
-inline constexpr bool IsVector<std::vector<T>> = true;
-
-template<typename Text, typename T>
-std::string show(const T& value) {
-    if constexpr (requires { Text::show(value); }) {
-        return Text::show(value);
-    } else if constexpr (IsVector<T>) {
-        std::string all;
-        for (const auto& each : value)
-            all += (all.empty() ? "" : " ") + Text::show(each);
-        return all;
-    } else {
-        return value ? Text::show(*value) : std::string();
-    }
-}
+struct Inner<std::vector<T>> : Inner<T> {};
 
 } // namespace option_text
 
 template<typename Text, typename T>
-OptionRow row(std::string name, T& value, std::string help) {
-    using Own = typename option_text::Unwrapped<T>::Type;
+OptionRow row(std::string name, T& value, std::string help, OptionFacts facts) {
+    using Own = typename option_text::Inner<T>::Type;
     using How = std::conditional_t<std::is_void_v<Text>, ValueText<Own>, Text>;
-    OptionRow result{.name = std::move(name), .help = std::move(help), .type = How::Type};
-    result.repeats = option_text::IsVector<T>;
-    if constexpr (std::is_same_v<T, bool>)
-        result.kind = OptionRow::Kind::Flag;
-    if constexpr (requires { How::choices(); }) {
-        result.kind = OptionRow::Kind::Choice;
-        for (const std::string_view choice : How::choices())
-            result.choices.emplace_back(choice);
-    }
+    constexpr bool IsVector = std::is_same_v<T, std::vector<Own>>;
+    OptionRow result{std::move(facts), std::move(name), std::move(help)};
+    if (result.type.empty())
+        result.type = result.file ? "FILE" : result.folder ? "FOLDER" : How::Type;
+    result.is_flag = std::is_same_v<T, bool>;
+    result.repeats = IsVector;
+    if constexpr (requires { How::choices(); })
+        result.choices.assign(How::choices().begin(), How::choices().end());
     result.read = [&value](std::span<const std::string> texts) {
-        if constexpr (option_text::IsVector<T>) {
+        if constexpr (IsVector) {
             value.clear();
             for (const std::string& text : texts)
                 value.push_back(How::read(text));
@@ -277,8 +259,17 @@ OptionRow row(std::string name, T& value, std::string help) {
             value = How::read(texts.back());
         }
     };
-    result.show = [&value] {
-        return option_text::show<How>(value);
+    result.show = [&value]() -> std::string {
+        if constexpr (IsVector) {
+            std::string all;
+            for (const Own& each : value)
+                all += (all.empty() ? "" : " ") + How::show(each);
+            return all;
+        } else if constexpr (requires { How::show(value); }) {
+            return How::show(value);
+        } else {
+            return value ? How::show(*value) : "";
+        }
     };
     result.initial = result.show();
     return result;

@@ -1,5 +1,6 @@
 #include "relumine/output_options.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <tuple>
@@ -112,49 +113,48 @@ std::string CameraText::show(const CameraPlace& place) {
 }
 
 OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help,
-                   std::uint32_t least) {
-    const auto show = [&width, &height] {
+                   OptionFacts facts) {
+    OptionRow result{std::move(facts), "--size", std::move(help)};
+    result.type = "TEXT";
+    result.example = "640x480";
+    result.read = [&width, &height,
+                   least = std::max(result.min, 1.0)](std::span<const std::string> texts) {
+        std::string text = texts.back();
+        std::replace(text.begin(), text.end(), ',', 'x'); // of a list
+        const auto sides = parse_sides(text);
+        if (!sides)
+            refuse_text("WIDTHxHEIGHT", texts.back());
+        const auto is_side = [least](std::uint32_t side) {
+            return side >= least && side <= prt::MaxPictureSize;
+        };
+        if (!is_side(sides->first) || !is_side(sides->second))
+            refuse_text(fmt::format("{} to {} pixels a side", least, prt::MaxPictureSize),
+                        texts.back());
+        std::tie(width, height) = *sides;
+    };
+    result.show = [&width, &height] {
         return fmt::format("{}x{}", width, height);
     };
-    return {.name = "--size",
-            .help = std::move(help),
-            .type = "TEXT",
-            .example = "640x480",
-            .initial = show(),
-            .read =
-                [&width, &height, least](std::span<const std::string> texts) {
-                    const auto sides = parse_sides(texts.back());
-                    if (!sides)
-                        refuse_text("WIDTHxHEIGHT", texts.back());
-                    const auto is_side = [least](std::uint32_t side) {
-                        return side >= least && side <= prt::MaxPictureSize;
-                    };
-                    if (!is_side(sides->first) || !is_side(sides->second))
-                        refuse_text(
-                            fmt::format("{} to {} pixels a side", least, prt::MaxPictureSize),
-                            texts.back());
-                    std::tie(width, height) = *sides;
-                },
-            .show = show};
+    result.initial = result.show();
+    return result;
 }
 
-OptionRow transparent_row(Background& background) {
-    return {.name = "--transparent",
-            .help = "the same as --background none",
-            .kind = OptionRow::Kind::Flag,
-            .read =
-                [&background](std::span<const std::string> texts) {
-                    if (!ValueText<bool>::read(texts.back()))
-                        return;
-                    const std::string given = BackgroundText::show(background);
-                    if (given != "none" && given != BackgroundText::show({}))
-                        throw std::invalid_argument("expected no --background beside it");
-                    background = NothingBehind{};
-                },
-            .show =
-                [] {
-                    return std::string("false");
-                }};
+OptionRow transparent_row(Background& background, OptionFacts facts) {
+    OptionRow result{std::move(facts), "--transparent", "the same as --background none"};
+    result.is_flag = true;
+    result.initial = "false";
+    result.read = [&background](std::span<const std::string> texts) {
+        if (!ValueText<bool>::read(texts.back()))
+            return;
+        const std::string given = BackgroundText::show(background);
+        if (given != "none" && given != BackgroundText::show({}))
+            throw std::invalid_argument("expected no --background beside it");
+        background = NothingBehind{};
+    };
+    result.show = [] {
+        return "false"; // the background tells
+    };
+    return result;
 }
 
 void check(const OutputOptions& options) {

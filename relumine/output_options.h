@@ -128,58 +128,55 @@ struct CameraText {
     static CameraPlace read(const std::string& text);
     static std::string show(const CameraPlace& place);
 };
-/// --size WIDTHxHEIGHT, each side from `least` to prt::MaxPictureSize.
+/// --size WIDTHxHEIGHT, each side from `min` (1) to prt::MaxPictureSize.
 [[nodiscard]] OptionRow size_row(std::uint32_t& width, std::uint32_t& height, std::string help,
-                                 std::uint32_t least = 1);
+                                 OptionFacts facts = {});
 /// --transparent, another word for a background of none.
-[[nodiscard]] OptionRow transparent_row(Background& background);
+[[nodiscard]] OptionRow transparent_row(Background& background, OptionFacts facts);
 
 /// All options of a picture.
 inline OptionTable options_of(OutputOptions& o) {
-    constexpr unsigned OnVertices = OptionRow::Vertices;
-    constexpr unsigned NoTexels = OptionRow::Vertices | OptionRow::Pixels;
+    constexpr unsigned OnVertices = OptionFacts::OnVertices;
+    constexpr unsigned NoTexels = OptionFacts::OnVertices | OptionFacts::OnPixels;
     return {
         row<AlbedoText>("--albedo", o.albedo,
                         "reflectance: a number, R,G,B, `mesh` for the mesh's vertex colours, or "
-                        "auto: the mesh's own, else 0.5 in pictures and 1 in .npy")
-            .example_of("0.25"),
+                        "auto: the mesh's own, else 0.5 in pictures and 1 in .npy",
+                        {.example = "0.25"}),
         row<ColorText>("--floor-albedo", o.floor_albedo,
-                       "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)")
-            .example_of("0.7,0.6,0.5"),
+                       "reflectance of the floor of --floor: a number or R,G,B (0.3; 1 in .npy)",
+                       {.example = "0.7,0.6,0.5"}),
         row("--floor-fade", o.floor_fade,
-            "outer part of the floor's radius over which it fades into the background")
-            .between(0, 1),
+            "outer part of the floor's radius over which it fades into the background",
+            {.min = 0, .max = 1}),
         row<ExposureText>("--exposure", o.exposure_ev,
                           "stops that brighten pictures and colours, or auto: what suits what is "
-                          "seen; 0 for .exr and .npy")
-            .example_of("1.5"),
+                          "seen; 0 for .exr and .npy",
+                          {.example = "1.5"}),
         row("--tone-map", o.tone,
             "how a screen shows what is brighter than white, in .png and the window"),
         row<CameraText>("--camera", o.camera_place,
                         "AZIMUTH,ELEVATION[,DISTANCE][,FOV]: degrees to the right of the "
-                        "front and above the horizon (24,20), distance (fills two thirds)")
-            .example_of("30,40")
-            .only_for(OnVertices, "camera"),
-        row("--front", o.front, "the side that the mesh shows a camera of azimuth 0")
-            .only_for(OnVertices, "camera"),
-        row<PointText>("--eye", o.eye, "camera position X,Y,Z in place of --camera")
-            .example_of("1,2,3")
-            .only_for(OnVertices, "camera"),
-        row<PointText>("--target", o.target, "point that the camera looks at, X,Y,Z (automatic)")
-            .example_of("0,0.1,0")
-            .only_for(OnVertices, "camera"),
-        row("--fov", o.fov_degrees, "vertical field of view in degrees (35)")
-            .between(0.01, 179)
-            .only_for(OnVertices, "camera"),
-        size_row(o.width, o.height, "picture size WIDTHxHEIGHT").only_for(OnVertices, "camera"),
+                        "front and above the horizon (24,20), distance (fills two thirds)",
+                        {.example = "30,40", .receivers = OnVertices, .part = "camera"}),
+        row("--front", o.front, "the side that the mesh shows a camera of azimuth 0",
+            {.receivers = OnVertices, .part = "camera"}),
+        row<PointText>("--eye", o.eye, "camera position X,Y,Z in place of --camera",
+                       {.example = "1,2,3", .receivers = OnVertices, .part = "camera"}),
+        row<PointText>("--target", o.target, "point that the camera looks at, X,Y,Z (automatic)",
+                       {.example = "0,0.1,0", .receivers = OnVertices, .part = "camera"}),
+        row("--fov", o.fov_degrees, "vertical field of view in degrees (35)",
+            {.min = 0.01, .max = 179, .receivers = OnVertices, .part = "camera"}),
+        size_row(o.width, o.height, "picture size WIDTHxHEIGHT",
+                 {.receivers = OnVertices, .part = "camera"}),
         row<BackgroundText>("--background", o.background,
                             "behind the mesh: sharp or blur=DEG (the environment), none (alpha; "
-                            "premultiplied in .exr), a number or R,G,B")
-            .example_of("blur=5")
-            .only_for(NoTexels, "background"),
-        transparent_row(o.background).only_for(NoTexels, "background"),
+                            "premultiplied in .exr), a number or R,G,B",
+                            {.example = "blur=5", .receivers = NoTexels, .part = "background"}),
+        transparent_row(o.background, {.receivers = NoTexels, .part = "background"}),
         row("--sun", o.sun, "pictures of vertices: where shadows of the sun are traced"),
-        row("--gutter", o.gutter, "lightmaps: texels filled around the charts").between(0, 16384)};
+        row("--gutter", o.gutter, "lightmaps: texels filled around the charts",
+            {.min = 0, .max = 16384})};
 }
 
 } // namespace relumine

@@ -48,12 +48,12 @@ std::vector<bool> floor_receivers(const Scene& scene) {
 OptionTable options_of(SurfaceColors& o) {
     return {row<ColorText>("--surface-albedo", o.albedo,
                            "scenes with materials: albedo of all surfaces in place of the "
-                           "precompute's, a number or R,G,B")
-                .example_of("0.25"),
+                           "precompute's, a number or R,G,B",
+                           {.example = "0.25"}),
             row<ColorText>("--surface-specular", o.specular,
                            "scenes with highlights: their F0 (Ks) in place of the precompute's, a "
-                           "number or R,G,B")
-                .example_of("0.25")};
+                           "number or R,G,B",
+                           {.example = "0.25"})};
 }
 
 void set_colors(Scene& scene, const SurfaceColors& colors) {

@@ -21,9 +21,6 @@ namespace relumine::app {
 struct Option::Data {
     CLI::Option* option = nullptr;
     OptionRow row = {};
-
-    /// Tells CLI11 what the row says.
-    void apply() const;
 };
 
 struct Command::Data {
@@ -102,6 +99,30 @@ std::string pattern_of(const std::vector<std::string>& names) {
     return (first.parent_path() / fmt::format("{}*{}", stem, first.extension().string())).string();
 }
 
+/// The option of CLI11 with all that the row says. The row must stay where it is.
+CLI::Option* add_value(CLI::App& app, const OptionRow& row) {
+    const auto read = [&row, &app](const CLI::results_t& texts) {
+        try {
+            row.set(texts);
+        } catch (const OptionError& error) {
+            throw OptionError(error.what() + hint(row, app, texts.back()));
+        }
+        return true;
+    };
+    CLI::Option* option = app.add_option(row.name, read, row.help);
+    const std::string limits =
+        row.choices.empty() ? row.range() : fmt::format("{{{}}}", files::joined(row.choices, ","));
+    option->type_name(limits.empty() ? row.type : fmt::format("{}:{}", row.type, limits));
+    option->default_str(row.shown_default());
+    if (row.separator != 0)
+        option->delimiter(row.separator);
+    if (row.bare)
+        option->expected(0, 1);
+    else if (row.repeats)
+        option->expected(CLI::detail::expected_max_vector_size);
+    return option;
+}
+
 /// What is wrong with arguments that are more than the command takes. A pattern without quotes is
 /// the usual reason: the shell replaces it by the names of the files.
 std::string surplus(const CLI::App& command, const std::vector<std::string>& rest) {
@@ -171,97 +192,24 @@ CommandTable Command::Data::table() const {
             names += "-" + name + ",";
         for (const std::string& name : option->get_lnames())
             names += "--" + name;
-        table.options.push_back(
-            {.name = names, .help = option->get_description(), .kind = OptionRow::Kind::Flag});
+        OptionRow made{{}, names, option->get_description()};
+        made.is_flag = true;
+        table.options.push_back(std::move(made));
     }
     for (const std::unique_ptr<Data>& command : commands)
         table.commands.push_back(command->table());
     return table;
 }
 
-void Option::Data::apply() const {
-    option->description(row.help);
-    option->required(row.is_required);
-    if (row.kind == OptionRow::Kind::Flag)
-        return;
-    const std::string limits =
-        row.choices.empty() ? row.range() : fmt::format("{{{}}}", files::joined(row.choices, ","));
-    option->type_name(limits.empty() ? row.type : fmt::format("{}:{}", row.type, limits));
-    option->default_str(row.shown_default());
-    if (row.bare)
-        option->expected(0, 1);
-    else if (row.repeats)
-        option->expected(CLI::detail::expected_max_vector_size);
-}
-
-template<typename Change>
-Option Option::changed(const Change& change) {
-    change(data_->row);
-    data_->apply();
-    return *this;
-}
-
 Option Option::required(bool is_required) {
-    return changed([&](OptionRow& row) { row.is_required = is_required; });
-}
-
-Option Option::show_default() {
-    return changed([](OptionRow& row) { row.shows_default = true; });
-}
-
-Option Option::one_of(const std::vector<std::string>& choices) {
-    return changed([&](OptionRow& row) {
-        row.kind = OptionRow::Kind::Choice;
-        row.choices = choices;
-    });
-}
-
-Option Option::between(double min, double max) {
-    return changed([&](OptionRow& row) { row = std::move(row).between(min, max); });
-}
-
-Option Option::type_name(const std::string& name) {
-    return changed([&](OptionRow& row) { row.type = name; });
+    data_->row.required = is_required;
+    data_->option->required(is_required);
+    return *this;
 }
 
 Option Option::description(const std::string& text) {
-    return changed([&](OptionRow& row) { row.help = text; });
-}
-
-Option Option::file() {
-    return changed([](OptionRow& row) {
-        row.kind = OptionRow::Kind::File;
-        row.type = "FILE";
-    });
-}
-
-Option Option::folder() {
-    return changed([](OptionRow& row) {
-        row.kind = OptionRow::Kind::Folder;
-        row.type = "FOLDER";
-    });
-}
-
-Option Option::when_bare(const std::string& value) {
-    return changed([&](OptionRow& row) { row.bare = value; });
-}
-
-Option Option::shapes_no_frame() {
-    return changed([](OptionRow& row) { row.shapes_frames = false; });
-}
-
-Option Option::separated_by(char delimiter) {
-    data_->option->delimiter(delimiter);
-    return *this;
-}
-
-Option Option::needs(const std::string& name) {
-    data_->option->needs(name);
-    return *this;
-}
-
-Option Option::excludes(const std::string& name) {
-    data_->option->excludes(name);
+    data_->row.help = text;
+    data_->option->description(text);
     return *this;
 }
 
@@ -285,22 +233,16 @@ Option Command::add(OptionRow row) {
     auto data = std::make_unique<Option::Data>();
     data->row = std::move(row);
     const OptionRow& own = data->row;
-    if (own.kind == OptionRow::Kind::Flag)
-        data->option = data_->app->add_flag_function(
-            own.name, [&own](std::int64_t count) { own.set(count > 0 ? "true" : "false"); }, "");
-    else
-        data->option = data_->app->add_option(
-            own.name,
-            [&own, app = data_->app](const CLI::results_t& texts) {
-                try {
-                    own.set(texts);
-                } catch (const OptionError& error) {
-                    throw OptionError(error.what() + hint(own, *app, texts.back()));
-                }
-                return true;
-            },
-            "");
-    data->apply();
+    CLI::App& app = *data_->app;
+    if (own.is_flag) {
+        const auto read = [&own](std::int64_t count) {
+            own.set(count > 0 ? "true" : "false");
+        };
+        data->option = app.add_flag_function(own.name, read, own.help);
+    } else {
+        data->option = add_value(app, own);
+    }
+    data->option->required(own.required);
     if (!own.needs.empty())
         data->option->needs(own.needs);
     if (!own.excludes.empty())
@@ -309,27 +251,11 @@ Option Command::add(OptionRow row) {
     return Option(*data_->options.back());
 }
 
-std::vector<Option> Command::add(OptionTable table) {
+std::vector<Option> Command::add_all(OptionTable table) {
     std::vector<Option> options;
     for (OptionRow& row : table)
         options.push_back(add(std::move(row)));
     return options;
-}
-
-Option Command::add_option(const std::string& name, std::function<void(const std::string&)> read,
-                           const std::string& description) {
-    auto given = std::make_shared<std::string>();
-    return add({.name = name,
-                .help = description,
-                .read =
-                    [read = std::move(read), given](std::span<const std::string> texts) {
-                        read(texts.back());
-                        *given = texts.back();
-                    },
-                .show =
-                    [given] {
-                        return *given;
-                    }});
 }
 
 std::vector<std::string> Command::given_options() const {

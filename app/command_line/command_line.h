@@ -17,36 +17,14 @@ struct CommandTable;
 /// Wrong usage, which the program answers with one line and exit code 2.
 using UsageError = OptionError;
 
-/// A handle of one option of a command, valid as long as its CommandLine. Each setting returns the
-/// handle, so that settings can be chained.
+/// A handle of one option of a command, valid as long as its CommandLine.
 class Option {
 public:
     /// No option: was never given.
     Option() = default;
 
-    Option required(bool is_required = true);
-    /// Shows the variable's value of now in the help.
-    Option show_default();
-    /// Refuses all values but these.
-    Option one_of(const std::vector<std::string>& choices);
-    /// Refuses numbers outside and NaN.
-    Option between(double min, double max);
-    /// What the help calls the value: SIZE
-    Option type_name(const std::string& name);
+    Option required(bool is_required);
     Option description(const std::string& text);
-    /// The value names a file, or a folder: for the help and for completion.
-    Option file();
-    Option folder();
-    /// The option may stand without its value, which is then this one.
-    Option when_bare(const std::string& value);
-    /// Files are the same whatever its value: no part of Command::settings().
-    Option shapes_no_frame();
-    /// One argument may hold several values with this between them.
-    Option separated_by(char delimiter);
-    /// Refused unless the option of that name is given, too.
-    Option needs(const std::string& name);
-    /// Refused when the option of that name is given, too.
-    Option excludes(const std::string& name);
 
     /// Whether the line that was read has it.
     [[nodiscard]] bool is_given() const;
@@ -58,8 +36,6 @@ private:
     friend class Command;
     struct Data;
     explicit Option(Data& data) : data_(&data) {}
-    template<typename Change>
-    Option changed(const Change& change);
     Data* data_ = nullptr;
 };
 
@@ -74,21 +50,7 @@ public:
     /// where it repeats. Empty values are refused: an unset variable of a script must not read as 0
     /// or as the current folder.
     Option add(OptionRow row);
-    std::vector<Option> add(OptionTable table);
-    /// The same, made of a variable. The help shows no default until show_default().
-    template<typename Text = void, typename T>
-    Option add_option(const std::string& name, T& value, const std::string& description) {
-        OptionRow made = row<Text>(name, value, description);
-        made.shows_default = false;
-        return add(std::move(made));
-    }
-    /// An option with a value of its own kind: `read` throws UsageError for wrong text.
-    Option add_option(const std::string& name, std::function<void(const std::string&)> read,
-                      const std::string& description);
-    /// An option without a value.
-    Option add_flag(const std::string& name, bool& value, const std::string& description) {
-        return add(row(name, value, description));
-    }
+    std::vector<Option> add_all(OptionTable table);
 
     /// Text below the options in the help.
     void footer(const std::string& text);

@@ -10,8 +10,6 @@ namespace relumine::app {
 
 namespace {
 
-using Kind = OptionRow::Kind;
-
 /// The text with every character of `special` behind a backslash.
 std::string escaped(std::string_view text, std::string_view special) {
     std::string result;
@@ -54,18 +52,9 @@ std::string function_name(const std::string& words) {
 
 /// What bash offers for a value: an assignment to `kind` and `words`.
 std::string bash_value(const OptionRow& option) {
-    switch (option.kind) {
-    case Kind::Choice:
+    if (!option.choices.empty())
         return fmt::format("kind=words words={}", shell_quoted(files::joined(option.choices, " ")));
-    case Kind::File:
-        return "kind=files";
-    case Kind::Folder:
-        return "kind=folders";
-    case Kind::Flag:
-    case Kind::Text:
-        break;
-    }
-    return "kind=none";
+    return option.file ? "kind=files" : option.folder ? "kind=folders" : "kind=none";
 }
 
 /// The patterns of `case` that stand for commands below this one, "env convert".
@@ -88,7 +77,7 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
         if (option.is_argument()) {
             if (argument == "kind=none")
                 argument = bash_value(option);
-        } else if (option.kind != Kind::Flag && !option.bare) {
+        } else if (!option.is_flag && !option.bare) {
             values += fmt::format("        {}) {} ;;\n", files::joined(option.names(), " | "),
                                   bash_value(option));
         }
@@ -108,20 +97,12 @@ void bash_branch(const CommandTable& command, const std::string& words, std::str
 
 /// What follows an option's name in a specification of `_arguments`: ":value:action".
 std::string zsh_value(const OptionRow& option) {
-    const std::string label = escaped(option.is_argument() ? option.name : option.type, "[]:\\");
-    switch (option.kind) {
-    case Kind::Flag:
+    if (option.is_flag)
         return "";
-    case Kind::Choice:
+    const std::string label = escaped(option.is_argument() ? option.name : option.type, "[]:\\");
+    if (!option.choices.empty())
         return fmt::format(":{}:({})", label, files::joined(option.choices, " "));
-    case Kind::File:
-        return fmt::format(":{}:_files", label);
-    case Kind::Folder:
-        return fmt::format(":{}:_files -/", label);
-    case Kind::Text:
-        break;
-    }
-    return fmt::format(":{}: ", label);
+    return fmt::format(":{}:{}", label, option.file ? "_files" : option.folder ? "_files -/" : " ");
 }
 
 void zsh_function(const CommandTable& command, const std::string& words, std::string& script) {
@@ -145,12 +126,12 @@ void zsh_function(const CommandTable& command, const std::string& words, std::st
         int position = 0;
         for (const OptionRow& option : command.options)
             if (option.is_argument())
-                script += fmt::format(" \\\n        {}",
-                                      shell_quoted(option.repeats
-                                                       ? fmt::format("*{}", zsh_value(option))
-                                                       : fmt::format("{}{}{}", ++position,
-                                                                     option.is_required ? "" : ":",
-                                                                     zsh_value(option))));
+                script += fmt::format(
+                    " \\\n        {}",
+                    shell_quoted(option.repeats
+                                     ? fmt::format("*{}", zsh_value(option))
+                                     : fmt::format("{}{}{}", ++position, option.required ? "" : ":",
+                                                   zsh_value(option))));
         script += "\n}\n\n";
         return;
     }
@@ -174,19 +155,13 @@ std::string fish_quoted(std::string_view text) {
 }
 
 std::string fish_value(const OptionRow& option) {
-    switch (option.kind) {
-    case Kind::Flag:
+    if (option.is_flag)
         return "";
-    case Kind::Choice:
+    if (!option.choices.empty())
         return fmt::format(" -xa {}", fish_quoted(files::joined(option.choices, " ")));
-    case Kind::File:
-        return option.bare ? " -F" : " -rF";
-    case Kind::Folder:
+    if (option.folder)
         return " -xa '(__fish_complete_directories)'";
-    case Kind::Text:
-        break;
-    }
-    return option.bare ? "" : " -x";
+    return option.file ? (option.bare ? " -F" : " -rF") : (option.bare ? "" : " -x");
 }
 
 /// Lines that hold where the command's words have been typed.

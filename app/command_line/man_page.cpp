@@ -63,7 +63,7 @@ std::string synopsis(const CommandTable& command, const std::string& words) {
     for (const OptionRow& option : command.options)
         if (option.is_argument()) {
             const std::string name = italic(option.name) + (option.repeats ? "..." : "");
-            result += option.is_required ? " " + name : " [" + name + "]";
+            result += option.required ? " " + name : " [" + name + "]";
         }
     return result + "\n";
 }
@@ -76,7 +76,7 @@ std::string paragraph(const OptionRow& option) {
     } else {
         for (const std::string& name : option.names())
             tag += (tag.empty() ? "" : ", ") + bold(name);
-        if (option.kind != OptionRow::Kind::Flag) {
+        if (!option.is_flag) {
             const std::string value = italic(option.type);
             tag += " " + value;
         }
@@ -86,9 +86,9 @@ std::string paragraph(const OptionRow& option) {
         text += fmt::format(" One of: {}.", files::joined(option.choices, ", "));
     if (!option.range().empty())
         text += fmt::format(" From {}.", option.range());
-    if (!option.shown_default().empty() && option.kind != OptionRow::Kind::Flag)
+    if (!option.shown_default().empty())
         text += fmt::format(" Default: {}.", option.shown_default());
-    if (option.is_required && !option.is_argument())
+    if (option.required && !option.is_argument())
         text += " Required.";
     return fmt::format(".TP\n{}\n{}\n", tag, literal(text));
 }

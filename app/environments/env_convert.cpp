@@ -142,8 +142,7 @@ void run(const ConvertArguments& options, Session& session) {
         sampling = cubemap::Sampling::TexelCentres;
     Report result = {{"input", described(from, image, cubemap::statistics(image))}};
     watch.lap();
-    const glm::dmat3 world_from_image =
-        relumine::world_from_image(image.layout, options.input);
+    const glm::dmat3 world_from_image = relumine::world_from_image(image.layout, options.input);
     SunFile::Split sun;
     if (sun_file)
         sun = sun_file->split(image, world_from_image, options.input.path);
@@ -184,39 +183,31 @@ void add_convert(Command& group, Session& session) {
     for (const cubemap::Convention& convention : cubemap::conventions())
         list += fmt::format("  {:8} {}\n", convention.name, convention.mathematics);
     command.footer(list);
-    command
-        .add_option("IN", options->input.path,
-                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz")
-        .file()
-        .required();
-    command
-        .add_option("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN")
-        .file()
-        .required();
+    command.add(row("IN", options->input.path,
+                    "environment: .exr or .hdr; {face} in the name for px nx py ny pz nz",
+                    {.file = true, .required = true}));
+    command.add(row("-o,--output", options->output, "what to write: .exr or .hdr; {face} as in IN",
+                    {.file = true, .required = true}));
     OptionTable reading = options_of(options->input);
     reading.pop_back(); // --face-resolution, which is OUT's here
-    command.add(std::move(reading));
-    command.add_option<LayoutText>("--to-layout", options->to_layout,
-                                   "layout of OUT (IN's; with --to, what that program reads)");
-    command.add_option<ConventionText>("--to", options->to, "whose convention OUT follows")
-        .show_default();
-    command.add_option(
-        "--size", options->size,
-        "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
-        "octahedral 640; cube to cube as it is)");
-    command
-        .add_option("--face-resolution", options->face_resolution,
-                    "the same as a cube face: a lat-long gets 4R x 2R pixels")
-        .between(0, 16384);
-    command
-        .add_option("--samples", options->samples,
+    command.add_all(std::move(reading));
+    command.add(row<LayoutText>("--to-layout", options->to_layout,
+                                "layout of OUT (IN's; with --to, what that program reads)"));
+    command.add(row<ConventionText>("--to", options->to, "whose convention OUT follows"));
+    command.add(
+        row("--size", options->size,
+            "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
+            "octahedral 640; cube to cube as it is)"));
+    command.add(row("--face-resolution", options->face_resolution,
+                    "the same as a cube face: a lat-long gets 4R x 2R pixels",
+                    {.min = 0, .max = 16384, .shows_default = false}));
+    command.add(row("--samples", options->samples,
                     "centres: at texel centres and without the envmap attribute, even in OpenEXR's "
-                    "lat-long and cube")
-        .one_of({"auto", "centres"})
-        .show_default();
-    command.add_flag("--split-sun", options->split_sun,
-                     "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
-                     "light, in world axes");
+                    "lat-long and cube",
+                    {.choices = {"auto", "centres"}}));
+    command.add(row("--split-sun", options->split_sun,
+                    "OUT without its sun; OUT.sun.json (.exr or .hdr replaced) has the sun as a "
+                    "light, in world axes"));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

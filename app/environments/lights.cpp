@@ -277,41 +277,30 @@ void run(const LightsArguments& options, Session& session) {
 
 /// -o, --picture and -n.
 void add_output_options(Command& command, LightsArguments& options) {
-    command
-        .add_option(
-            "-o,--output", options.path,
-            "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf")
-        .file();
-    command
-        .add_option("--picture", options.picture,
-                    "the environment with regions and lights drawn: .png or .exr")
-        .file();
-    command
-        .add_option("-n,--number", options.numbers,
-                    "how many lights; with --compare several, 16,64,256")
-        .separated_by(',')
-        .between(1, 1e9)
-        .show_default();
+    command.add(
+        row("-o,--output", options.path,
+            "light list: .json .csv .pbrt (pbrt-v4) .xml (Mitsuba 3) .usda .py (Blender) .gltf",
+            {.file = true}));
+    command.add(row("--picture", options.picture,
+                    "the environment with regions and lights drawn: .png or .exr", {.file = true}));
+    command.add(row("-n,--number", options.numbers,
+                    "how many lights; with --compare several, 16,64,256",
+                    {.min = 1, .max = 1e9, .separator = ','}));
 }
 
 /// --scene, --compare and what belongs to them.
 void add_scene_options(Command& command, LightsArguments& options) {
-    command
-        .add_option(
-            "--scene", options.scene,
-            "scene file: says how well the lights light it; --method transfer chooses for it")
-        .file();
-    command
-        .add_option("--compare", options.compare,
-                    "scene file: a table of all methods' errors on it against exact integration")
-        .file();
-    command
-        .add_option("--samples", options.num_samples,
-                    "--compare: receivers chosen at random, 0 for all")
-        .between(0, 1e9)
-        .show_default();
-    command.add_option("--plot", options.plot, "--compare: error against number of lights, .svg")
-        .file();
+    command.add(
+        row("--scene", options.scene,
+            "scene file: says how well the lights light it; --method transfer chooses for it",
+            {.file = true}));
+    command.add(row("--compare", options.compare,
+                    "scene file: a table of all methods' errors on it against exact integration",
+                    {.file = true}));
+    command.add(row("--samples", options.num_samples,
+                    "--compare: receivers chosen at random, 0 for all", {.min = 0, .max = 1e9}));
+    command.add(row("--plot", options.plot, "--compare: error against number of lights, .svg",
+                    {.file = true}));
 }
 
 /// --method and --seed.
@@ -321,17 +310,13 @@ void add_method_options(Command& command, LightsArguments& options) {
     for (const lights::Method method : lights::AllMethods)
         methods.emplace_back(lights::name(method));
     methods.emplace_back(TransferMethod);
-    command
-        .add_option(
-            "--method", options.method,
+    command.add(
+        row("--method", options.method,
             "median-cut: regions of equal energy (Debevec); variance: regions whose energy lies "
             "close together (Viriyothai and Debevec); importance: random directions, stratified; "
-            "transfer: those that light --scene most like the environment")
-        .one_of(methods)
-        .show_default();
-    command.add_option("--seed", options.seed, "of importance sampling")
-        .between(0, 0x1p53)
-        .show_default();
+            "transfer: those that light --scene most like the environment",
+            {.choices = methods}));
+    command.add(row("--seed", options.seed, "of importance sampling", {.min = 0, .max = 0x1p53}));
 }
 
 /// --format and the details of formats.
@@ -340,20 +325,17 @@ void add_format_options(Command& command, LightsArguments& options) {
     formats.reserve(lights::AllLightFormats.size());
     for (const lights::LightFormat format : lights::AllLightFormats)
         formats.emplace_back(lights::name(format));
-    command
-        .add_option("--format", options.format, "format of the light list, whatever its extension")
-        .one_of(formats);
-    command.add_flag(
-        "--soft", options.export_options.soft,
-        "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
-        "CSV have the solid angle)");
-    command
-        .add_option("--lumens-per-watt", options.export_options.lumens_per_watt,
+    command.add(row("--format", options.format, "format of the light list, whatever its extension",
+                    {.choices = formats}));
+    command.add(
+        row("--soft", options.export_options.soft,
+            "lights as wide as the part of the sphere they stand for (USD, Blender; JSON and "
+            "CSV have the solid angle)"));
+    command.add(row("--lumens-per-watt", options.export_options.lumens_per_watt,
                     "glTF: intensity in lux is irradiance times this; 1 keeps the environment's "
                     "unit, 683 is "
-                    "photometric")
-        .between(1e-6, 1e6)
-        .show_default();
+                    "photometric",
+                    {.min = 1e-6, .max = 1e6}));
 }
 
 } // namespace

@@ -19,18 +19,14 @@ namespace fs = std::filesystem;
 void AnimateOptions::add_to(Command& command) {
     command_ = command;
     scene.add_to(command);
-    command
-        .add_option(
-            "FRAMES", frames,
-            "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'")
-        .file()
-        .required()
-        .shapes_no_frame();
-    command
-        .add_option("--frames", range,
-                    "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)")
-        .shapes_no_frame();
-    command.add(options_of(environment));
+    command.add(
+        row("FRAMES", frames,
+            "environments: frames.%04d.exr, frames.####.exr or a glob in quotes, 'frames_*.hdr'",
+            {.file = true, .required = true, .shapes_frames = false}));
+    command.add(row("--frames", range,
+                    "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)",
+                    {.shapes_frames = false}));
+    command.add_all(options_of(environment));
     add_methods_to(command);
     bounces.add_to(command);
     output.add_to(command).required(false).description(
@@ -40,40 +36,32 @@ void AnimateOptions::add_to(Command& command) {
 }
 
 void AnimateOptions::add_methods_to(Command& command) {
-    command
-        .add_option("--method", method,
+    command.add(row("--method", method,
                     "prt: clusters' transfer, exact; clusters: lights that live over many frames "
                     "(Staton et al.); "
-                    "importance: a few lights chosen anew for every frame")
-        .one_of({"prt", "clusters", "importance"})
-        .show_default();
-    command
-        .add_option(
-            "--bound", bound,
+                    "importance: a few lights chosen anew for every frame",
+                    {.choices = {"prt", "clusters", "importance"}}));
+    command.add(
+        row("--bound", bound,
             "prt: update only clusters whose light changed by more than this part of it; 0: all "
-            "that changed")
-        .between(0.0, 1.0)
-        .show_default();
-    command.add_option("--lights", num_lights, "importance: lights in a frame")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--clusters", num_clusters, "clusters: lights of all frames together")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--samples", num_samples, "clusters: samples of a frame")
-        .between(1, 1000000)
-        .show_default();
-    command.add_option("--fade", fade, "clusters: frames over which lights come and go")
-        .between(0, 10000)
-        .show_default();
-    command.add_flag("--even", even,
-                     "clusters: lights are equally strong over all their frames, as in the paper");
-    command.add_option("--seed", seed, "of the random numbers").show_default();
+            "that changed",
+            {.min = 0.0, .max = 1.0}));
+    command.add(
+        row("--lights", num_lights, "importance: lights in a frame", {.min = 1, .max = 1000000}));
+    command.add(row("--clusters", num_clusters, "clusters: lights of all frames together",
+                    {.min = 1, .max = 1000000}));
+    command.add(
+        row("--samples", num_samples, "clusters: samples of a frame", {.min = 1, .max = 1000000}));
+    command.add(row("--fade", fade, "clusters: frames over which lights come and go",
+                    {.min = 0, .max = 10000}));
+    command.add(row("--even", even,
+                    "clusters: lights are equally strong over all their frames, as in the paper"));
+    command.add(row("--seed", seed, "of the random numbers"));
 }
 
 void AnimateOptions::add_outputs_to(Command& command) {
     const auto file = [&](const std::string& name, std::string& path, const std::string& help) {
-        command.add_option(name, path, help).file().shapes_no_frame();
+        command.add(row(name, path, help, {.file = true, .shapes_frames = false}));
     };
     file("--vertices", vertices,
          "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
@@ -81,12 +69,10 @@ void AnimateOptions::add_outputs_to(Command& command) {
          "another --vertices file of the same frames: says how much this one flickers against it");
     file("--plot", plot, "of --measure: flicker over frames, .svg");
     file("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
-    command.add_option("--fps", frames_per_second, "frames per second of the movie")
-        .between(0.01, 1000.0)
-        .show_default()
-        .shapes_no_frame();
-    command.add_flag("--resume", resume, "keep frames that are there already, from the same inputs")
-        .shapes_no_frame();
+    command.add(row("--fps", frames_per_second, "frames per second of the movie",
+                    {.min = 0.01, .max = 1000.0, .shapes_frames = false}));
+    command.add(row("--resume", resume, "keep frames that are there already, from the same inputs",
+                    {.shapes_frames = false}));
 }
 
 std::optional<cubemap::FramePattern> AnimateOptions::output_pattern() const {

@@ -21,14 +21,11 @@ void tell(const EnvironmentOptions& options, const std::string& assumptions,
 } // namespace
 
 Option EnvironmentOptions::add_to(Command& command) {
-    const Option environment =
-        command
-            .add_option(
-                "ENV", path,
-                "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz")
-            .file()
-            .required();
-    command.add(options_of(*this));
+    const Option environment = command.add(
+        row("ENV", path,
+            "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz",
+            {.file = true, .required = true}));
+    command.add_all(options_of(*this));
     return environment;
 }
 

@@ -11,15 +11,13 @@
 namespace relumine::app {
 
 void SceneOptions::add_to(Command& command) {
-    command
-        .add_option("SCENE", path,
+    command.add(row("SCENE", path,
                     mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
-                             : "scene file from `relumine precompute`")
-        .file()
-        .required();
-    command.add_flag("--clusters-only", clusters_only,
-                     "light the sun through its cluster too, without shadow rays of its own");
-    command.add(options_of(colors));
+                             : "scene file from `relumine precompute`",
+                    {.file = true, .required = true}));
+    command.add(row("--clusters-only", clusters_only,
+                    "light the sun through its cluster too, without shadow rays of its own"));
+    command.add_all(options_of(colors));
 }
 
 namespace {

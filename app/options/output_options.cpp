@@ -16,13 +16,11 @@ namespace relumine::app {
 
 Option OutputOptions::add_to(Command& command) {
     const Option output =
-        command
-            .add_option("-o,--output", path,
+        command.add(row("-o,--output", path,
                         "what to write: .png .exr (picture), .ply .glb (mesh with vertex colours), "
-                        ".npy (numbers)")
-            .file()
-            .required();
-    options_ = command.add(options_of(picture));
+                        ".npy (numbers)",
+                        {.file = true, .required = true}));
+    options_ = command.add_all(options_of(picture));
     return output;
 }
 

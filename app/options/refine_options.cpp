@@ -14,7 +14,8 @@ void RefineOptionGroup::add_to_precompute(Command& command) {
     OptionRow& error = table.front();
     error.name = "--refine";
     error.help += fmt::format(", {} when no error is given", *RefineOptions{}.error);
-    error = std::move(error).when_bare(fmt::format("{}", *RefineOptions{}.error), "[ERROR]");
+    error.bare = fmt::format("{}", *RefineOptions{}.error);
+    error.type = "[ERROR]";
     add(command, std::move(table));
 }
 
@@ -30,10 +31,9 @@ void RefineOptionGroup::add(Command& command, OptionTable table) {
     table.push_back(
         row("--refine-for", light_,
             "the environment that matters most, .exr or .hdr: more vertices at the shadows of its "
-            "sun; the scene can still be lit by any other")
-            .called("ENV"));
-    table.back().kind = OptionRow::Kind::File;
-    for (const Option& option : command.add(std::move(table)))
+            "sun; the scene can still be lit by any other",
+            {.file = true, .type = "ENV"}));
+    for (const Option& option : command.add_all(std::move(table)))
         if (option.name() != "--refine" && option.name() != "--error" &&
             option.name() != "--max-edge")
             limits_.push_back(option);

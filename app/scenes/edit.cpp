@@ -280,36 +280,30 @@ void add_edit(Command& program, Session& session) {
     auto options = std::make_shared<EditArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)")
-        .file();
+    command.add(row("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)",
+                    {.file = true}));
     options->output.add_to(command);
     options->bounces.add_to(command);
-    command.add_option<PointText>(
-        "--disc", options->disc,
-        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
-        "scene to the light");
-    command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
-        .between(1e-6, 180.0)
-        .show_default();
-    command
-        .add_option<ColorText>("--gain", options->gain,
-                               "factor on the disc's radiance: a number or R,G,B")
-        .show_default();
-    command
-        .add_option("--save-env", options->saved_environment,
-                    "write the edited environment: cube .exr or .hdr")
-        .file();
-    command.add_option<PointText>(
+    command.add(
+        row<PointText>("--disc", options->disc,
+                       "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
+                       "scene to the light"));
+    command.add(row("--radius", options->radius_degrees, "angular radius of the disc in degrees",
+                    {.min = 1e-6, .max = 180.0}));
+    command.add(row<ColorText>("--gain", options->gain,
+                               "factor on the disc's radiance: a number or R,G,B"));
+    command.add(row("--save-env", options->saved_environment,
+                    "write the edited environment: cube .exr or .hdr", {.file = true}));
+    command.add(row<PointText>(
         "--who", options->who,
-        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
-    command
-        .add_option(
-            "--lit-by", options->lit_by,
+        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png"));
+    command.add(
+        row("--lit-by", options->lit_by,
             "write the scene as lit by a region of the environment alone: a layer's name, or "
-            "X,Y,Z,RADIUS for a disc")
-        .excludes("--who");
-    command.add_flag("--watch", options->watch,
-                     "go on: when another program saves ENV, update and write OUT again");
+            "X,Y,Z,RADIUS for a disc",
+            {.excludes = "--who"}));
+    command.add(row("--watch", options->watch,
+                    "go on: when another program saves ENV, update and write OUT again"));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -339,17 +339,15 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
 
 /// Everything that decides which light reaches what.
 void add_work_options(Command& command, PrecomputeArguments& options) {
-    command.add(options_of(options.mesh_options));
-    command
-        .add_option("--simplify", options.simplify,
+    command.add_all(options_of(options.mesh_options));
+    command.add(row("--simplify", options.simplify,
                     "light so many of the mesh's vertices, those that shape it; all of its "
-                    "triangles go on to throw shadows")
-        .between(4, 4294967294.0)
-        .type_name("N");
+                    "triangles go on to throw shadows",
+                    {.min = 4, .max = 4294967294.0, .type = "N", .shows_default = false}));
     options.refine.add_to_precompute(command);
     constexpr std::array<std::string_view, 2> OfCheckpoints = {"--resume", "--checkpoint-seconds"};
     OptionTable table = options_of(options.precompute);
-    command.add(options.is_plan ? without(OfCheckpoints, std::move(table)) : std::move(table));
+    command.add_all(options.is_plan ? without(OfCheckpoints, std::move(table)) : std::move(table));
     command.add(material_row(options.materials));
 }
 
@@ -359,12 +357,11 @@ void add_precompute(Command& program, Session& session) {
     Command command =
         program.add_command("precompute", "compute a mesh's light transfer: MESH -> SCENE.prt");
     auto options = std::make_shared<PrecomputeArguments>();
-    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl").file();
-    command
-        .add_option("-o,--output", options->output,
-                    "the scene file to write, .prt; with --plan the part")
-        .file()
-        .required();
+    command.add(
+        row("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl", {.file = true}));
+    command.add(row("-o,--output", options->output,
+                    "the scene file to write, .prt; with --plan the part",
+                    {.file = true, .required = true}));
     options->parts.add_to(command);
     add_work_options(command, *options);
     session.add_common_options(command);
@@ -377,12 +374,10 @@ void add_plan(Command& program, Session& session) {
     auto options = std::make_shared<PrecomputeArguments>();
     options->is_plan = true;
     options->precompute.checkpoint_seconds = 0.0;
-    command.add_option("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl")
-        .file()
-        .required();
-    command.add_option("-o,--output", options->output, "the plan to write, .plan")
-        .file()
-        .required();
+    command.add(row("MESH", options->mesh, "mesh: .obj, .gltf, .glb, .ply, .off or .stl",
+                    {.file = true, .required = true}));
+    command.add(row("-o,--output", options->output, "the plan to write, .plan",
+                    {.file = true, .required = true}));
     add_work_options(command, *options);
     session.add_common_options(command);
     command.on_run([options, command, &session] { run(*options, command, session); });

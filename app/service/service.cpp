@@ -92,7 +92,7 @@ Report id_of(double number) {
 
 Argument argument_of(const JsonReader& json, const OptionRow& option, const JsonValue& value) {
     const std::string name = member_of(option);
-    if (option.kind == OptionRow::Kind::Flag)
+    if (option.is_flag)
         return {.option = json.boolean(value, fmt::format("\"{}\"", name)) ? "--" + name : "",
                 .value = {}};
     const std::string text = value_text(json, value, name);
@@ -230,10 +230,9 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
 
 void Service::Impl::declare_edit(Command& command) {
     auto path = std::make_shared<std::string>();
-    command
-        .add_option("--layers", *path,
-                    "a list of layers as in a layer file, or the path of a layer file")
-        .required();
+    command.add(row("--layers", *path,
+                    "a list of layers as in a layer file, or the path of a layer file",
+                    {.required = true}));
     command.on_run([this, path] { set_layers(*path); });
 }
 
@@ -275,9 +274,10 @@ void Service::Impl::declare_radiance(Command& command) {
         std::string shared_memory;
     };
     auto options = std::make_shared<Options>();
-    command.add_option("-o,--output", options->output, "an .npy file [receivers x 3]").file();
-    command.add_option("--shared-memory", options->shared_memory,
-                       "POSIX shared memory that the client has made: float32 [receivers x 3]");
+    command.add(
+        row("-o,--output", options->output, "an .npy file [receivers x 3]", {.file = true}));
+    command.add(row("--shared-memory", options->shared_memory,
+                    "POSIX shared memory that the client has made: float32 [receivers x 3]"));
     command.on_run([this, options] { write_radiance(options->output, options->shared_memory); });
 }
 

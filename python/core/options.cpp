@@ -53,7 +53,7 @@ void set(const OptionRow& option, const py::handle& value) {
 }
 
 py::object default_of(const OptionRow& option) {
-    if (option.kind == OptionRow::Kind::Flag)
+    if (option.is_flag)
         return py::bool_(option.initial == "true");
     if (option.initial.empty())
         return py::none();
