@@ -1,13 +1,13 @@
 #include "relumine/precompute_options.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <stdexcept>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "files/joined.h"
 
@@ -32,125 +32,95 @@ constexpr std::array<Model, 3> Models = {{
     {"lambert", prt::Highlight::None, "albedo", "", "", 0.0f},
 }};
 
-class Parser {
-public:
-    explicit Parser(const std::string& text) : text_(text) {}
-    SurfaceMaterial parse();
+/// A material as text. Values are read as they are met.
+struct Parser {
+    const std::string& text;
+    const Model* model = nullptr;
+    std::size_t start_of_model = 0;
+    std::map<std::string_view, std::vector<float>> values = {};
 
-private:
-    const Model& take_model(std::string_view& rest, SurfaceMaterial& result) const;
-    void read_values(std::string_view rest, const Model& model);
-    [[nodiscard]] std::vector<float> numbers(std::string_view key, float max) const;
-    [[nodiscard]] std::optional<glm::vec3> color(std::string_view key) const;
+    /// Group names may have any letters: the model is looked for behind the last = that a model's
+    /// name follows.
+    void find_model() {
+        for (std::size_t start = text.size() + 1; start-- > 0;) {
+            const std::string tail = text.substr(std::min(start, text.size()));
+            for (const Model& each : Models)
+                if ((start == 0 || text[start - 1] == '=') &&
+                    split(tail, ':').front() == each.name) {
+                    model = &each;
+                    start_of_model = start;
+                    return;
+                }
+        }
+        refuse_text("[GROUP=]ggx:..., [GROUP=]blinn:... or [GROUP=]lambert:...", text);
+    }
 
-    const std::string& text_;
-    std::map<std::string_view, std::vector<std::string_view>> values_;
-};
-
-/// Group names may have any letters: the model is looked for behind the last = that a model's name
-/// follows.
-const Model& Parser::take_model(std::string_view& rest, SurfaceMaterial& result) const {
-    const std::string_view text = text_;
-    for (std::size_t start = text.size() + 1; start-- > 0;) {
-        if (start > 0 && text[start - 1] != '=')
-            continue;
-        for (const Model& model : Models) {
-            const std::string_view tail = text.substr(start);
-            if (tail != model.name && !tail.starts_with(fmt::format("{}:", model.name)))
-                continue;
-            if (start == 1)
-                refuse_text("a group's name before =", text);
-            result.group = start > 0 ? text.substr(0, start - 1) : "";
-            rest = tail.substr(std::min(model.name.size() + 1, tail.size()));
-            return model;
+    /// key=number,number,number,key=number: words without = belong to the key before them.
+    void read_values(const std::string& list) {
+        const std::array<std::string_view, 3> all = {model->albedo, model->specular, model->width};
+        const auto keys = std::span(all).first(
+            static_cast<std::size_t>(std::find(all.begin(), all.end(), "") - all.begin()));
+        auto current = values.end();
+        for (const std::string& word : split(list, ',')) {
+            const std::size_t equals = word.find('=');
+            if (equals != std::string::npos) {
+                const auto key = std::find(keys.begin(), keys.end(), word.substr(0, equals));
+                if (key == keys.end())
+                    refuse_text(fmt::format("{} of {}", files::joined(keys, ", "), model->name),
+                                word.substr(0, equals));
+                if (values.contains(*key))
+                    refuse_text(fmt::format("{} once", *key), text);
+                current = values.try_emplace(*key).first;
+            }
+            if (current == values.end() || word.empty())
+                refuse_text(fmt::format("{}:NAME=VALUE,...", model->name), text);
+            const float max = current->first == model->width ? model->max_width : 1.0f;
+            const std::string number = word.substr(equals + 1); // npos + 1 is 0
+            const auto value = parse_number(number);
+            if (!value || !(*value >= 0.0 && *value <= double{max}))
+                refuse_text(fmt::format("numbers of 0 to {} as {}", max, current->first), number);
+            current->second.push_back(static_cast<float>(option_text::real(number, 1e6)));
         }
     }
-    refuse_text("[GROUP=]ggx:..., [GROUP=]blinn:... or [GROUP=]lambert:...", text);
-}
 
-/// key=number,number,number,key=number: words without = belong to the key before them.
-void Parser::read_values(std::string_view rest, const Model& model) {
-    std::vector<std::string_view> keys = {model.albedo};
-    for (const std::string_view key : {model.specular, model.width})
-        if (!key.empty())
-            keys.push_back(key);
-    std::vector<std::string_view>* current = nullptr;
-    while (!rest.empty()) {
-        const std::size_t comma = std::min(rest.find(','), rest.size());
-        std::string_view word = rest.substr(0, comma);
-        const bool ends_in_comma = comma + 1 == rest.size();
-        rest.remove_prefix(std::min(comma + 1, rest.size()));
-        if (const std::size_t equals = word.find('='); equals != std::string_view::npos) {
-            const std::string_view key = word.substr(0, equals);
-            if (std::find(keys.begin(), keys.end(), key) == keys.end())
-                refuse_text(fmt::format("{} of {}", files::joined(keys, ", "), model.name), key);
-            if (values_.contains(key))
-                refuse_text(fmt::format("{} once", key), text_);
-            current = &values_[key];
-            word.remove_prefix(equals + 1);
-        }
-        if (current == nullptr || ends_in_comma)
-            refuse_text(fmt::format("{}:NAME=VALUE,...", model.name), text_);
-        current->push_back(word);
+    [[nodiscard]] std::optional<glm::vec3> color(std::string_view key) const {
+        const auto found = values.find(key);
+        if (found == values.end())
+            return std::nullopt;
+        const std::vector<float>& numbers = found->second;
+        if (numbers.size() != 1 && numbers.size() != 3)
+            refuse_text(fmt::format("1 or 3 numbers of {}", key),
+                        fmt::format("{}", fmt::join(numbers, ",")));
+        return numbers.size() == 1 ? glm::vec3(numbers[0])
+                                   : glm::vec3(numbers[0], numbers[1], numbers[2]);
     }
-}
 
-std::vector<float> Parser::numbers(std::string_view key, float max) const {
-    std::vector<float> result;
-    const auto found = values_.find(key);
-    if (found == values_.end())
+    SurfaceMaterial parse() {
+        find_model();
+        if (start_of_model == 1)
+            refuse_text("a group's name before =", text);
+        const std::size_t end = start_of_model + model->name.size() + 1;
+        if (end < text.size())
+            read_values(text.substr(end));
+        SurfaceMaterial result{.group = text.substr(0, start_of_model > 0 ? start_of_model - 1 : 0),
+                               .highlight = model->highlight,
+                               .albedo = color(model->albedo),
+                               .specular = color(model->specular)};
+        if (!model->width.empty()) {
+            if (values[model->width].size() != 1)
+                refuse_text(fmt::format("one number of {} of {}", model->width, model->name), text);
+            result.roughness_or_exponent = values[model->width].front();
+        }
+        if (model->highlight == prt::Highlight::BlinnPhong) {
+            if (!result.specular)
+                refuse_text("ks of blinn", text);
+            const glm::vec3 sum = result.albedo.value_or(glm::vec3(0.0f)) + *result.specular;
+            if (std::max({sum.r, sum.g, sum.b}) > 1.0f + 1e-6f)
+                refuse_text("kd + ks of 1 or less", text);
+        }
         return result;
-    for (const std::string_view word : found->second) {
-        float value = 0.0f;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-        if (error != std::errc() || end != word.data() + word.size() ||
-            !(value >= 0.0f && value <= max))
-            refuse_text(fmt::format("numbers of 0 to {} as {}", max, key), word);
-        result.push_back(value);
     }
-    return result;
-}
-
-std::optional<glm::vec3> Parser::color(std::string_view key) const {
-    const std::vector<float> values = numbers(key, 1.0f);
-    if (values.empty())
-        return std::nullopt;
-    if (values.size() == 1)
-        return glm::vec3(values[0]);
-    if (values.size() != 3) {
-        std::vector<std::string> texts;
-        texts.reserve(values.size());
-        for (const float value : values)
-            texts.push_back(fmt::format("{}", value));
-        refuse_text(fmt::format("1 or 3 numbers of {}", key), files::joined(texts, ","));
-    }
-    return glm::vec3(values[0], values[1], values[2]);
-}
-
-SurfaceMaterial Parser::parse() {
-    SurfaceMaterial result;
-    std::string_view rest;
-    const Model& model = take_model(rest, result);
-    read_values(rest, model);
-    result.highlight = model.highlight;
-    result.albedo = color(model.albedo);
-    if (!model.specular.empty())
-        result.specular = color(model.specular);
-    if (!model.width.empty()) {
-        const std::vector<float> width = numbers(model.width, model.max_width);
-        if (width.size() != 1)
-            refuse_text(fmt::format("one number of {} of {}", model.width, model.name), text_);
-        result.roughness_or_exponent = width[0];
-    }
-    if (model.highlight == prt::Highlight::BlinnPhong) {
-        if (!result.specular)
-            refuse_text("ks of blinn", text_);
-        const glm::vec3 sum = result.albedo.value_or(glm::vec3(0.0f)) + *result.specular;
-        if (std::max({sum.r, sum.g, sum.b}) > 1.0f + 1e-6f)
-            refuse_text("kd + ks of 1 or less", text_);
-    }
-    return result;
-}
+};
 
 bool is_size(std::uint32_t side) {
     return side >= 1 && side <= prt::MaxPictureSize;
@@ -239,7 +209,7 @@ std::uint64_t MemoryText::read(const std::string& text) {
 }
 
 SurfaceMaterial MaterialText::read(const std::string& text) {
-    return Parser(text).parse();
+    return Parser{text}.parse();
 }
 
 std::string MaterialText::show(const SurfaceMaterial& material) {

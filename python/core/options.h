@@ -23,8 +23,8 @@ template<typename Options>
     return options;
 }
 
-/// The options of pictures for signatures and help: [(name, default, help)]. The default is None, a
-/// number, a truth value or text.
+/// The options of pictures for signatures, help and tests: [(name, default, help, another value)].
+/// A default is None, a number, a truth value or text.
 void bind_options(py::module_& module);
 
 } // namespace relumine::python

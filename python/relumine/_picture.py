@@ -19,13 +19,14 @@ _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 def with_picture_options(function: _Function) -> _Function:
     """Gives a function of **options the signature and the help of the options of pictures."""
-    rows = [*_core.picture_options(), ("blur", None, "degrees: background 'blur=DEGREES'")]
+    blur = ("blur", None, "degrees: background 'blur=DEGREES'", 5.0)
+    rows = [*_core.picture_options(), blur]
     own = inspect.signature(function)
     parameters = [each for each in own.parameters.values() if each.kind is not each.VAR_KEYWORD]
-    for name, default, _ in rows:
+    for name, default, _, _ in rows:
         parameters.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default))
     setattr(function, "__signature__", own.replace(parameters=parameters))
-    told = "\n".join(f"{name:12} {in_python(help)}" for name, _, help in rows)
+    told = "\n".join(f"{name:12} {in_python(help)}" for name, _, help, _ in rows)
     function.__doc__ = f"{inspect.getdoc(function)}\n\nAll options:\n\n{told}\n"
     return function
 
