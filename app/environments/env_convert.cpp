@@ -25,24 +25,27 @@ struct ConvertArguments {
     /// Empty: what `to` usually reads
     std::optional<cubemap::Layout> to_layout;
     std::string to = "openexr";
-    /// W or WxH
-    std::string size;
+    std::optional<cubemap::ImageSize> size;
     std::uint32_t face_resolution = 0;
     std::string samples = "auto";
     bool split_sun = false;
 };
 
-/// --size: W, or WxH.
-std::optional<cubemap::ImageSize> parse_size(const std::string& text) {
-    if (text.empty())
-        return std::nullopt;
-    if (const auto sides = parse_sides(text))
-        return cubemap::ImageSize{sides->first, sides->second};
-    const auto width = parse_count(text);
-    if (!width)
-        throw UsageError("--size", fmt::format("expected W or WxH, got '{}'", text));
-    return cubemap::ImageSize{*width, 0};
-}
+/// W, or WxH
+struct ImageSizeText {
+    static constexpr const char* Type = "TEXT";
+    static cubemap::ImageSize read(const std::string& text) {
+        if (const auto sides = parse_sides(text))
+            return {sides->first, sides->second};
+        const auto width = parse_count(text);
+        if (!width)
+            refuse_text("W or WxH", text);
+        return {*width, 0};
+    }
+    static std::string show(const cubemap::ImageSize& size) {
+        return fmt::format("{}x{}", size.width, size.height);
+    }
+};
 
 /// Throws what a layout cannot be.
 cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layout) {
@@ -58,7 +61,7 @@ cubemap::ImageSize checked(const cubemap::ImageSize& size, cubemap::Layout layou
 
 cubemap::ImageSize target_size(const ConvertArguments& options,
                                const cubemap::EnvironmentImage& image, cubemap::Layout layout) {
-    const auto size = parse_size(options.size);
+    const std::optional<cubemap::ImageSize>& size = options.size;
     if (size && options.face_resolution != 0)
         throw UsageError("--size", "expected either --size or --face-resolution");
     if (size) {
@@ -116,7 +119,6 @@ void run(const ConvertArguments& options, Session& session) {
     const cubemap::Convention& from = *cubemap::find_convention(options.input.from);
     const cubemap::Convention& to = *cubemap::find_convention(options.to);
     require_environment_name("--output", options.output);
-    static_cast<void>(parse_size(options.size));
     std::vector<std::string> inputs;
     for (const auto& path : cubemap::environment_files(options.input.path))
         inputs.push_back(path.string());
@@ -135,11 +137,9 @@ void run(const ConvertArguments& options, Session& session) {
 
     const cubemap::Layout layout = target_layout(options, image, to);
     const cubemap::ImageSize size = target_size(options, image, layout);
-    cubemap::Sampling sampling = to.has_attribute
-                                     ? cubemap::default_sampling(options.output, layout)
-                                     : cubemap::Sampling::TexelCentres;
-    if (options.samples == "centres")
-        sampling = cubemap::Sampling::TexelCentres;
+    const cubemap::Sampling sampling = to.has_attribute && options.samples != "centres"
+                                           ? cubemap::default_sampling(options.output, layout)
+                                           : cubemap::Sampling::TexelCentres;
     Report result = {{"input", described(from, image, cubemap::statistics(image))}};
     watch.lap();
     const glm::dmat3 world_from_image = relumine::world_from_image(image.layout, options.input);
@@ -162,11 +162,11 @@ void run(const ConvertArguments& options, Session& session) {
 
     session.say(fmt::format("{}: {} {} x {}, as {} reads it", options.output, cubemap::name(layout),
                             size.width, size.height, to.name));
-    if (sun_file)
+    if (sun_file) {
         session.say(fmt::format("{}: the sun, {:.2g} % of the light", sun_file->path(),
                                 100.0 * sun.share_of_power));
-    if (sun_file)
         result.set("sun", sun.report);
+    }
     result.set("output", described(to, converted, statistics));
     result.set("assumptions", image.assumptions);
     result.set("seconds_load", seconds_load);
@@ -194,10 +194,10 @@ void add_convert(Command& group, Session& session) {
     command.add(row<LayoutText>("--to-layout", options->to_layout,
                                 "layout of OUT (IN's; with --to, what that program reads)"));
     command.add(row<ConventionText>("--to", options->to, "whose convention OUT follows"));
-    command.add(
-        row("--size", options->size,
-            "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
-            "octahedral 640; cube to cube as it is)"));
+    command.add(row<ImageSizeText>(
+        "--size", options->size,
+        "pixels of OUT: W, or WxH (as fine as IN, at least 256 per face, from discs 512, to "
+        "octahedral 640; cube to cube as it is)"));
     command.add(row("--face-resolution", options->face_resolution,
                     "the same as a cube face: a lat-long gets 4R x 2R pixels",
                     {.min = 0, .max = 16384, .shows_default = false}));

@@ -18,6 +18,7 @@
 
 #include "files/output_file.h"
 #include "prt/precompute.h"
+#include "relumine/option_table.h"
 
 namespace relumine::app {
 
@@ -46,31 +47,14 @@ public:
         const Descriptor read_end{ends[0]};
         input_.fd = ends[1];
         // Players want even sides and 4:2:0.
-        std::vector<std::string> words = {ffmpeg.string(),
-                                          "-y",
-                                          "-loglevel",
-                                          "error",
-                                          "-f",
-                                          "image2pipe",
-                                          "-c:v",
-                                          "png",
-                                          "-framerate",
-                                          fmt::format("{}", fps),
-                                          "-i",
-                                          "-",
-                                          "-vf",
-                                          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                          "-c:v",
-                                          "libx264",
-                                          "-crf",
-                                          "17",
-                                          "-pix_fmt",
-                                          "yuv420p",
-                                          "-movflags",
-                                          "+faststart",
-                                          "-f",
-                                          "mp4",
-                                          output.string()};
+        std::vector<std::string> words =
+            split(fmt::format("ffmpeg -y -loglevel error -f image2pipe -c:v png -framerate {} -i - "
+                              "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 17 -pix_fmt "
+                              "yuv420p -movflags +faststart -f mp4",
+                              fps),
+                  ' ');
+        words.front() = ffmpeg.string();
+        words.push_back(output.string());
         std::vector<char*> arguments;
         arguments.reserve(words.size() + 1);
         for (std::string& word : words)

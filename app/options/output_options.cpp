@@ -38,10 +38,10 @@ void OutputOptions::check_fits(const Scene& scene) const {
             "--output",
             fmt::format("expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'",
                         prt::description(scene.layout), path));
-    const unsigned receivers = on_vertices ? OptionRow::Vertices
+    const unsigned receivers = on_vertices ? OptionRow::OnVertices
                                : std::holds_alternative<prt::TexelLayout>(scene.layout)
-                                   ? OptionRow::Texels
-                                   : OptionRow::Pixels;
+                                   ? OptionRow::OnTexels
+                                   : OptionRow::OnPixels;
     for (const Option& option : options_)
         if (option.is_given() && (option.row().receivers & receivers) == 0)
             throw OptionError(option.name(),

@@ -1,7 +1,6 @@
 #include "app/service/service.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <list>
@@ -38,14 +37,6 @@ namespace {
 using files::JsonReader;
 using files::JsonValue;
 
-/// How a member of a request is written as an argument of the command line.
-struct Argument {
-    /// "--exposure=1"; empty: a flag that is not set
-    std::string option;
-    /// The value of an argument without a name
-    std::optional<std::string> value;
-};
-
 /// "face-resolution" for "face_resolution": what is easier to write in other languages.
 std::string with_dashes(std::string name) {
     std::replace(name.begin(), name.end(), '_', '-');
@@ -54,13 +45,7 @@ std::string with_dashes(std::string name) {
 
 /// The name of an option's member: "exposure" of --exposure, "scene" of SCENE.
 std::string member_of(const OptionRow& option) {
-    std::string name = option.name;
-    std::transform(name.begin(), name.end(), name.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    for (const std::string& each : option.names())
-        if (each.starts_with("--"))
-            name = each.substr(2);
-    return name;
+    return with_dashes(option.key());
 }
 
 std::string number_text(double number) {
@@ -88,17 +73,6 @@ Report id_of(double number) {
     return number == std::floor(number) && std::abs(number) <= LargestWhole
                ? Report(static_cast<std::int64_t>(number))
                : Report(number);
-}
-
-Argument argument_of(const JsonReader& json, const OptionRow& option, const JsonValue& value) {
-    const std::string name = member_of(option);
-    if (option.is_flag)
-        return {.option = json.boolean(value, fmt::format("\"{}\"", name)) ? "--" + name : "",
-                .value = {}};
-    const std::string text = value_text(json, value, name);
-    if (option.is_argument())
-        return {.option = {}, .value = text};
-    return {.option = fmt::format("--{}={}", name, text), .value = {}};
 }
 
 } // namespace
@@ -357,11 +331,15 @@ void Service::Impl::perform(const JsonReader& reader, const JsonValue& root) {
             words.emplace_back("--layers=a list");
             continue;
         }
-        const Argument argument = argument_of(reader, option, value);
-        if (argument.value)
-            values.push_back(*argument.value);
-        else if (!argument.option.empty())
-            words.push_back(argument.option);
+        if (option.is_flag) {
+            if (reader.boolean(value, fmt::format("\"{}\"", member)))
+                words.push_back("--" + member);
+        } else if (const std::string text = value_text(reader, value, member);
+                   option.is_argument()) {
+            values.push_back(text);
+        } else {
+            words.push_back(fmt::format("--{}={}", member, text));
+        }
     }
     if (!values.empty()) {
         words.emplace_back("--");

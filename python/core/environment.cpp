@@ -189,6 +189,15 @@ py::dict described(const cubemap::Sun& sun) {
     return result;
 }
 
+py::dict irradiance_of(const cubemap::CubeMap& map) {
+    constexpr std::array<const char*, 6> Axes = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
+    py::dict result;
+    for (std::size_t axis = 0; axis < Axes.size(); ++axis)
+        result[Axes[axis]] = tuple_of(
+            cubemap::irradiance(map, cubemap::cube_point(cubemap::AllFaces[axis], 0.5, 0.5)));
+    return result;
+}
+
 /// `info ENV --json`, in the world's axes.
 py::dict findings(const EnvironmentHandle& own) {
     struct Found {
@@ -208,19 +217,10 @@ py::dict findings(const EnvironmentHandle& own) {
         return result;
     });
     const cubemap::EnvironmentStatistics& s = found.statistics;
-    py::dict irradiance;
-    constexpr std::array<const char*, 6> Axes = {"+X", "-X", "+Y", "-Y", "+Z", "-Z"};
-    for (std::size_t axis = 0; axis < Axes.size(); ++axis)
-        irradiance[Axes[axis]] = tuple_of(cubemap::irradiance(
-            own.made.map, cubemap::cube_point(cubemap::AllFaces[axis], 0.5, 0.5)));
     py::list faults;
-    for (const cubemap::SeamFault& fault : found.faults) {
-        py::dict item;
-        item["where"] = fault.where;
-        item["step_ev"] = fault.step_ev;
-        item["usual_step_ev"] = fault.usual_step_ev;
-        faults.append(std::move(item));
-    }
+    for (const cubemap::SeamFault& fault : found.faults)
+        faults.append(py::dict(py::arg("where") = fault.where, py::arg("step_ev") = fault.step_ev,
+                               py::arg("usual_step_ev") = fault.usual_step_ev));
     py::dict result;
     result["mean_radiance"] = tuple_of(s.mean_radiance);
     result["mean_luminance"] = s.mean_luminance;
@@ -228,7 +228,7 @@ py::dict findings(const EnvironmentHandle& own) {
     result["min_positive_luminance"] = s.min_positive_luminance;
     result["dynamic_range_ev"] = s.dynamic_range_ev;
     result["brightest_direction"] = tuple_of(turn * s.brightest_direction);
-    result["irradiance"] = std::move(irradiance);
+    result["irradiance"] = irradiance_of(own.made.map);
     const double from_below = cubemap::light_from_below(own.made.map);
     result["light_from_below"] = from_below;
     result["upside_down"] = cubemap::upside_down(from_below).has_value();

@@ -121,8 +121,9 @@ PrecomputeOptions work_options(const Mesh& mesh, const py::dict& given) {
     PrecomputeOptions options;
     std::vector<SurfaceMaterial> materials;
     std::string output;
-    take(joined({options_of(options),
-                 {material_row(materials), row("--output", output, "the .prt file to write")}}),
+    take(relumine::joined(
+             {options_of(options),
+              {material_row(materials), row("--output", output, "the .prt file to write")}}),
          given);
     check(options);
     options.output = output;
