@@ -105,7 +105,7 @@ CLI::Option* add_value(CLI::App& app, const OptionRow& row) {
         try {
             row.set(texts);
         } catch (const OptionError& error) {
-            throw OptionError(error.what() + hint(row, app, texts.back()));
+            throw OptionError(error.option, error.reason + hint(row, app, texts.back()));
         }
         return true;
     };

@@ -1,6 +1,7 @@
 // relumine._core, the compiled part of the Python package. Its users are the Python sources beside
 // it, which check arguments and say what everything means.
 #include <optional>
+#include <string>
 
 #include <pybind11/pybind11.h>
 
@@ -36,6 +37,9 @@ PYBIND11_MODULE(_core, module) {
             std::rethrow_exception(error);
         } catch (const relumine::MemoryLimitExceeded& limit) {
             PyErr_SetString(PyExc_MemoryError, limit.what());
+        } catch (const relumine::OptionError& error) { // floor_fade for --floor-fade
+            const std::string name = relumine::OptionRow{{}, error.option}.key();
+            PyErr_SetString(PyExc_ValueError, (name + ": " + error.reason).c_str());
         }
     });
     bind_arrays(module);

@@ -96,9 +96,10 @@ void bind_options(py::module_& module) {
         py::list rows;
         for (const OptionRow& each : options_of(options))
             rows.append(py::make_tuple(each.key(), default_of(each), each.help,
-                                       !each.example.empty()   ? py::object(py::str(each.example))
-                                       : !each.choices.empty() ? py::object(py::str(each.choices.back()))
-                                                               : default_of(each)));
+                                       !each.example.empty() ? py::object(py::str(each.example))
+                                       : !each.choices.empty()
+                                           ? py::object(py::str(each.choices.back()))
+                                           : default_of(each)));
         return rows;
     });
 }

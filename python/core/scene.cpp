@@ -56,8 +56,10 @@ MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
 /// Returns the mesh and figures.
 py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
     using Result = std::pair<MeshPointer, RefineReport>;
-    const Result result = in_background(
-        progress, [mesh, options = options_from<RefineOptions>(given)](const Reins& reins) mutable {
+    RefineOptions chosen;
+    take(relumine::joined({options_of(chosen), {row("--bias", chosen.bias, "")}}), given);
+    const Result result =
+        in_background(progress, [mesh, options = std::move(chosen)](const Reins& reins) mutable {
             options.stop = reins.stop;
             options.on_progress = reins.on_progress;
             Result found;

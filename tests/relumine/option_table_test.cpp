@@ -102,8 +102,9 @@ void check_table() {
             EXPECT_THROW(option.set("-1e30"), OptionError);
             EXPECT_THROW(option.set("1e30"), OptionError);
         }
-        if (!option.choices.empty())
+        if (!option.choices.empty()) {
             EXPECT_THROW(option.set("no such word"), OptionError);
+        }
     }
 }
 

@@ -56,8 +56,9 @@ TEST_F(OptionTables, CommandsHaveAllOptionsOfPicturesWithTheirDefaults) {
             const std::size_t line = help.find(fmt::format("\n  {} ", option.name));
             const std::size_t flag = help.find(fmt::format("\n  {}\n", option.name));
             ASSERT_NE(std::min(line, flag), std::string::npos);
-            if (!option.is_flag && !option.initial.empty())
+            if (!option.is_flag && !option.initial.empty()) {
                 EXPECT_THAT(help, HasSubstr("=" + option.initial));
+            }
         }
     }
 }
