@@ -105,7 +105,10 @@ CLI::Option* add_value(CLI::App& app, const OptionRow& row) {
         try {
             row.set(texts);
         } catch (const OptionError& error) {
-            throw OptionError(error.option, error.reason + hint(row, app, texts.back()));
+            const std::string more = hint(row, app, texts.back());
+            if (more.empty())
+                throw;
+            throw OptionError(error.option, error.reason + more);
         }
         return true;
     };

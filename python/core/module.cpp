@@ -39,7 +39,8 @@ PYBIND11_MODULE(_core, module) {
             PyErr_SetString(PyExc_MemoryError, limit.what());
         } catch (const relumine::OptionError& error) { // floor_fade for --floor-fade
             const std::string name = relumine::OptionRow{{}, error.option}.key();
-            PyErr_SetString(PyExc_ValueError, (name + ": " + error.reason).c_str());
+            const std::string text = name.empty() ? error.what() : name + ": " + error.reason;
+            PyErr_SetString(PyExc_ValueError, text.c_str());
         }
     });
     bind_arrays(module);

@@ -96,6 +96,17 @@ TEST_F(OptionTables, TheRecordOfFramesHasEach) {
     }
 }
 
+TEST_F(OptionTables, OnlyWhatShapesNoFrameIsNotInTheRecord) {
+    std::vector<std::string> others;
+    for (const OptionRow& option : rows_of("animate"))
+        if (!option.shapes_frames)
+            others.push_back(option.long_name());
+    EXPECT_THAT(others,
+                testing::UnorderedElementsAre("FRAMES", "--frames", "--vertices", "--measure",
+                                              "--plot", "--mp4", "--fps", "--resume", "--json",
+                                              "--threads", "--quiet", "--verbose"));
+}
+
 TEST_F(OptionTables, ThePageNamesEach) {
     std::ifstream file(RELUMINE_SOURCE_DIR "/docs/command-line.md");
     std::stringstream page;
