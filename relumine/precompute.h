@@ -245,8 +245,7 @@ struct MemoryLimitExceeded : std::runtime_error {
 ///
 /// Memory:  the mesh, all receivers, and twice its share of the result.
 /// Throws:  Cancelled when any of the processes was asked to stop; as precompute() does for what
-/// goes
-///          wrong here; what the team throws where another process has failed.
+///          goes wrong here; what the team throws where another process has failed.
 void assist(prt::Team& team, const std::stop_token& stop = {});
 
 /// Plans a precompute that is done in parts, by any number of processes on any number of machines:

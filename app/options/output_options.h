@@ -7,6 +7,7 @@
 #include "app/command_line/command_line.h"
 #include "app/options/lit_scene.h"
 #include "cubemap/image/frame_pattern.h"
+#include "files/extension.h"
 #include "relumine/output.h"
 
 namespace relumine::app {
@@ -38,8 +39,7 @@ private:
     std::vector<Option> options_;
 };
 
-/// A path's extension in small letters, with the dot.
-[[nodiscard]] std::string extension_of(const std::string& path);
+using files::extension_of;
 
 /// Throws UsageError unless an option's path has one of these extensions (capital letters are
 /// allowed).

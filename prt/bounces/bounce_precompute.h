@@ -96,8 +96,8 @@ struct TooManyHits : std::runtime_error {
 /// matrix of all parts.
 ///
 /// transfer: has the counts of the part's receivers; order and normals are those of all.
-/// Result:   the same for any number of processes. With is_planned the same for any number of
-/// parts. Throws:   as precompute_bounces().
+/// Result:   the same for any number of processes, and with is_planned for any number of parts.
+/// Throws:   as precompute_bounces().
 [[nodiscard]] BounceSamples sample_bounces(const mesh::TriangleMesh& mesh,
                                            const Receivers& receivers, const Transfer& transfer,
                                            const BounceProbes& probes, const RayScene& rays,

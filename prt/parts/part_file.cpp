@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "files/hash.h"
 #include "files/json.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
@@ -60,7 +61,7 @@ StoredPart read_part(const std::filesystem::path& path) {
 /// Of a plan: the JSON has the tolerance.
 std::optional<PlannedBounces> planned_bounces(const SectionReader& reader) {
     const files::Json json = reader.json("plan");
-    if (!json.contains("bounce_tolerance"))
+    if (!json.find("bounce_tolerance"))
         return std::nullopt;
     PlannedBounces bounces;
     try {
@@ -121,7 +122,7 @@ Plan load_plan(const std::filesystem::path& path) {
     std::optional<PlannedBounces> bounces = planned_bounces(reader);
     Plan plan{.scene = plan_of(path, std::move(sections)),
               .bounces = std::move(bounces),
-              .hash = file_hash(path)};
+              .hash = files::file_hash(path)};
     if (plan.bounces &&
         plan.bounces->probes.size() != num_sampled_receivers(plan.scene.transfer.num_receivers()))
         reader.fail("plan_probes", "the light of a sample of the receivers");
@@ -138,7 +139,7 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
                                      {"plan", fmt::format("{:016x}", plan.hash)},
                                      {"receivers", light.counts.num_receivers}});
     // A scene's reader says what it is.
-    sections["plan"] = text_section(files::Json::object());
+    sections["plan"] = text_section(files::Json::Object{});
     add_counts(sections, light.counts);
     if (light.glossy)
         add_glossy_sections(sections, *light.glossy);

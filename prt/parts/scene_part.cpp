@@ -8,7 +8,6 @@
 #include <variant>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
@@ -173,10 +172,6 @@ std::vector<glm::vec3> join_lit_parts(std::span<const std::filesystem::path> pat
         throw std::runtime_error(fmt::format("{}: expected parts with all {} receivers, got {}",
                                              paths[0].string(), num_receivers, num_known));
     return radiance;
-}
-
-std::uint64_t bytes_hash(std::span<const std::byte> bytes) {
-    return XXH64(bytes.data(), bytes.size(), 0);
 }
 
 } // namespace relumine::prt

@@ -1,4 +1,4 @@
-#include "lights/nearest_centre.h"
+#include "tests/bench/video/nearest_centre.h"
 
 #include <algorithm>
 #include <cmath>

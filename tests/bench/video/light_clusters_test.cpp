@@ -1,4 +1,4 @@
-#include "lights/light_clusters.h"
+#include "tests/bench/video/light_clusters.h"
 
 #include <cmath>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "relight/pictures/plot.h"
+#include "tests/bench/plot.h"
 
 #include <algorithm>
 #include <array>

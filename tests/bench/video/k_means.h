@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "lights/cluster_metric.h"
+#include "tests/bench/video/cluster_metric.h"
 
 namespace relumine::lights {
 
