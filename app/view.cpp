@@ -1,11 +1,9 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -152,8 +150,9 @@ void add_view(Command& program, Session& session) {
     options->bounces.add_to(command);
     command.add(
         row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
-    constexpr std::array<std::string_view, 2> OfPictures = {"--exposure", "--tone-map"};
-    command.add_all(only(OfPictures, options_of(options->picture)));
+    for (OptionRow& each : options_of(options->picture))
+        if (each.name == "--exposure" || each.name == "--tone-map")
+            command.add(std::move(each));
     command.add(size_row(options->picture.width, options->picture.height, "the window's size",
                          {.min = 320}));
     command.add(row("--script", options->script,

@@ -108,27 +108,6 @@ OptionRow row(std::string name, std::function<void(const std::string&)> read, st
     return result;
 }
 
-OptionTable only(std::span<const std::string_view> names, OptionTable table) {
-    std::erase_if(table, [&](const OptionRow& each) {
-        return std::find(names.begin(), names.end(), each.long_name()) == names.end();
-    });
-    return table;
-}
-
-OptionTable without(std::span<const std::string_view> names, OptionTable table) {
-    std::erase_if(table, [&](const OptionRow& each) {
-        return std::find(names.begin(), names.end(), each.long_name()) != names.end();
-    });
-    return table;
-}
-
-OptionTable joined(std::initializer_list<OptionTable> tables) {
-    OptionTable all;
-    for (const OptionTable& table : tables)
-        all.insert(all.end(), table.begin(), table.end());
-    return all;
-}
-
 std::string settings_of(const OptionTable& table) {
     std::string all;
     for (const OptionRow& each : table)

@@ -5,7 +5,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <span>
@@ -97,12 +96,6 @@ struct OptionRow : OptionFacts {
 };
 
 using OptionTable = std::vector<OptionRow>;
-
-/// Returns the rows of these names, in the table's order.
-[[nodiscard]] OptionTable only(std::span<const std::string_view> names, OptionTable table);
-/// Returns all rows but those of these names.
-[[nodiscard]] OptionTable without(std::span<const std::string_view> names, OptionTable table);
-[[nodiscard]] OptionTable joined(std::initializer_list<OptionTable> tables);
 
 /// Returns all options as one text, to tell whether files were made with the same.
 [[nodiscard]] std::string settings_of(const OptionTable& table);

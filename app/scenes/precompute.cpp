@@ -1,7 +1,6 @@
 #include "relumine/precompute.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -345,9 +344,9 @@ void add_work_options(Command& command, PrecomputeArguments& options) {
                     "triangles go on to throw shadows",
                     {.min = 4, .max = 4294967294.0, .type = "N", .shows_default = false}));
     options.refine.add_to_precompute(command);
-    constexpr std::array<std::string_view, 2> OfCheckpoints = {"--resume", "--checkpoint-seconds"};
-    OptionTable table = options_of(options.precompute);
-    command.add_all(options.is_plan ? without(OfCheckpoints, std::move(table)) : std::move(table));
+    for (OptionRow& each : options_of(options.precompute))
+        if (!options.is_plan || (each.name != "--resume" && each.name != "--checkpoint-seconds"))
+            command.add(std::move(each));
     command.add(material_row(options.materials));
 }
 

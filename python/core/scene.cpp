@@ -57,7 +57,9 @@ MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
 py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
     using Result = std::pair<MeshPointer, RefineReport>;
     RefineOptions chosen;
-    take(relumine::joined({options_of(chosen), {row("--bias", chosen.bias, "")}}), given);
+    OptionTable table = options_of(chosen);
+    table.push_back(row("--bias", chosen.bias, ""));
+    take(table, given);
     const Result result =
         in_background(progress, [mesh, options = std::move(chosen)](const Reins& reins) mutable {
             options.stop = reins.stop;
@@ -123,10 +125,10 @@ PrecomputeOptions work_options(const Mesh& mesh, const py::dict& given) {
     PrecomputeOptions options;
     std::vector<SurfaceMaterial> materials;
     std::string output;
-    take(relumine::joined(
-             {options_of(options),
-              {material_row(materials), row("--output", output, "the .prt file to write")}}),
-         given);
+    OptionTable table = options_of(options);
+    table.push_back(material_row(materials));
+    table.push_back(row("--output", output, "the .prt file to write"));
+    take(table, given);
     check(options);
     options.output = output;
     set_materials(options, materials, mesh.geometry);
