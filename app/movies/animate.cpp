@@ -20,9 +20,13 @@
 #include "cubemap/image/frame_sequence.h"
 #include "cubemap/image/read_ahead.h"
 #include "files/output_file.h"
+#include "lights/frame_samples.h"
+#include "lights/light_clusters.h"
+#include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "prt/team.h"
 #include "relight/pictures/array_file.h"
+#include "relight/reference/flicker.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {
@@ -31,8 +35,12 @@ namespace {
 
 /// A frame as it lights the scene.
 struct PreparedFrame {
+    /// --method prt
     relight::BinnedEnvironment binned = {};
+    /// The others, where pictures are drawn
+    cubemap::CubeMap background = {};
     relight::Backdrop sharp = {};
+    std::vector<lights::DistantLight> lights = {};
     double seconds_load = 0.0, seconds_resample = 0.0, seconds_bin = 0.0;
 };
 
@@ -60,6 +68,8 @@ public:
         seconds_load_scene_ = watch_.lap();
         session_.poll();
         choose_frames();
+        if (options_.method == "clusters" && !todo_.empty())
+            cluster_frames();
         meter_frames();
         std::optional<relight::NpyFrames> vertices;
         if (!options_.vertices.empty() && light_.is_first())
@@ -73,7 +83,7 @@ public:
             PreparedFrame frame = ahead.get(i);
             totals_.seconds_wait += watch.lap();
             const relight::Backdrop sharp = std::move(frame.sharp);
-            light(std::move(frame));
+            const cubemap::CubeMap background = light(std::move(frame));
             light_.bounce();
             const double seconds_relight = watch.lap();
             totals_.seconds_relight += seconds_relight;
@@ -82,7 +92,7 @@ public:
             if (vertices)
                 vertices->append(writer_.values(lighting.radiance));
             if (light_.is_first())
-                write(todo_[i], std::move(lighting), sharp);
+                write(todo_[i], std::move(lighting), background, sharp);
             totals_.seconds_write += watch.lap();
             ++totals_.num_lit;
             if (!options_.output.path.empty())
@@ -95,6 +105,8 @@ public:
             vertices->commit();
         if (!light_.is_first())
             return;
+        if (!options_.reference.empty())
+            measure();
         seconds_frames_ = watch_.lap();
         const Patience for_ffmpeg;
         if (!options_.movie.empty())
@@ -128,7 +140,7 @@ private:
     void choose_frames() {
         if (pattern_ && light_.is_first())
             record_.emplace(fmt::format("{}.done", pattern_->name_of_all("all")),
-                            options_.settings(), options_.resume);
+                            options_.settings(sequence_), options_.resume);
         for (std::size_t frame = 0; frame < sequence_.size(); ++frame) {
             const bool is_there =
                 record_ && record_->is_done(sequence_.number(frame), sequence_.path(frame),
@@ -164,7 +176,10 @@ private:
         for (std::size_t i = 0; i <= num_gaps; ++i) {
             session_.poll();
             PreparedFrame frame = prepare(num_gaps == 0 ? 0 : i * last / num_gaps);
-            light_.set_frame(std::move(frame.binned));
+            if (options_.method == "prt")
+                light_.set_frame(std::move(frame.binned));
+            else
+                light_.set_lights(frame.lights);
             light_.bounce();
             const Lighting lighting = light_.lighting(true);
             if (!light_.is_first())
@@ -175,6 +190,70 @@ private:
         }
         // The frames' differences must not depend on the exposure.
         light_.restart();
+    }
+
+    /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
+    [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
+        cubemap::EnvironmentImage image = sequence_.read(frame);
+        if (world_from_image(image.layout, options_.environment) == glm::dmat3(1.0) &&
+            options_.environment.face_resolution == 0)
+            return image;
+        return lights::lat_long_of(cube_map_of(image, options_.environment));
+    }
+
+    void cluster_frames() {
+        Stopwatch watch;
+        const lights::FrameSamples samples = lights::sample_frames(
+            [this](std::size_t frame) { return image_of(frame); }, sequence_.size(),
+            {.samples_per_frame = options_.num_samples,
+             .seed = options_.seed,
+             .stop = session_.stop(),
+             .on_progress = session_.progress("samples")});
+        session_.end_progress();
+        session_.poll();
+        const lights::LightClusters clusters =
+            lights::cluster_lights(samples, {.num_clusters = options_.num_clusters,
+                                             .seed = options_.seed,
+                                             .stop = session_.stop()});
+        session_.poll();
+        frame_lights_ =
+            lights::frame_lights(clusters, {.strength = options_.even ? lights::Strength::Even
+                                                                      : lights::Strength::Followed,
+                                            .fade = options_.fade});
+        const lights::KMeans& means = clusters.k_means;
+        session_.say(fmt::format(
+            "{} samples in {} clusters, {} iterations{}, objective {:.4g} to {:.4g}, {} started "
+            "again, {:.1f} s; {:.1f} lights live in a frame",
+            samples.samples.size(), clusters.clusters.size(), means.objective.size(),
+            means.converged ? "" : " (not converged)",
+            means.objective.empty() ? 0.0 : means.objective.front(),
+            means.objective.empty() ? 0.0 : means.objective.back(), means.num_reseeded, watch.lap(),
+            clusters.mean_live()));
+        extra_report_ = {
+            {"samples", samples.samples.size()}, {"light_clusters", clusters.clusters.size()},
+            {"objective", means.objective},      {"reseeded", means.num_reseeded},
+            {"converged", means.converged},      {"mean_live_lights", clusters.mean_live()},
+            {"seconds_k_means", means.seconds}};
+    }
+
+    void measure() {
+        const std::filesystem::path own(options_.vertices);
+        const std::filesystem::path reference(options_.reference);
+        const relight::FlickerReport flicker = relight::measure_flicker({&own, 1}, {&reference, 1});
+        session_.say(fmt::format(
+            "{}: temporal inconsistency {:.5g} on average, {:.5g} at worst; relative L2 {:.5g}",
+            options_.vertices, flicker.mean_inconsistency, flicker.worst_inconsistency,
+            flicker.mean_relative_l2));
+        extra_report_.set("mean_inconsistency", flicker.mean_inconsistency);
+        extra_report_.set("inconsistency", flicker.inconsistency);
+        extra_report_.set("mean_relative_l2", flicker.mean_relative_l2);
+        extra_report_.set("relative_l2", flicker.relative_l2);
+        if (options_.plot.empty())
+            return;
+        const relight::NamedReport named{options_.method, flicker};
+        files::save_text(options_.plot, relight::inconsistency_plot(
+                                            {&named, 1}, fmt::format("Temporal inconsistency, {}",
+                                                                     options_.frames)));
     }
 
     /// Runs on another thread; touches no state but the binner and has_warned_.
@@ -195,7 +274,17 @@ private:
                 warn_about(frame_options, *image, cubemap::light_from_below(map), session_);
         }
         try {
-            result.binned = binner_.bin(std::move(map));
+            if (options_.method == "prt") {
+                result.binned = binner_.bin(std::move(map));
+            } else {
+                result.lights =
+                    options_.method == "clusters"
+                        ? frame_lights_.frames.at(frame)
+                        : lights::place_lights(
+                              lights::Method::Importance, map, options_.num_lights,
+                              options_.seed + static_cast<std::uint64_t>(sequence_.number(frame)));
+                result.background = std::move(map);
+            }
         } catch (const std::invalid_argument& error) { // a radiance beyond all bounds
             throw std::runtime_error(
                 fmt::format("{}: {}", sequence_.path(frame).string(), error.what()));
@@ -204,21 +293,30 @@ private:
         return result;
     }
 
-    void light(PreparedFrame frame) {
+    /// Lights the scene; returns the background, where it is not the relighter's environment.
+    cubemap::CubeMap light(PreparedFrame frame) {
         totals_.seconds_load += frame.seconds_load;
         totals_.seconds_resample += frame.seconds_resample;
         totals_.seconds_bin += frame.seconds_bin;
+        if (options_.method != "prt") {
+            totals_.seconds_trace += light_.set_lights(frame.lights).seconds_trace;
+            return std::move(frame.background);
+        }
         const relight::UpdateReport update =
             light_.set_frame(std::move(frame.binned), options_.bound);
         totals_.seconds_trace += update.seconds_trace;
         totals_.num_clusters += update.num_clusters;
         totals_.num_resummed += static_cast<std::size_t>(update.resummed);
+        return {};
     }
 
-    void write(std::size_t frame, Lighting lighting, const relight::Backdrop& sharp) {
+    void write(std::size_t frame, Lighting lighting, const cubemap::CubeMap& background,
+               const relight::Backdrop& sharp) {
         if (!is_drawn(frame))
             return;
         const std::string path = output_path(frame);
+        if (background.resolution != 0)
+            lighting.environment = &background;
         lighting.sharp = sharp;
         writer_.save(path, lighting);
         record_->add(sequence_.number(frame), sequence_.path(frame), path);
@@ -230,11 +328,11 @@ private:
             totals_.num_lit == 0 ? 0.0 : 1e3 / static_cast<double>(totals_.num_lit);
         const double relight_ms = per_frame * totals_.seconds_relight;
         session_.say(fmt::format(
-            "{}: {} frames, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that "
+            "{}: {} frames by {}, per frame: relight {:.1f} ms{}, write {:.0f} ms; beside that "
             "load {:.0f}, "
             "resample {:.0f}, bin {:.1f} ms; {:.1f} frames/s in all{}",
             options_.output.path.empty() ? options_.vertices : options_.output.path,
-            totals_.num_lit, relight_ms,
+            totals_.num_lit, options_.method, relight_ms,
             totals_.seconds_trace > 0.0
                 ? fmt::format(" (shadow rays {:.1f} ms)", per_frame * totals_.seconds_trace)
                 : "",
@@ -242,7 +340,7 @@ private:
             per_frame * totals_.seconds_resample, per_frame * totals_.seconds_bin,
             seconds_frames_ > 0.0 ? static_cast<double>(totals_.num_lit) / seconds_frames_ : 0.0,
             num_written_ == 0 ? "" : options_.output.exposure_text(writer_)));
-        session_.report({{"frames", sequence_.size()},
+        Report result = {{"frames", sequence_.size()},
                          {"exposure", writer_.exposure_ev(options_.output.path)},
                          {"frames_lit", totals_.num_lit},
                          {"frames_kept", num_kept_},
@@ -250,6 +348,7 @@ private:
                          {"clusters", scene().transfer.num_clusters()},
                          {"clusters_changed", totals_.num_clusters},
                          {"receivers", scene().transfer.num_receivers()},
+                         {"method", options_.method},
                          {"seconds_load_scene", seconds_load_scene_},
                          {"seconds_load", totals_.seconds_load},
                          {"seconds_resample", totals_.seconds_resample},
@@ -259,7 +358,9 @@ private:
                          {"seconds_relight_frames", seconds_relight_frames_},
                          {"seconds_trace", totals_.seconds_trace},
                          {"seconds_write", totals_.seconds_write},
-                         {"seconds_frames", seconds_frames_}});
+                         {"seconds_frames", seconds_frames_}};
+        files::update(result, extra_report_);
+        session_.report(result);
     }
 
     const AnimateOptions& options_;
@@ -275,6 +376,9 @@ private:
     std::vector<std::size_t> todo_;
     std::size_t num_kept_ = 0, num_written_ = 0;
     Totals totals_;
+    /// --method clusters
+    lights::FrameLights frame_lights_;
+    Report extra_report_;
     std::vector<double> seconds_relight_frames_;
     bool has_warned_ = false;
     double seconds_load_scene_ = 0.0, seconds_frames_ = 0.0;

@@ -27,19 +27,37 @@ void AnimateOptions::add_to(Command& command) {
                     "which of them: FIRST-LAST, or FIRST-LASTxSTEP for every STEP-th (all)",
                     {.shapes_frames = false}));
     command.add_all(options_of(environment));
-    command.add(row("--bound", bound,
-                    "update only clusters whose light changed by more than this part of it; 0: all "
-                    "that changed",
-                    {.min = 0, .max = 1}));
+    command.add_all(
+        {row("--method", method,
+             "prt: clusters' transfer, exact; clusters: lights that live over many frames (Staton "
+             "et al.); importance: a few lights chosen anew for every frame",
+             {.choices = {"prt", "clusters", "importance"}}),
+         row("--bound", bound,
+             "prt: update only clusters whose light changed by more than this part of it; 0: all "
+             "that changed",
+             {.min = 0, .max = 1}),
+         row("--lights", num_lights, "importance: lights in a frame", {.min = 1, .max = 1000000}),
+         row("--clusters", num_clusters, "clusters: lights of all frames together",
+             {.min = 1, .max = 1000000}),
+         row("--samples", num_samples, "clusters: samples of a frame", {.min = 1, .max = 1000000}),
+         row("--fade", fade, "clusters: frames over which lights come and go",
+             {.min = 0, .max = 10000}),
+         row("--even", even,
+             "clusters: lights are equally strong over all their frames, as in the paper"),
+         row("--seed", seed, "of the random numbers")});
     bounces.add_to(command);
     output.add_to(command).required(false).description(
         "what to write, the number's place in its name: lit.%04d.png, .exr (pictures), .npy "
         "(numbers), .ply, .glb");
-    command.add(row("--vertices", vertices,
-                    "all frames in one .npy [frames x receivers x 3]: radiance times albedo",
-                    {.file = true, .shapes_frames = false}));
-    command.add(row("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed",
-                    {.file = true, .shapes_frames = false}));
+    const auto file = [&](const char* name, std::string& where, const char* help) {
+        command.add(row(name, where, help, {.file = true, .shapes_frames = false}));
+    };
+    file("--vertices", vertices,
+         "all frames in one .npy [frames x receivers x 3]: radiance times albedo");
+    file("--measure", reference,
+         "another --vertices file of the same frames: says how much this one flickers against it");
+    file("--plot", plot, "of --measure: flicker over frames, .svg");
+    file("--mp4", movie, "a movie of the .png frames, where ffmpeg is installed");
     command.add(row("--fps", frames_per_second, "frames per second of the movie",
                     {.min = 0.01, .max = 1000, .shapes_frames = false}));
     command.add(row("--resume", resume, "keep frames that are there already, from the same inputs",
@@ -72,6 +90,19 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
         require_extension("--vertices", vertices, {".npy"});
         check_output(vertices, {scene.path});
     }
+    if (!reference.empty()) {
+        if (vertices.empty())
+            throw UsageError("--measure", "expected --vertices with it");
+        static_cast<void>(files::size(reference));
+        require_extension("--measure", reference, {".npy"});
+        check_output(vertices, {reference});
+    }
+    if (!plot.empty()) {
+        if (reference.empty())
+            throw UsageError("--plot", "expected --measure with it");
+        require_extension("--plot", plot, {".svg"});
+        check_output(plot, {scene.path, reference});
+    }
     if (!movie.empty()) {
         require_extension("--mp4", movie, {".mp4"});
         if (fs::path(output.path).extension() != ".png")
@@ -84,9 +115,14 @@ void AnimateOptions::check(const cubemap::FrameSequence& sequence) const {
     }
 }
 
-std::string AnimateOptions::settings() const {
-    return fmt::format("{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
-                       command_->settings());
+std::string AnimateOptions::settings(const cubemap::FrameSequence& sequence) const {
+    std::string all = fmt::format("{}\n{}\n{}", RELUMINE_VERSION, FrameRecord::stamp(scene.path),
+                                  command_->settings());
+    if (method == "clusters") // every frame depends on all
+        for (const cubemap::FrameFile& frame : sequence.files())
+            for (const fs::path& file : cubemap::environment_files(frame.path))
+                all += '\n' + FrameRecord::stamp(file);
+    return all;
 }
 
 } // namespace relumine::app

@@ -22,9 +22,25 @@ struct AnimateOptions {
     /// --frames. Empty: all frames.
     std::string range;
     EnvironmentOptions environment;
-    /// Only clusters whose light changed by more than this part of it are updated. 0: all clusters
-    /// that changed.
+    std::string method = "prt";
+    /// --method prt: only clusters whose light changed by more than this part of it are updated. 0:
+    /// all clusters that changed.
     double bound = 0.0;
+    /// --method importance: lights per frame.
+    std::size_t num_lights = 64;
+    std::uint64_t seed = 1;
+    /// --method clusters: clusters of all frames together.
+    std::size_t num_clusters = 512;
+    /// Samples of one frame.
+    std::size_t num_samples = 1024;
+    /// frames
+    std::size_t fade = 0;
+    /// --method clusters: a light is equally strong in all its frames, as in the paper.
+    bool even = false;
+    /// --measure: a .npy with the reference of all frames. Empty: nothing is measured.
+    std::string reference;
+    /// An .svg plot of what --measure finds. Empty: none.
+    std::string plot;
     /// Its path is a pattern. Empty: no picture files.
     OutputOptions output;
     BounceOption bounces;
@@ -43,7 +59,7 @@ struct AnimateOptions {
     /// place.
     [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
     /// All that shapes every frame, for FrameRecord.
-    [[nodiscard]] std::string settings() const;
+    [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
 
 private:
     std::optional<Command> command_;

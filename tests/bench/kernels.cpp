@@ -11,11 +11,11 @@
 #include "cubemap/resample/convert.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
+#include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "relight/light_editor.h"
 #include "relight/relighter.h"
 #include "relumine/precompute.h"
-#include "tests/bench/video/light_clusters.h"
 
 namespace {
 

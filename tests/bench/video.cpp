@@ -15,15 +15,15 @@
 #include <nlohmann/json.hpp>
 
 #include "data_gen/sequences.h"
+#include "lights/light_clusters.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
+#include "relight/pictures/plot.h"
+#include "relight/reference/flicker.h"
 #include "relight/sharp/shadow_rays.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
-#include "tests/bench/plot.h"
 #include "tests/bench/times.h"
-#include "tests/bench/video/flicker.h"
-#include "tests/bench/video/light_clusters.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;

@@ -88,7 +88,7 @@ const std::vector<Words>& working_lines() {
         {"edit", "scene.prt", "env.0.hdr", "-o", "new.npy", "--disc", "0,1,0"},
         {"edit", "scene.prt", "env.0.hdr", "-o", "new.exr", "--disc", "0,1,0", "--who", "0,1,0"},
         {"animate", "scene.prt", "env.%d.hdr", "-o", "new.%d.exr", "--size", "8x8"},
-        {"animate", "scene.prt", "env.%d.hdr", "--vertices", "new.npy", "--bound", "0.1"},
+        {"animate", "scene.prt", "env.%d.hdr", "--vertices", "new.npy", "--method", "clusters"},
         {"verify", "scene.prt", "env.0.hdr", "--samples", "2", "--surface", "2"},
         {"lights", "env.0.hdr", "-o", "new.json"},
         {"lights", "env.0.hdr", "--scene", "scene.prt", "-n", "4", "-o", "new.json"},

@@ -75,12 +75,13 @@ TEST_F(Documentation, BashCompletesCommands) {
 
 TEST_F(Documentation, BashCompletesOptionsAndValues) {
     succeed({"completion", "bash", "-o", "relumine.bash"});
-    EXPECT_THAT(offered({"relumine", "lights", "--se"}), UnorderedElementsAre("--seed"));
-    EXPECT_THAT(offered({"relumine", "lights", "--method", ""}),
-                UnorderedElementsAre("median-cut", "variance", "importance", "transfer"));
-    EXPECT_THAT(offered({"relumine", "lights", "--method", "=", "i"}), ElementsAre("importance"));
-    EXPECT_THAT(offered({"relumine", "lights", "--method", "="}),
-                UnorderedElementsAre("median-cut", "variance", "importance", "transfer"));
+    EXPECT_THAT(offered({"relumine", "animate", "--me"}),
+                UnorderedElementsAre("--method", "--measure"));
+    EXPECT_THAT(offered({"relumine", "animate", "--method", ""}),
+                UnorderedElementsAre("prt", "clusters", "importance"));
+    EXPECT_THAT(offered({"relumine", "animate", "--method", "=", "i"}), ElementsAre("importance"));
+    EXPECT_THAT(offered({"relumine", "animate", "--method", "="}),
+                UnorderedElementsAre("prt", "clusters", "importance"));
     EXPECT_THAT(offered({"relumine", "env", "convert", "--to-l"}), ElementsAre("--to-layout"));
     EXPECT_THAT(offered({"relumine", "completion", ""}),
                 UnorderedElementsAre("bash", "zsh", "fish"));
@@ -123,8 +124,8 @@ TEST_F(Documentation, OtherShellsReadTheirScripts) {
         return words;
     };
     EXPECT_THAT(fish("relumine re"), ElementsAre("relight"));
-    EXPECT_THAT(fish("relumine lights --method "),
-                UnorderedElementsAre("median-cut", "variance", "importance", "transfer"));
+    EXPECT_THAT(fish("relumine animate --method "),
+                UnorderedElementsAre("prt", "clusters", "importance"));
     EXPECT_THAT(fish("relumine env "), ElementsAre("convert"));
     write("mesh.ply", "");
     EXPECT_THAT(fish("relumine precompute me"), ElementsAre("mesh.ply"));

@@ -80,9 +80,13 @@ TEST_F(Animate, PicturesAreThoseOfRelight) {
 TEST_F(Animate, TheSameForAnyNumberOfThreads) {
     succeed({"generate", "sequence", "tunnel", "-o", "seq", "--num-frames", "6",
              "--face-resolution", "16", "-q"});
-    succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "a.npy", "--threads", "1"});
-    succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "b.npy", "--threads", "2"});
-    EXPECT_TRUE(read("a.npy") == read("b.npy"));
+    for (const char* method : {"prt", "importance"}) {
+        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "a.npy", "--threads", "1",
+                 "--method", method});
+        succeed({"animate", "scene.prt", "seq/*.exr", "--vertices", "b.npy", "--threads", "2",
+                 "--method", method});
+        EXPECT_TRUE(read("a.npy") == read("b.npy")) << method;
+    }
 }
 
 TEST_F(Animate, EverySequenceIsMadeAndRead) {
@@ -110,6 +114,43 @@ TEST_F(Animate, EverySequenceIsMadeAndRead) {
     misuse({"generate", "blob", "sun", "-o", "x"}, "KIND");
     misuse({"generate", "sequence", "sun", "-o", "x", "--face-resolution", "0"},
            "--face-resolution");
+}
+
+TEST_F(Animate, ClustersLightLikeTheFramesAndFlickerIsMeasured) {
+    succeed({"generate", "sequence", "sun", "-o", "seq", "--num-frames", "6", "--face-resolution",
+             "32", "-q"});
+    succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "prt.npy", "-q"});
+    const auto same = succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices",
+                               "again.npy", "--measure", "prt.npy", "--json"})
+                          .json();
+    EXPECT_EQ(same["mean_inconsistency"], 0.0);
+    EXPECT_EQ(same["mean_relative_l2"], 0.0);
+    const auto clusters =
+        succeed({"animate", "scene.prt", "seq/sun.%04d.exr", "--method", "clusters", "--clusters",
+                 "100", "--samples", "400", "--vertices", "clusters.npy", "--measure", "prt.npy",
+                 "--plot", "e.svg", "--json"})
+            .json();
+    EXPECT_EQ(clusters["samples"], 2400);
+    EXPECT_GT(clusters["mean_live_lights"].get<double>(), 1.0);
+    EXPECT_LT(clusters["mean_relative_l2"].get<double>(), 0.15);
+    EXPECT_GT(clusters["mean_inconsistency"].get<double>(), 0.0);
+    ASSERT_EQ(clusters["inconsistency"].size(), 5u);
+    EXPECT_NE(read("e.svg").find("</svg>"), std::string::npos);
+    // A frame of pictures made later from all the same inputs is kept; other clusters are other
+    // pictures.
+    const std::vector<std::string> pictures = {
+        "animate", "scene.prt", "seq/sun.%04d.exr", "--method", "clusters", "--clusters",
+        "20",      "-o",        "a.%04d.npy",       "--resume", "--json"};
+    EXPECT_EQ(succeed(pictures).json()["frames_kept"], 0);
+    EXPECT_EQ(succeed(pictures).json()["frames_kept"], 6);
+    std::vector<std::string> others = pictures;
+    others[6] = "30";
+    EXPECT_EQ(succeed(others).json()["frames_kept"], 0);
+    misuse({"animate", "scene.prt", "seq/sun.%04d.exr", "-o", "b.%04d.npy", "--measure", "prt.npy"},
+           "expected --vertices");
+    fail({"animate", "scene.prt", "seq/sun.%04d.exr", "--vertices", "b.npy", "--measure",
+          "none.npy"},
+         {"none.npy: cannot read"});
 }
 
 TEST_F(Animate, MissingAndDifferentFramesAreToldBeforeWorkStarts) {
@@ -267,6 +308,8 @@ TEST_F(Animate, OutputsThatCannotBe) {
     lamps(2);
     misuse({"animate", "scene.prt", "lamp.%d.hdr"}, "-o");
     misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--bound", "-1"}, "--bound");
+    misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.png", "--method", "magic"},
+           "--method");
     misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.png"},
            "--output: expected a place for the frame's number");
     misuse({"animate", "scene.prt", "lamp.%d.hdr", "-o", "lit.%d.jpg"},

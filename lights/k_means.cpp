@@ -1,4 +1,4 @@
-#include "tests/bench/video/k_means.h"
+#include "lights/k_means.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 
 #include "cubemap/split_mix64.h"
 #include "files/parallel.h"
-#include "tests/bench/video/nearest_centre.h"
+#include "lights/nearest_centre.h"
 
 namespace relumine::lights {
 

@@ -10,7 +10,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "tests/bench/video/cluster_metric.h"
+#include "lights/cluster_metric.h"
 
 namespace relumine::lights {
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "tests/bench/video/cluster_metric.h"
+#include "lights/cluster_metric.h"
 
 namespace relumine::lights {
 

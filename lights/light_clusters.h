@@ -10,9 +10,9 @@
 
 #include <glm/vec3.hpp>
 
-#include "tests/bench/video/frame_lights.h"
-#include "tests/bench/video/frame_samples.h"
-#include "tests/bench/video/k_means.h"
+#include "lights/frame_lights.h"
+#include "lights/frame_samples.h"
+#include "lights/k_means.h"
 
 namespace relumine::lights {
 

@@ -1,4 +1,4 @@
-#include "tests/bench/video/flicker.h"
+#include "relight/reference/flicker.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include "lights/lat_long_grid.h"
 #include "relight/pictures/array_file.h"
-#include "tests/bench/plot.h"
+#include "relight/pictures/plot.h"
 
 namespace relumine::relight {
 

@@ -1,4 +1,4 @@
-#include "tests/bench/video/light_clusters.h"
+#include "lights/light_clusters.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "tests/bench/video/flicker.h"
+#include "relight/reference/flicker.h"
 
 #include <cmath>
 #include <filesystem>
@@ -10,11 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lights/light_clusters.h"
 #include "lights/place_lights.h"
 #include "relight/pictures/array_file.h"
 #include "relight/relighter.h"
 #include "relight/sharp/shadow_rays.h"
-#include "tests/bench/video/light_clusters.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 

@@ -1,4 +1,4 @@
-#include "tests/bench/video/frame_samples.h"
+#include "lights/frame_samples.h"
 
 #include <stdexcept>
 

@@ -1,4 +1,4 @@
-#include "tests/bench/plot.h"
+#include "relight/pictures/plot.h"
 
 #include <cmath>
 #include <stdexcept>

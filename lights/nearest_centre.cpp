@@ -1,4 +1,4 @@
-#include "tests/bench/video/nearest_centre.h"
+#include "lights/nearest_centre.h"
 
 #include <algorithm>
 #include <cmath>
