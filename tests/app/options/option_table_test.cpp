@@ -101,9 +101,9 @@ TEST_F(OptionTables, OnlyWhatShapesNoFrameIsNotInTheRecord) {
     for (const OptionRow& option : rows_of("animate"))
         if (!option.shapes_frames)
             others.push_back(option.long_name());
-    EXPECT_THAT(others, testing::UnorderedElementsAre("FRAMES", "--frames", "--vertices", "--mp4",
-                                                      "--fps", "--resume", "--json", "--threads",
-                                                      "--quiet", "--verbose"));
+    EXPECT_THAT(others, testing::UnorderedElementsAre(
+                            "FRAMES", "--frames", "--vertices", "--measure", "--plot", "--mp4",
+                            "--fps", "--resume", "--json", "--threads", "--quiet", "--verbose"));
 }
 
 TEST_F(OptionTables, ThePageNamesEach) {
