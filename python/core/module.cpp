@@ -37,9 +37,9 @@ PYBIND11_MODULE(_core, module) {
             std::rethrow_exception(error);
         } catch (const relumine::MemoryLimitExceeded& limit) {
             PyErr_SetString(PyExc_MemoryError, limit.what());
-        } catch (const relumine::OptionError& error) { // floor_fade for --floor-fade
-            const std::string name = relumine::OptionRow{{}, error.option}.key();
-            const std::string text = name.empty() ? error.what() : name + ": " + error.reason;
+        } catch (const relumine::OptionError& wrong) { // floor_fade for --floor-fade
+            const std::string name = relumine::OptionRow{{}, wrong.option}.key();
+            const std::string text = name.empty() ? wrong.what() : name + ": " + wrong.reason;
             PyErr_SetString(PyExc_ValueError, text.c_str());
         }
     });
