@@ -15,7 +15,10 @@
 #include "relumine/lit_scene.h"
 #include "relumine/material.h"
 #include "relumine/mesh.h"
+#include "relumine/option_table.h"
 #include "relumine/output.h"
+#include "relumine/output_options.h"
 #include "relumine/precompute.h"
+#include "relumine/precompute_options.h"
 #include "relumine/scene.h"
 // IWYU pragma: end_exports

@@ -33,7 +33,7 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
         geometry.colors = vec3s(colors.cast<py::buffer>());
     if (!uvs.is_none())
         geometry.uvs = vec2s(uvs.cast<py::buffer>());
-    const MeshOptions options = mesh_options(Options(given));
+    const MeshOptions options = options_from<MeshOptions>(given);
     const Release release;
     if (geometry.normals.empty())
         geometry.normals = mesh::smooth_normals(geometry);
@@ -47,16 +47,21 @@ MeshPointer make_mesh(const py::buffer& vertices, const py::buffer& triangle_ind
 }
 
 MeshPointer loaded_mesh(const Path& path, const py::dict& given) {
-    return in_background(py::none(), [path, options = mesh_options(Options(given))](const Reins&) {
-        return MeshPointer(std::make_shared<Mesh>(load_mesh(path, options)));
-    });
+    return in_background(py::none(),
+                         [path, options = options_from<MeshOptions>(given)](const Reins&) {
+                             return MeshPointer(std::make_shared<Mesh>(load_mesh(path, options)));
+                         });
 }
 
 /// Returns the mesh and figures.
 py::tuple refined_mesh(const MeshPointer& mesh, const py::dict& given, const py::object& progress) {
     using Result = std::pair<MeshPointer, RefineReport>;
-    const Result result = in_background(
-        progress, [mesh, options = refine_options(Options(given))](const Reins& reins) mutable {
+    RefineOptions chosen;
+    OptionTable table = options_of(chosen);
+    table.push_back(row("--bias", chosen.bias, ""));
+    take(table, given);
+    const Result result =
+        in_background(progress, [mesh, options = std::move(chosen)](const Reins& reins) mutable {
             options.stop = reins.stop;
             options.on_progress = reins.on_progress;
             Result found;
@@ -117,17 +122,16 @@ std::function<void(Stage, double)> joined(const std::function<void(double)>& on_
 
 /// The options of a precompute with the surfaces of a mesh.
 PrecomputeOptions work_options(const Mesh& mesh, const py::dict& given) {
-    const Options options_given(given);
-    PrecomputeOptions options = precompute_options(options_given);
-    std::vector<SurfaceMaterial> of_mesh;
-    for (const SurfaceMaterial& material : materials_of(options_given)) {
-        if (material.group == "floor")
-            options.floor_surface = material.applied_to({});
-        else
-            of_mesh.push_back(material);
-    }
-    if (!of_mesh.empty())
-        options.surface = surface_override(of_mesh, mesh.geometry);
+    PrecomputeOptions options;
+    std::vector<SurfaceMaterial> materials;
+    std::string output;
+    OptionTable table = options_of(options);
+    table.push_back(material_row(materials));
+    table.push_back(row("--output", output, "the .prt file to write"));
+    take(table, given);
+    check(options);
+    options.output = output;
+    set_materials(options, materials, mesh.geometry);
     return options;
 }
 
@@ -184,7 +188,7 @@ void do_part(const Path& plan_path, std::uint32_t index, std::uint32_t count, co
     PartOptions options{.plan = plan_path,
                         .part = {.index = index, .count = count},
                         .output = output,
-                        .engine = precompute_options(Options(given)).engine};
+                        .engine = options_from<PrecomputeOptions>(given).engine};
     in_background(progress, [options](const Reins& reins) mutable {
         options.stop = reins.stop;
         options.on_progress = reins.on_progress;
@@ -200,9 +204,7 @@ std::shared_ptr<Scene> load_prt(const Path& path) {
 }
 
 std::shared_ptr<Scene> recoloured(const std::shared_ptr<Scene>& scene, const py::dict& given) {
-    const Options options(given);
-    const SurfaceColors colors{.albedo = options.color("surface_albedo"),
-                               .specular = options.color("surface_specular")};
+    const auto colors = options_from<SurfaceColors>(given);
     const Release release;
     auto result = std::make_shared<Scene>(*scene);
     set_colors(*result, colors);

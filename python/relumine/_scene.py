@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import os
-import re
 from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
@@ -43,43 +43,24 @@ class Lambert(NamedTuple):
 Material = Union[Ggx, Blinn, Lambert]
 
 
-def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Tuple[Any, ...]]:
+def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[str]:
+    """Materials as --material has them."""
     if material is None:
         return []
     if isinstance(material, (Ggx, Blinn, Lambert)):
         material = {"": material}
-    result: List[Tuple[Any, ...]] = []
+    result: List[str] = []
     for group, surface in material.items():
-        if isinstance(surface, Ggx):
-            if not 0.0 <= surface.roughness <= 1.0:
-                raise ValueError(f"material: expected a roughness of 0 to 1, got {surface}")
-            result.append((group, 1, surface.roughness, surface.albedo, surface.f0))
-        elif isinstance(surface, Blinn):
-            if not 0.0 <= surface.exponent <= 1e6:
-                raise ValueError(f"material: expected an exponent of 0 to 1e6, got {surface}")
-            result.append((group, 2, surface.exponent, surface.kd, surface.ks))
-        elif isinstance(surface, Lambert):
-            result.append((group, 0, 0.0, surface.albedo, None))
-        else:
+        if not isinstance(surface, (Ggx, Blinn, Lambert)):
             raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
+        values = ",".join(
+            f"{name}={','.join(repr(float(each)) for each in np.atleast_1d(value))}"
+            for name, value in surface._asdict().items()
+            if value is not None
+        )
+        model = type(surface).__name__.lower() + (f":{values}" if values else "")
+        result.append(f"{group}={model}" if group else model)
     return result
-
-
-def _receivers(text: str) -> Tuple[str, int, int, int]:
-    match = re.fullmatch(r"(pixels|texels):(\d+)x(\d+)(?::(\d+))?", text)
-    if text == "vertices":
-        return ("vertices", 0, 0, 0)
-    if match is None or (match[1] == "texels" and match[4]):
-        raise ValueError(
-            f"receivers: expected vertices, pixels:WxH, pixels:WxH:N or texels:WxH, got {text!r}"
-        )
-    size = (int(match[2]), int(match[3]))
-    samples = int(match[4] or 1)
-    if not all(1 <= side <= 16384 for side in size) or not 1 <= samples <= 64:
-        raise ValueError(
-            f"receivers: expected 1 to 16384 a side and 1 to 64 samples, got {text!r}"
-        )
-    return (match[1], *size, samples)
 
 
 def precompute(
@@ -132,8 +113,6 @@ def precompute(
         mesh = Mesh(mesh, triangles)
     elif triangles is not None:
         raise ValueError("triangles: expected none beside a Mesh, got an array")
-    if tolerance is not None and epsilon is not None:
-        raise ValueError("epsilon: expected either tolerance or epsilon, got both")
     options: Dict[str, Any] = {
         "tolerance": tolerance,
         "epsilon": epsilon,
@@ -141,13 +120,13 @@ def precompute(
         "face_resolution": face_resolution,
         "bias": bias,
         "engine": engine,
-        "receivers": _receivers(receivers),
+        "receivers": receivers,
         "view": view,
         "material": _materials(material),
         "glossy_tolerance": glossy_tolerance,
         "bounces": bounces,
         "two_sided": two_sided,
-        "max_memory": max_memory,
+        "max_memory": f"{max_memory}B" if isinstance(max_memory, int) else max_memory,
         "output": None if output is None else os.fspath(output),
         "checkpoint_seconds": checkpoint_seconds,
         "resume": resume,
@@ -191,7 +170,7 @@ def plan(
         "min_depth": min_depth,
         "face_resolution": face_resolution,
         "bias": bias,
-        "receivers": _receivers(receivers),
+        "receivers": receivers,
         "view": view,
         "output": os.fspath(output),
     }
@@ -327,7 +306,8 @@ class Scene:
         Raises ValueError for a scene without materials.
         """
         colors = {"surface_albedo": surface_albedo, "surface_specular": surface_specular}
-        return Scene._of(_core.recoloured(self._core, colors))
+        with errors():
+            return Scene._of(_core.recoloured(self._core, colors))
 
     def __repr__(self) -> str:
         return (
