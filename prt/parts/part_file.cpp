@@ -12,6 +12,7 @@
 
 #include "files/hash.h"
 #include "files/json.h"
+#include "prt/arithmetic.h"
 #include "prt/parts/part_list.h"
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
@@ -58,6 +59,21 @@ StoredPart read_part(const std::filesystem::path& path) {
     return stored;
 }
 
+/// Parts of other processors would make a scene that none of them makes alone.
+void check_processor(const SectionReader& reader) {
+    const files::Json json = reader.json("plan");
+    std::string planned;
+    try {
+        planned = json.at("processor").string();
+    } catch (const std::exception&) {
+        reader.fail("plan", "JSON with a plan");
+    }
+    if (planned != arithmetic())
+        throw std::runtime_error(fmt::format(
+            "{}: expected the plan of a processor that computes as this one ({}), got {}",
+            reader.path().string(), arithmetic(), planned));
+}
+
 /// Of a plan: the JSON has the tolerance.
 std::optional<PlannedBounces> planned_bounces(const SectionReader& reader) {
     const files::Json json = reader.json("plan");
@@ -100,7 +116,7 @@ std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene,
         throw std::invalid_argument(
             fmt::format("{}: expected a scene without light", path.string()));
     NewSections sections = sections_without_light(path, scene);
-    files::Json json = {{"clusters", scene.transfer.num_clusters()}};
+    files::Json json = {{"clusters", scene.transfer.num_clusters()}, {"processor", arithmetic()}};
     if (bounces) {
         json.set("bounce_tolerance", bounces->tolerance);
         sections["plan_probes"] = SectionContent::view(bounces->probes);
@@ -119,6 +135,7 @@ Plan load_plan(const std::filesystem::path& path) {
     if (const auto probes = sections.find("plan_probes"); probes != sections.end())
         own.insert(sections.extract(probes));
     const SectionReader reader(path, std::move(own));
+    check_processor(reader);
     std::optional<PlannedBounces> bounces = planned_bounces(reader);
     Plan plan{.scene = plan_of(path, std::move(sections)),
               .bounces = std::move(bounces),

@@ -39,7 +39,8 @@ std::uint64_t save_plan(const std::filesystem::path& path, const Scene& scene,
 
 /// Reads a plan and checks it as load_scene() checks a scene.
 ///
-/// Throws:  std::runtime_error "path: expected X, got Y".
+/// Throws:  std::runtime_error "path: expected X, got Y"; also for a plan of a processor that
+///          computes in another way (prt/arithmetic.h).
 [[nodiscard]] Plan load_plan(const std::filesystem::path& path);
 
 /// Writes the light of a part, whole or not at all. The first part carries the plan as well, so

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "files/hash.h"
+#include "prt/arithmetic.h"
 #include "prt/receivers/surface.h"
 
 namespace relumine::prt {
@@ -54,7 +55,8 @@ Fingerprint fingerprint(const mesh::TriangleMesh& blockers, const Receivers& rec
                                                   fmt::format("{}", options.tolerance)),
         {"min depth", fmt::format("{}", options.min_level)},
         {"face resolution", fmt::format("{}", options.face_resolution)},
-        {"bias", fmt::format("{}", options.bias)}};
+        {"bias", fmt::format("{}", options.bias)},
+        {"processor", arithmetic()}};
     if (later.bounce_tolerance) {
         result.emplace_back("bounces", fmt::format("{}", *later.bounce_tolerance));
         result.emplace_back("two-sided", later.two_sided_bounces ? "yes" : "no");

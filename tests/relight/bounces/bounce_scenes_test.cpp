@@ -334,11 +334,13 @@ TEST(BounceScenes, RowsThatTakeTooMuchMemoryAreRefused) {
 }
 
 TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {
-    const mesh::TriangleMesh mesh = scenes::sphere_and_box_on_floor();
+    const BouncingScene scene(scenes::sphere_and_box_on_floor());
     std::vector<prt::BounceMatrix> matrices;
     for (const std::size_t num_threads : {1u, 2u, 7u}) {
         const files::ThreadLimit limit(num_threads);
-        matrices.push_back(BouncingScene(mesh).matrix);
+        matrices.push_back(prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer,
+                                                   probe_radiance(scene.transfer), scene.rays,
+                                                   {.bias = scene.bias}));
     }
     EXPECT_GT(matrices[0].emitters.places.size(), 100u);
     EXPECT_EQ(matrices[0], matrices[1]);
@@ -347,11 +349,14 @@ TEST(BounceScenes, RowsAreTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(BounceScenes, ASmallerToleranceTakesMoreRaysAndErrsLess) {
-    const mesh::TriangleMesh mesh = bowl(3);
-    const BouncingScene coarse(mesh, 0.1f), fine(mesh, 0.004f);
-    EXPECT_LT(2 * coarse.statistics.num_rays, fine.statistics.num_rays);
-    EXPECT_LT(2.0 * fine.statistics.rms_error, coarse.statistics.rms_error);
-    EXPECT_LE(fine.statistics.rms_error, 0.0045);
+    const BouncingScene coarse(bowl(3), 0.1f);
+    prt::BounceStatistics fine;
+    static_cast<void>(prt::precompute_bounces(coarse.mesh, coarse.receivers, coarse.transfer,
+                                              probe_radiance(coarse.transfer), coarse.rays,
+                                              {.tolerance = 0.004f, .bias = coarse.bias}, &fine));
+    EXPECT_LT(2 * coarse.statistics.num_rays, fine.num_rays);
+    EXPECT_LT(2.0 * fine.rms_error, coarse.statistics.rms_error);
+    EXPECT_LE(fine.rms_error, 0.0045);
 }
 
 TEST(BounceScenes, RefusesWhatDoesNotFit) {
