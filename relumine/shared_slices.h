@@ -17,12 +17,12 @@ namespace relumine {
 ///
 /// Throws:  as Team::sum().
 template<typename Value, typename Index, typename Compute>
-std::vector<Value> in_slices(prt::Team* reduction, std::span<const Index> indices,
+std::vector<Value> in_slices(prt::Team* team, std::span<const Index> indices,
                              const Compute& compute) {
     static_assert(std::is_trivially_copyable_v<Value>);
-    if (reduction == nullptr)
+    if (team == nullptr)
         return compute(indices);
-    const prt::Part part = reduction->part();
+    const prt::Part part = team->part();
     const auto begin_of = [&](std::size_t process) {
         return indices.size() * process / part.count;
     };
@@ -31,8 +31,7 @@ std::vector<Value> in_slices(prt::Team* reduction, std::span<const Index> indice
         compute(indices.subspan(begin, begin_of(part.index + 1) - begin));
     std::vector<Value> values(indices.size());
     std::size_t at = 0;
-    for (const std::vector<std::byte>& slice :
-         reduction->all_gather(prt::to_send(std::span(own)))) {
+    for (const std::vector<std::byte>& slice : team->all_gather(prt::to_send(std::span(own)))) {
         if (slice.size() > (values.size() - at) * sizeof(Value))
             throw std::runtime_error("expected a value of each index");
         if (!slice.empty())

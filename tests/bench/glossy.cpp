@@ -107,14 +107,14 @@ void print_row(float roughness, const Settings& settings, const Mesh& mesh,
     std::string errors;
     for (const Environment& environment : maps) {
         for (int i = 0; i < 3; ++i) {
-            const RelightTimes times = lit.light(environment.map);
+            const UpdateReport times = lit.light(environment.map);
             seconds.push_back(times.seconds_relight);
             if (&environment == &maps.front())
                 seconds_frame.push_back(times.seconds_bin + times.seconds_trace +
                                         times.seconds_relight);
         }
-        const Verification check = lit.verify(
-            {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
+        const Verification check = verify(
+            lit, {.num_samples = settings.num_samples, .num_surface_points = settings.num_samples});
         errors += fmt::format(
             " {:.4f}{} |", check.error.relative_l2,
             check.surface ? fmt::format(", {:.4f}", check.surface->error.relative_l2) : "");
