@@ -140,15 +140,12 @@ std::uint64_t plane_bytes_within(const SceneSizes& sizes, std::uint64_t max_byte
 
 MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receivers,
                                const Blockers& blockers, const PrecomputeOptions& options,
-                               std::uint64_t max_bytes) {
+                               std::uint64_t max_bytes, const std::stop_token& stop) {
     const Receivers trial = trial_receivers(receivers);
     PrecomputeOptions trial_options = options;
     // The same RMS for fewer receivers.
     trial_options.epsilon = {};
     trial_options.tolerance = rms_tolerance(options.tolerance, options.epsilon, receivers.size());
-    trial_options.checkpoint = nullptr;
-    trial_options.reduction = nullptr;
-    trial_options.on_progress = {};
     const PrecomputeContext context{.column_scale = static_cast<double>(receivers.size()) /
                                                     static_cast<double>(trial.size())};
     // No limit is the largest number, which must not overflow when scaled.
@@ -158,11 +155,12 @@ MemoryEstimate estimate_memory(const SceneSizes& sizes, const Receivers& receive
     PrecomputeStatistics statistics;
     MemoryEstimate estimate;
     try {
-        static_cast<void>(precompute(trial, blockers, trial_options, context, &statistics));
-    } catch (const TooManyClusters& error) {
+        static_cast<void>(
+            precompute(trial, blockers, trial_options, {.stop = stop}, context, &statistics));
+    } catch (const TooLarge& error) {
         estimate.is_at_least = true;
-        statistics.num_clusters = error.num_clusters;
-        statistics.column_bytes = error.column_bytes;
+        statistics.num_clusters = error.count;
+        statistics.column_bytes = error.bytes;
     }
     estimate.num_clusters =
         static_cast<std::uint64_t>(static_cast<double>(statistics.num_clusters) / TrialExcess);

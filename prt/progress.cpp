@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "prt/precompute.h"
-
 namespace relumine::prt {
 
 void Progress::start_stage(double begin, double end) {

@@ -4,7 +4,8 @@
 #include <functional>
 #include <mutex>
 #include <stop_token>
-#include <utility>
+
+#include "prt/work.h"
 
 namespace relumine::prt {
 
@@ -13,9 +14,8 @@ namespace relumine::prt {
 /// Threads: any thread may call any function but start_stage().
 class Progress {
 public:
-    /// Either argument may be empty.
-    Progress(std::stop_token stop, std::function<void(double)> on_progress)
-        : stop_(std::move(stop)), on_progress_(std::move(on_progress)) {}
+    explicit Progress(const Work& work)
+        : stop_(work.stop_in_step()), on_progress_(work.on_progress) {}
 
     /// Begins the next stage, which takes the work from `begin` to `end` by the estimate of now.
     /// Where an earlier stage thought that more was done, what is left of the scale is shared out

@@ -130,11 +130,13 @@ struct PrecomputeOptions {
     double checkpoint_seconds = 20.0;
     /// Continues from a checkpoint of the same work if there is one.
     bool resume = false;
+};
 
-    /// Processes that share the work; null: this one does it all. precompute() runs in the first
-    /// process, assist() in the others. There must be no limit of memory.
-    prt::Team* team = nullptr;
-
+/// What stands around a precompute. Nothing of it changes the scene.
+struct PrecomputeWork {
+    /// Processes that share the work: precompute() runs in the first one, assist() in the others.
+    /// There must be no limit of memory.
+    prt::Team& team = prt::alone();
     /// Polled a few times a second. A stop request makes precompute() throw Cancelled.
     std::stop_token stop = {};
     /// Estimated fraction of a stage in [0, 1], never falling; one call at a time
@@ -186,7 +188,7 @@ struct PrecomputeReport {
     /// Only with bounces
     std::optional<prt::BounceStatistics> bounces = {};
 
-    /// By index; only where processes share the work
+    /// By index
     std::vector<ProcessFigures> processes = {};
 
     /// Of the scene file, 0 without one
@@ -238,16 +240,15 @@ struct MemoryLimitExceeded : std::runtime_error {
 /// Memory:  the result twice, and half a gigabyte; less with max_memory.
 /// Threads: parallel inside; the result is the same bit by bit for any number of threads.
 [[nodiscard]] Scene precompute(Mesh mesh, const PrecomputeOptions& options = {},
-                               PrecomputeReport* report = nullptr);
+                               const PrecomputeWork& work = {}, PrecomputeReport* report = nullptr);
 
 /// Helps the first of the processes that share a precompute, whose mesh and options it gets:
 /// computes its part and hands it over.
 ///
 /// Memory:  the mesh, all receivers, and twice its share of the result.
 /// Throws:  Cancelled when any of the processes was asked to stop; as precompute() does for what
-/// goes
-///          wrong here; what the team throws where another process has failed.
-void assist(prt::Team& team, const std::stop_token& stop = {});
+///          goes wrong here; what the team throws where another process has failed.
+void assist(const PrecomputeWork& work);
 
 /// Plans a precompute that is done in parts, by any number of processes on any number of machines:
 /// chooses the clusters from a sample of the receivers and writes the plan, a file that ends in
@@ -255,7 +256,8 @@ void assist(prt::Team& team, const std::stop_token& stop = {});
 ///
 /// Cost:    a sixteenth of a precompute where receivers are many; see prt::plan_clusters().
 /// Throws:  as precompute() does.
-void plan(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport* report = nullptr);
+void plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work = {},
+          PrecomputeReport* report = nullptr);
 
 /// One part of a plan.
 struct PartOptions {
@@ -265,10 +267,6 @@ struct PartOptions {
     /// The file of the part to write
     std::filesystem::path output = {};
     Engine engine = Engine::Beams;
-    /// Polled a few times a second
-    std::stop_token stop = {};
-    /// Estimated fraction in [0, 1], never falling; one call at a time
-    std::function<void(double)> on_progress = {};
 };
 
 /// Does one part of a plan and writes its file. Parts know nothing of each other: they run in any
@@ -277,7 +275,8 @@ struct PartOptions {
 /// Memory:  the mesh and all receivers, and the part's share of the counts twice.
 /// Throws:  std::runtime_error "path: expected X, got Y"; std::invalid_argument for a part that is
 ///          none; Cancelled.
-void precompute_part(const PartOptions& options, prt::PrecomputeStatistics* statistics = nullptr);
+void precompute_part(const PartOptions& options, const PrecomputeWork& work = {},
+                     prt::PrecomputeStatistics* statistics = nullptr);
 
 /// Puts all parts of a plan together, in any order, and writes the scene. The file is the same byte
 /// by byte for any number of parts. Returns its size in bytes.

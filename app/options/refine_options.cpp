@@ -101,9 +101,7 @@ Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& s
                           .max_edge = max_edge_,
                           .min_edge = min_edge_,
                           .curved = curved_,
-                          .bias = bias,
-                          .stop = session.stop(),
-                          .on_progress = session.progress("refine")};
+                          .bias = bias};
     if (is_command_ && !error_ && !max_edge_)
         options.error = RefineOptions{}.error;
     if (max_vertices_ != 0)
@@ -112,7 +110,9 @@ Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& s
         options.light = load_environment(light_).map;
     const std::size_t num_before = mesh.geometry.num_vertices();
     RefineReport found;
-    Mesh result = relumine::refined(std::move(mesh), options, &found);
+    Mesh result = relumine::refined(
+        std::move(mesh), options,
+        {.stop = session.stop(), .on_progress = session.progress("refine")}, &found);
     session.end_progress();
     const std::size_t num_after = result.geometry.num_vertices();
     if (num_after == num_before)

@@ -47,9 +47,9 @@ struct PrecomputeArguments {
     PrecomputeOptions precompute;
 };
 
-/// Everything that the command line says of the work.
+/// Everything that the command line says of the scene.
 PrecomputeOptions precompute_options(const PrecomputeArguments& options,
-                                     const mesh::TriangleMesh& mesh, Session& session) {
+                                     const mesh::TriangleMesh& mesh) {
     PrecomputeOptions result = options.precompute;
     result.engine = options.engine == "beam" ? Engine::Beams : Engine::Embree;
     result.receivers = options.receivers.receivers();
@@ -59,14 +59,19 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
     result.glossy_tolerance = options.surfaces.glossy_tolerance();
     result.max_memory = options.memory.max_bytes();
     result.output = options.output;
-    result.team = session.team;
     result.checkpoint_seconds = options.checkpoint.seconds();
     result.resume = options.checkpoint.resume();
-    result.stop = session.stop();
-    result.on_progress = [&session, clusters = session.progress("precompute"),
-                          highlights = session.progress("highlights"),
-                          bounces = session.progress("bounces"),
-                          last = Stage::Clusters](Stage stage, double fraction) mutable {
+    return result;
+}
+
+/// What the session says of the work.
+PrecomputeWork precompute_work(Session& session) {
+    PrecomputeWork work{.team = session.team != nullptr ? *session.team : prt::alone(),
+                        .stop = session.stop()};
+    work.on_progress = [&session, clusters = session.progress("precompute"),
+                        highlights = session.progress("highlights"),
+                        bounces = session.progress("bounces"),
+                        last = Stage::Clusters](Stage stage, double fraction) mutable {
         if (std::exchange(last, stage) != stage)
             session.end_progress();
         if (const auto& show = stage == Stage::Clusters     ? clusters
@@ -74,13 +79,13 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
                                                             : bounces)
             show(fraction);
     };
-    result.on_warning = [&session](Warning kind, const std::string& message) {
+    work.on_warning = [&session](Warning kind, const std::string& message) {
         session.warn(kind == Warning::HighlightsWithoutView ? message + " (see --view)" : message);
     };
-    result.on_note = [&session](const std::string& message) {
+    work.on_note = [&session](const std::string& message) {
         session.detail(message);
     };
-    return result;
+    return work;
 }
 
 /// The option that helps where the memory does not suffice.
@@ -94,7 +99,8 @@ std::string advice(MemoryLimitExceeded::Part part) {
     return "";
 }
 
-Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report) {
+Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                  PrecomputeReport& report) {
     const auto with_checkpoint = [&](const std::string& message) {
         return report.checkpoint.empty()
                    ? message
@@ -102,7 +108,7 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport&
                                  report.checkpoint.string());
     };
     try {
-        return precompute(std::move(mesh), options, &report);
+        return precompute(std::move(mesh), options, work, &report);
     } catch (const TooMuchWork& error) {
         throw UsageError(error.cause == TooMuchWork::Cause::MinLevel ? "--min-depth"
                          : options.epsilon                           ? "--epsilon"
@@ -253,15 +259,16 @@ void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
 }
 
 /// What there is to say of a plan.
-void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch,
+void write_plan(Mesh mesh, const PrecomputeOptions& options, const Stopwatch& watch,
                 Session& session) {
     PrecomputeReport facts;
-    plan(std::move(mesh), work, &facts);
+    plan(std::move(mesh), options, precompute_work(session), &facts);
     session.end_progress();
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
-                            work.output.string(), facts.num_receivers, facts.clusters.num_clusters,
-                            seconds, static_cast<double>(facts.file_bytes) * 1e-6));
+                            options.output.string(), facts.num_receivers,
+                            facts.clusters.num_clusters, seconds,
+                            static_cast<double>(facts.file_bytes) * 1e-6));
     session.report({{"vertices", facts.num_vertices},
                     {"receivers", facts.num_receivers},
                     {"triangles", facts.num_triangles},
@@ -280,12 +287,12 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
     if (options.parts.is_given())
         return options.parts.run(command, options.output,
                                  options.engine == "beam" ? Engine::Beams : Engine::Embree,
-                                 session);
+                                 precompute_work(session), session);
     if (options.mesh.empty())
         throw UsageError("MESH", "expected a mesh, got none");
     if (session.team != nullptr && session.team->part().index != 0) {
         const Patience for_checkpoints;
-        return assist(*session.team, session.stop());
+        return assist(precompute_work(session));
     }
     Stopwatch watch;
     // Found out now, not after a minute of work.
@@ -325,13 +332,13 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
     if (options.refine.is_wanted())
         mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
 
-    const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
+    const PrecomputeOptions work = precompute_options(options, mesh.geometry);
     if (options.is_plan)
         return write_plan(std::move(mesh), work, watch, session);
     PrecomputeReport facts;
     const Scene scene = [&] {
         const Patience for_checkpoints;
-        return precomputed(std::move(mesh), work, facts);
+        return precomputed(std::move(mesh), work, precompute_work(session), facts);
     }();
     session.end_progress();
 
@@ -353,7 +360,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         report.set("floor", floor_report(scene, session));
     if (facts.bounces)
         report.set("bounces", bounce_report(*facts.bounces, scene, session));
-    if (!facts.processes.empty())
+    if (session.team != nullptr)
         report.set("processes", process_report(facts.processes, session));
     report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
     report.set("seconds", seconds);

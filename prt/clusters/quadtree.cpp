@@ -32,6 +32,18 @@ void Quadtree::build(std::uint32_t node, const Cell& cell, const std::vector<boo
         build(first_child + i, cell.child(i), split_flags, next_flag);
 }
 
+Quadtree Quadtree::of_level(std::uint32_t level) {
+    std::vector<bool> flags;
+    const auto visit = [&](const auto& self, std::uint32_t below) -> void {
+        flags.push_back(below != 0);
+        for (int i = 0; below != 0 && i < 4; ++i)
+            self(self, below - 1);
+    };
+    for (std::size_t face = 0; face < cubemap::NumFaces; ++face)
+        visit(visit, level);
+    return Quadtree(flags);
+}
+
 std::vector<bool> Quadtree::split_flags() const {
     std::vector<bool> flags;
     flags.reserve(nodes_.size());

@@ -59,6 +59,8 @@ public:
     /// Throws:  std::invalid_argument when the flags end early, go on after the last leaf or go
     ///          deeper than MaxLevel.
     explicit Quadtree(const std::vector<bool>& split_flags);
+    /// Returns the tree whose leaves are all cells of a level.
+    [[nodiscard]] static Quadtree of_level(std::uint32_t level);
 
     [[nodiscard]] std::size_t num_leaves() const { return leaves_.size(); }
     [[nodiscard]] std::span<const Cell> leaves() const { return leaves_; }

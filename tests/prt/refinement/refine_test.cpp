@@ -29,7 +29,7 @@ mesh::TriangleMesh box_on_floor() {
 
 mesh::TriangleMesh refined(const mesh::TriangleMesh& mesh, const RefineOptions& options,
                            RefineReport* report = nullptr) {
-    return refine(mesh, RayScene(mesh), options, report);
+    return refine(mesh, RayScene(mesh), options, {}, report);
 }
 
 /// A wall without end at x = 0: nothing from x > 0 reaches points left of it, below a height.
@@ -390,7 +390,8 @@ TEST(Refine, OptionsOutOfRangeAreRefused) {
     refuse(flat, {});
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(static_cast<void>(refined(mesh, {.stop = stop.get_token()})), Cancelled);
+    EXPECT_THROW(
+        static_cast<void>(refine(mesh, RayScene(mesh), {}, {.stop = stop.get_token()})), Cancelled);
 }
 
 } // namespace
