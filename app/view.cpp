@@ -12,10 +12,10 @@
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
 #include "app/options/size_text.h"
-#include "app/scenes/lit_scene.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"

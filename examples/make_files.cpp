@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "cubemap/image/environment.h"
+#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "mesh/save.h"

@@ -242,4 +242,12 @@ std::size_t size(const std::filesystem::path& path) {
     return num_bytes;
 }
 
+void make_folder(const std::filesystem::path& path) {
+    std::error_code error;
+    std::filesystem::create_directories(path, error);
+    if (error)
+        throw std::runtime_error(
+            fmt::format("{}: cannot make the folder: {}", path.string(), error.message()));
+}
+
 } // namespace relumine::files

@@ -90,4 +90,9 @@ void append_text(const std::filesystem::path& path, std::string_view text);
 /// Throws:  as read().
 [[nodiscard]] std::size_t size(const std::filesystem::path& path);
 
+/// Makes a folder and those above it; one that is there stays.
+///
+/// Throws:  std::runtime_error "path: cannot make the folder: ...".
+void make_folder(const std::filesystem::path& path);
+
 } // namespace relumine::files

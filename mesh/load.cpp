@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "files/output_file.h"
-#include "mesh/polygon_soup.h"
+#include "mesh/formats/polygon_soup.h"
 
 namespace relumine::mesh {
 

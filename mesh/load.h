@@ -3,17 +3,10 @@
 
 #include <filesystem>
 
+#include "mesh/normals.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::mesh {
-
-/// Where the vertex normals come from.
-enum class NormalSource {
-    /// The file's normals if it has one for every vertex, smooth normals otherwise.
-    File,
-    /// Normals are always computed from the faces.
-    Smooth,
-};
 
 /// Reads a mesh. The extension tells the format (.obj .gltf .glb .ply .off .stl, any case).
 ///

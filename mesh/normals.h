@@ -5,6 +5,14 @@
 
 namespace relumine::mesh {
 
+/// Where the vertex normals come from.
+enum class NormalSource {
+    /// The file's normals if it has one for every vertex, smooth normals otherwise.
+    File,
+    /// Normals are always computed from the faces.
+    Smooth,
+};
+
 /// Returns smooth vertex normals: the sum of the unit normals of the adjacent faces, weighted by
 /// the angle of each corner (Thuermer and Wuethrich, "Computing vertex normals from polygonal
 /// facets", 1998). So the result does not depend on how a polygon was cut into triangles. A vertex

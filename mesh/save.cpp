@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "files/output_file.h"
-#include "mesh/glb_writer.h"
-#include "mesh/obj_writer.h"
+#include "mesh/formats/glb_writer.h"
+#include "mesh/formats/obj_writer.h"
 
 namespace relumine::mesh {
 

@@ -10,8 +10,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "mesh/material.h"
-#include "mesh/texture.h"
+#include "mesh/materials/material.h"
+#include "mesh/materials/texture.h"
 
 namespace relumine::mesh {
 

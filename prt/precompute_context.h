@@ -1,7 +1,11 @@
 // What stands around a precompute: the trial or the plan that it is a part of.
 #pragma once
 
-#include "prt/precompute.h"
+#include "prt/precompute_options.h"
+#include "prt/receivers/receivers.h"
+#include "prt/transfer/transfer.h"
+#include "prt/visibility/blockers.h"
+#include "prt/work.h"
 
 namespace relumine::prt {
 

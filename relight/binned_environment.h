@@ -9,9 +9,9 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/transfer.h"
-#include "relight/cluster_lights.h"
-#include "relight/sharp_lights.h"
+#include "prt/transfer/transfer.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/sharp/sharp_lights.h"
 
 namespace relumine::relight {
 

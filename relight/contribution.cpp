@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "files/parallel.h"
-#include "relight/light_packets.h"
+#include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
 

@@ -14,7 +14,7 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/layers/layer_composite.h"
 #include "cubemap/layers/light_layer.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "relight/relighter.h"
 
 namespace relumine::relight {

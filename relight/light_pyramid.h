@@ -7,9 +7,9 @@
 
 #include "cubemap/cube_map.h"
 #include "lights/light_list.h"
-#include "prt/clusters/cell_index.h"
-#include "relight/cluster_lights.h"
-#include "relight/sharp_lights.h"
+#include "prt/transfer/cell_index.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/sharp/sharp_lights.h"
 
 namespace relumine::relight {
 

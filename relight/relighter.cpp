@@ -16,12 +16,12 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
-#include "relight/block_kernels.h"
-#include "relight/cluster_lights.h"
-#include "relight/glossy_kernels.h"
-#include "relight/light_packets.h"
+#include "relight/kernels/block_kernels.h"
+#include "relight/kernels/cluster_lights.h"
+#include "relight/kernels/glossy_kernels.h"
 #include "relight/light_pyramid.h"
-#include "relight/traced_light.h"
+#include "relight/sharp/light_packets.h"
+#include "relight/sharp/traced_light.h"
 
 namespace relumine::relight {
 

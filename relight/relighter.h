@@ -13,11 +13,11 @@
 #include "cubemap/cube_map.h"
 #include "cubemap/texel_rectangle.h"
 #include "lights/light_list.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "relight/binned_environment.h"
 #include "relight/bounces/bounce_light.h"
-#include "relight/shadow_rays.h"
-#include "relight/sharp_lights.h"
+#include "relight/sharp/shadow_rays.h"
+#include "relight/sharp/sharp_lights.h"
 
 namespace relumine::relight {
 

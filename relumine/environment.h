@@ -13,8 +13,8 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
-#include "relight/exact.h"
 #include "relight/pictures/backdrop.h"
+#include "relight/reference/exact.h"
 
 namespace relumine {
 
@@ -41,7 +41,7 @@ struct EnvironmentOptions {
 struct Environment {
     cubemap::CubeMap map;
     /// What the map was made from
-    relight::EnvironmentFile file;
+    cubemap::EnvironmentFile file;
     /// One sentence: which layout and sampling the file has, and why
     std::string assumptions;
     /// Pixels that were replaced

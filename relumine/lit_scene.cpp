@@ -13,9 +13,9 @@
 
 #include "cubemap/layers/layer_composite.h"
 #include "prt/visibility/lazy_beam_scene.h"
-#include "relight/bounces/path_tracer.h"
 #include "relight/contribution.h"
-#include "relight/shadow_rays.h"
+#include "relight/reference/path_tracer.h"
+#include "relight/sharp/shadow_rays.h"
 #include "relumine/shared_slices.h"
 
 namespace relumine {
@@ -40,7 +40,7 @@ namespace {
 class FileBackdrop {
 public:
     FileBackdrop() = default;
-    explicit FileBackdrop(relight::EnvironmentFile file) : state_(std::make_shared<State>()) {
+    explicit FileBackdrop(cubemap::EnvironmentFile file) : state_(std::make_shared<State>()) {
         state_->file = std::move(file);
     }
     /// Returns the backdrop; empty without a file.
@@ -54,7 +54,7 @@ public:
 
 private:
     struct State {
-        relight::EnvironmentFile file;
+        cubemap::EnvironmentFile file;
         std::once_flag once;
         relight::Backdrop backdrop;
     };
@@ -215,7 +215,7 @@ struct LitScene::Impl {
     std::optional<relight::Relighter> relighter;
     std::unique_ptr<relight::LightEditor> editor;
     /// What the environment was made from, while nothing has changed it
-    relight::EnvironmentFile file;
+    cubemap::EnvironmentFile file;
     /// Behind light lists
     cubemap::CubeMap black{1};
     cubemap::CubeMap nothing;
@@ -296,7 +296,7 @@ BinnedEnvironment LitScene::bin(std::shared_ptr<const cubemap::CubeMap> environm
         .bin(std::move(environment));
 }
 
-void LitScene::light(BinnedEnvironment environment, const relight::EnvironmentFile& file) {
+void LitScene::light(BinnedEnvironment environment, const cubemap::EnvironmentFile& file) {
     if (impl_->editor)
         impl_->editor->set_base(std::move(environment.map));
     else

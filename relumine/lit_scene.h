@@ -21,8 +21,8 @@
 #include "prt/visibility/ray_scene.h"
 #include "relight/binned_environment.h"
 #include "relight/bounces/bounce_light.h"
-#include "relight/exact.h"
 #include "relight/light_editor.h"
+#include "relight/reference/exact.h"
 #include "relight/relighter.h"
 #include "relumine/environment.h"
 #include "relumine/output.h"
@@ -167,7 +167,7 @@ public:
     /// file's pixels are what pictures show behind the mesh.
     ///
     /// Throws:  std::invalid_argument for an environment of another scene.
-    void light(BinnedEnvironment environment, const relight::EnvironmentFile& file = {});
+    void light(BinnedEnvironment environment, const cubemap::EnvironmentFile& file = {});
 
     /// Lights the scene with distant lights alone, each with shadow rays of its own or, with
     /// clusters_only, through its cluster. The environment and its layers go; the background is

@@ -8,8 +8,8 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/glossy/surface.h"
 #include "prt/glossy/surface_sampling.h"
+#include "prt/receivers/surface.h"
 
 namespace relumine {
 

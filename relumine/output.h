@@ -17,7 +17,7 @@
 #include "relight/pictures/picture_view.h"
 #include "relight/pictures/tone_curve.h"
 #include "relight/relighter.h"
-#include "relight/sharp_lights.h"
+#include "relight/sharp/sharp_lights.h"
 #include "relumine/scene.h"
 
 namespace relumine {

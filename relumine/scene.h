@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/scene/scene_file.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "relight/pictures/framing.h"
 #include "relumine/mesh.h"
 

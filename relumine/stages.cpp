@@ -12,7 +12,7 @@
 #include "prt/glossy/glossy_precompute.h"
 #include "prt/precompute_context.h"
 #include "prt/visibility/beam_scene.h"
-#include "relight/bounces/probe_lights.h"
+#include "relight/probe_lights.h"
 
 namespace relumine {
 

@@ -7,7 +7,7 @@
 
 #include "prt/parts/part_file.h"
 #include "prt/visibility/ray_scene.h"
-#include "relumine/precompute.h"
+#include "relumine/precompute_options.h"
 
 namespace relumine {
 

@@ -5,7 +5,7 @@
 #include <glm/vec2.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 #include "viewer/cube_texture.h"
 #include "viewer/gl_objects.h"
 #include "viewer/lat_long_view.h"

@@ -10,6 +10,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "cubemap/resample/save_environment.h"
 #include "viewer/panels.h"
 
 namespace relumine::viewer {

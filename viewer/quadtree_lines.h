@@ -5,7 +5,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 
 namespace relumine::viewer {
 

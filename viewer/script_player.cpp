@@ -1,4 +1,5 @@
 #include "viewer/script_player.h"
+#include "cubemap/resample/save_environment.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,6 +13,7 @@
 
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/image_pyramid.h"
+#include "cubemap/resample/save_environment.h"
 #include "relight/pictures/framing.h"
 
 namespace relumine::viewer {

@@ -10,7 +10,6 @@
 
 #include "app/command_line/completion.h"
 #include "app/command_line/man_page.h"
-#include "app/environments/generate_sequence.h"
 #include "files/output_file.h"
 
 namespace relumine::app {
@@ -42,7 +41,7 @@ std::string short_name(const ManPage& page, const std::string& program) {
 }
 
 void save_pages(const std::vector<ManPage>& pages, const std::string& folder) {
-    make_folder(folder);
+    files::make_folder(folder);
     for (const ManPage& page : pages)
         files::save_text(std::filesystem::path(folder) / (page.name + ".1"), page.text);
 }

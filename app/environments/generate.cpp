@@ -9,9 +9,11 @@
 #include "app/commands.h"
 #include "app/environments/generate_sequence.h"
 #include "cubemap/image/environment.h"
+#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "data_gen/sequences.h"
+#include "files/output_file.h"
 #include "mesh/save.h"
 
 namespace relumine::app {
@@ -30,7 +32,7 @@ void write_scene(const data_gen::Scene& scene, const GenerateArguments& options,
                  std::vector<Report>& files) {
     const mesh::TriangleMesh mesh = scene.make(options.num_vertices);
     session.poll();
-    make_folder(options.folder);
+    files::make_folder(options.folder);
     const std::filesystem::path path =
         std::filesystem::path(options.folder) / fmt::format("{}.ply", scene.name);
     constexpr float Plaster = 0.5f; // white would keep all light that bounces
@@ -48,7 +50,7 @@ void write_environment(const data_gen::Environment& environment, const GenerateA
                        Session& session, std::vector<Report>& files) {
     const cubemap::CubeMap map = environment.make(options.face_resolution);
     session.poll();
-    make_folder(options.folder);
+    files::make_folder(options.folder);
     const std::filesystem::path folder = options.folder;
     for (const auto& [path, layout] :
          {std::pair{folder / fmt::format("{}.exr", environment.name), cubemap::Layout::Cube},

@@ -11,7 +11,9 @@
 #include "app/options/environment_options.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/image/frame_pattern.h"
+#include "cubemap/resample/save_environment.h"
 #include "data_gen/sequences.h"
+#include "files/output_file.h"
 
 namespace relumine::app {
 
@@ -69,7 +71,7 @@ void generate_sequence(const GenerateSequenceOptions& options, const std::string
         (std::filesystem::path(folder) / fmt::format("{}.%04d.exr", sequence.name)).string();
     const std::optional<cubemap::FramePattern> pattern = cubemap::FramePattern::parse(name);
     const cubemap::Layout layout = parse_layout(options.layout);
-    make_folder(folder);
+    files::make_folder(folder);
     const auto progress = session.progress("frames");
     std::uint32_t resolution = 0;
     for (std::size_t frame = 0; frame < options.num_frames; ++frame) {
@@ -85,14 +87,6 @@ void generate_sequence(const GenerateSequenceOptions& options, const std::string
                             cubemap::name(layout), resolution));
     session.report(
         {{"frames", name}, {"num_frames", options.num_frames}, {"face_resolution", resolution}});
-}
-
-void make_folder(const std::string& path) {
-    std::error_code error;
-    std::filesystem::create_directories(path, error);
-    if (error)
-        throw std::runtime_error(
-            fmt::format("{}: cannot make the folder: {}", path, error.message()));
 }
 
 } // namespace relumine::app

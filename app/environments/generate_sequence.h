@@ -27,7 +27,4 @@ struct GenerateSequenceOptions {
 void generate_sequence(const GenerateSequenceOptions& options, const std::string& folder,
                        std::optional<std::uint32_t> face_resolution, Session& session);
 
-/// Throws std::runtime_error "path: cannot make the folder: ...".
-void make_folder(const std::string& path);
-
 } // namespace relumine::app

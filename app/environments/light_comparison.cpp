@@ -10,10 +10,10 @@
 #include "app/options/receiver_options.h"
 #include "files/output_file.h"
 #include "lights/place_lights.h"
-#include "relight/exact.h"
+#include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/plot.h"
-#include "relight/shadow_rays.h"
-#include "relight/transfer_lights.h"
+#include "relight/reference/exact.h"
+#include "relight/sharp/shadow_rays.h"
 
 namespace relumine::app {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/options/environment_options.h"
-#include "app/scenes/lit_scene.h"
+#include "app/options/lit_scene.h"
 #include "app/session.h"
 #include "lights/light_list.h"
 #include "relight/relighter.h"

@@ -13,19 +13,19 @@
 #include "app/commands.h"
 #include "app/environments/light_comparison.h"
 #include "app/options/environment_options.h"
+#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
-#include "app/scenes/lit_scene.h"
 #include "cubemap/doctor/statistics.h"
 #include "cubemap/doctor/upside_down.h"
 #include "lights/light_export.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
-#include "relight/exact.h"
 #include "relight/pictures/picture.h"
 #include "relight/pictures/region_picture.h"
+#include "relight/reference/exact.h"
 #include "relight/relighter.h"
-#include "relight/shadow_rays.h"
+#include "relight/sharp/shadow_rays.h"
 
 namespace relumine::app {
 

@@ -12,10 +12,10 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
+#include "app/movies/animate_options.h"
 #include "app/movies/frame_light.h"
 #include "app/movies/frame_record.h"
 #include "app/movies/movie.h"
-#include "app/options/animate_options.h"
 #include "cubemap/doctor/upside_down.h"
 #include "cubemap/image/frame_sequence.h"
 #include "cubemap/image/read_ahead.h"
@@ -25,8 +25,8 @@
 #include "lights/place_lights.h"
 #include "prt/precompute.h"
 #include "prt/team.h"
-#include "relight/flicker.h"
 #include "relight/pictures/array_file.h"
+#include "relight/reference/flicker.h"
 #include "relight/relighter.h"
 
 namespace relumine::app {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/options/bounce_option.h"
+#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
-#include "app/scenes/lit_scene.h"
 #include "app/session.h"
 #include "relight/relighter.h"
 #include "relumine/shared_light.h"

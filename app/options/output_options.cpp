@@ -21,7 +21,7 @@ namespace relumine::app {
 
 namespace {
 
-relight::PictureOptions parse_size(const std::string& text) {
+relight::PictureOptions picture_size(const std::string& text) {
     const std::optional<SizeText> size = parse_size_text(text);
     if (!size)
         throw UsageError("--size", fmt::format("expected WIDTHxHEIGHT, got '{}'", text));
@@ -191,7 +191,7 @@ Option OutputOptions::add_to(Command& command) {
 void OutputOptions::check(const std::vector<std::string>& inputs) const {
     require_extension("--output", path, {".png", ".exr", ".ply", ".glb", ".npy"});
     check_output(path, inputs);
-    static_cast<void>(parse_size(size));
+    static_cast<void>(picture_size(size));
     static_cast<void>(parse_albedo(albedo));
     if (!floor_albedo.empty())
         static_cast<void>(parse_color("--floor-albedo", floor_albedo));
@@ -242,7 +242,7 @@ relumine::OutputOptions OutputOptions::for_scene(const Scene& scene) const {
         throw UsageError("--albedo",
                          "expected a mesh with vertex colours for `mesh`, got one without");
     if (std::holds_alternative<prt::VertexLayout>(scene.layout)) {
-        const relight::PictureOptions picture = parse_size(size);
+        const relight::PictureOptions picture = picture_size(size);
         result.width = picture.width;
         result.height = picture.height;
         result.camera = camera_for(*this, scene, picture);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/command_line/command_line.h"
-#include "app/scenes/lit_scene.h"
+#include "app/options/lit_scene.h"
 #include "cubemap/image/frame_pattern.h"
 #include "relumine/output.h"
 

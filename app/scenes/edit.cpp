@@ -13,14 +13,15 @@
 #include <glm/geometric.hpp>
 
 #include "app/commands.h"
+#include "app/file_watch.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/scenes/lit_by.h"
-#include "app/scenes/lit_scene.h"
-#include "app/service/file_watch.h"
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/layer_file.h"
+#include "cubemap/resample/save_environment.h"
 #include "relight/light_editor.h"
 
 namespace relumine::app {

@@ -16,9 +16,9 @@
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/plan_option.h"
-#include "app/scenes/lit_scene.h"
 #include "lights/light_file.h"
 #include "relumine/lit_part.h"
 

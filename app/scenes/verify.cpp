@@ -6,7 +6,7 @@
 #include "app/commands.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
-#include "app/scenes/lit_scene.h"
+#include "app/options/lit_scene.h"
 #include "prt/team.h"
 
 namespace relumine::app {

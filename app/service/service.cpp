@@ -18,9 +18,9 @@
 #include "app/movies/frame_record.h"
 #include "app/options/bounce_option.h"
 #include "app/options/environment_options.h"
+#include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/report.h"
-#include "app/scenes/lit_scene.h"
 #include "app/session.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/layers/layer_list.h"
@@ -151,7 +151,7 @@ struct Service::Impl {
     struct Binned {
         std::string key;
         BinnedEnvironment environment;
-        relight::EnvironmentFile file;
+        cubemap::EnvironmentFile file;
     };
     std::list<Binned> binned;
 

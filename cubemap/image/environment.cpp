@@ -13,7 +13,6 @@
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
-#include "cubemap/resample/resample.h"
 #include "files/joined.h"
 #include "files/output_file.h"
 
@@ -364,15 +363,6 @@ Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
                                environment_files(path).size() == 1 &&
                                (layout == Layout::LatLong || layout == Layout::Cube);
     return has_attribute ? Sampling::Borders : Sampling::TexelCentres;
-}
-
-void save_environment(const std::filesystem::path& path, const CubeMap& map, Layout layout) {
-    check_environment_name(path);
-    const ImageSize size = natural_size(layout, map.resolution);
-    for (const std::filesystem::path& each : environment_files(path))
-        files::OutputFile{each}; // finds a path that cannot be written before the work
-    save_image(path,
-               to_image(map, layout, size.width, size.height, default_sampling(path, layout)));
 }
 
 } // namespace relumine::cubemap

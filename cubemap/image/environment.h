@@ -179,14 +179,4 @@ void check_environment_name(const std::filesystem::path& path);
 /// Throws:  std::runtime_error or std::invalid_argument "path: ...".
 void save_image(const std::filesystem::path& path, const EnvironmentImage& image);
 
-/// Writes a cube map in a layout, at the layout's natural size. In .exr files, Cube and LatLong
-/// have the `envmap` attribute and samples on the borders, as the attribute's specification says.
-/// All other files have samples at texel centres.
-///
-/// Energy:  the file reads back to the same energy. For .hdr this holds to the 8 bits of RGBE, 0.2
-///          % per pixel.
-/// Throws:  as save_image().
-void save_environment(const std::filesystem::path& path, const CubeMap& map,
-                      Layout layout = Layout::Cube);
-
 } // namespace relumine::cubemap

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/resample/footprint.h"
-#include "cubemap/resample/projection.h"
+#include "cubemap/image/footprint.h"
+#include "cubemap/image/projection.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/resample/projection.h"
+#include "cubemap/image/projection.h"
 
 namespace relumine::cubemap {
 

@@ -16,7 +16,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/image/image_layout.h"
-#include "cubemap/resample/projection.h"
+#include "cubemap/image/projection.h"
 #include "files/parallel.h"
 
 namespace relumine::cubemap {

@@ -12,11 +12,11 @@
 #include <glm/matrix.hpp>
 
 #include "cubemap/cube_map.h"
+#include "cubemap/image/footprint.h"
 #include "cubemap/image/image_layout.h"
-#include "cubemap/resample/footprint.h"
+#include "cubemap/image/projection.h"
 #include "cubemap/resample/lat_long_footprint.h"
 #include "cubemap/resample/pixel_symmetry.h"
-#include "cubemap/resample/projection.h"
 #include "cubemap/spherical_overlap.h"
 #include "files/parallel.h"
 

@@ -9,7 +9,7 @@
 #include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 
-#include "cubemap/resample/projection.h"
+#include "cubemap/image/projection.h"
 
 namespace relumine::cubemap::detail {
 

@@ -3,9 +3,9 @@
 #include <span>
 #include <vector>
 
-#include "cubemap/resample/footprint.h"
+#include "cubemap/image/footprint.h"
+#include "cubemap/image/projection.h"
 #include "cubemap/resample/pixel_shares.h"
-#include "cubemap/resample/projection.h"
 #include "cubemap/spherical_overlap.h"
 
 namespace relumine::cubemap::detail {

@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "mesh/half_edge/edge_uses.h"
+#include "mesh/edge_uses.h"
 #include "mesh/half_edge/winding.h"
 
 namespace relumine::mesh {

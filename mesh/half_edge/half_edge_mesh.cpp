@@ -11,7 +11,7 @@
 #include <OpenMesh/Tools/Decimater/ModNormalFlippingT.hh>
 #include <OpenMesh/Tools/Decimater/ModQuadricT.hh>
 
-#include "mesh/half_edge/edge_uses.h"
+#include "mesh/edge_uses.h"
 
 namespace relumine::mesh {
 

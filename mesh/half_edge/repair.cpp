@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
+#include "mesh/edge_uses.h"
 #include "mesh/half_edge/diagnosis.h"
-#include "mesh/half_edge/edge_uses.h"
 #include "mesh/half_edge/half_edge_mesh.h"
 #include "mesh/half_edge/winding.h"
 #include "mesh/normals.h"

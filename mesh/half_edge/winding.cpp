@@ -7,7 +7,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "mesh/half_edge/edge_uses.h"
+#include "mesh/edge_uses.h"
 
 namespace relumine::mesh {
 

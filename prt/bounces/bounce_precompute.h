@@ -10,7 +10,7 @@
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/bounces/bounce_samples.h"
 #include "prt/receivers/receivers.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "prt/visibility/ray_scene.h"
 #include "prt/work.h"
 

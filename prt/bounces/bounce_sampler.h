@@ -14,7 +14,7 @@
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/bounces/bounce_samples.h"
 #include "prt/receivers/receivers.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "prt/visibility/ray_scene.h"
 
 namespace relumine::prt {

@@ -11,7 +11,7 @@
 
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/receivers/receivers.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 
 namespace relumine::prt {
 

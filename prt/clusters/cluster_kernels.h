@@ -11,7 +11,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/clusters/lattice.h"
-#include "prt/clusters/visible_counts.h"
+#include "prt/transfer/visible_counts.h"
 #include "prt/visibility/bit_matrix.h"
 
 namespace relumine::prt {

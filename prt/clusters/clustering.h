@@ -17,8 +17,8 @@
 #include "prt/clusters/pending_cells.h"
 #include "prt/clusters/visibility_planes.h"
 #include "prt/clusters/work_estimate.h"
-#include "prt/precompute.h"
 #include "prt/precompute_context.h"
+#include "prt/precompute_options.h"
 #include "prt/progress.h"
 #include "prt/steps.h"
 

@@ -8,8 +8,8 @@
 
 #include "prt/clusters/column_store.h"
 #include "prt/clusters/pending_cells.h"
-#include "prt/clusters/quadtree.h"
 #include "prt/clusters/visibility_planes.h"
+#include "prt/transfer/quadtree.h"
 
 namespace relumine::prt {
 

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "prt/clusters/visible_counts.h"
+#include "prt/transfer/visible_counts.h"
 
 namespace relumine::prt {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "prt/clusters/visible_counts.h"
+#include "prt/transfer/visible_counts.h"
 
 namespace relumine::prt {
 

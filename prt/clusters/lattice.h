@@ -6,7 +6,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 
 namespace relumine::prt {
 

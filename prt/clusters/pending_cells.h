@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 
 namespace relumine::prt {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 
 namespace relumine::prt {
 

@@ -13,7 +13,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/glossy/surface.h"
+#include "prt/receivers/surface.h"
 
 namespace relumine::prt {
 

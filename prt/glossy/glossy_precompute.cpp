@@ -18,12 +18,12 @@
 
 #include "files/packed_parts.h"
 #include "files/parallel.h"
-#include "prt/clusters/cell_index.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/free_memory.h"
 #include "prt/glossy/brdf.h"
 #include "prt/glossy/lobe_refinement.h"
 #include "prt/steps.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 

@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <limits>
 
-#include "prt/glossy/glossy_transfer.h"
 #include "prt/receivers/receivers.h"
-#include "prt/transfer.h"
+#include "prt/transfer/glossy_transfer.h"
+#include "prt/transfer/transfer.h"
 #include "prt/visibility/blockers.h"
 #include "prt/work.h"
 

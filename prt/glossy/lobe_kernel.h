@@ -8,8 +8,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/glossy/glossy_transfer.h"
-#include "prt/glossy/surface.h"
+#include "prt/receivers/surface.h"
+#include "prt/transfer/glossy_transfer.h"
 
 namespace relumine::prt {
 

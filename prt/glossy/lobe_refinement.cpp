@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "prt/clusters/cell_index.h"
 #include "prt/clusters/lattice.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 

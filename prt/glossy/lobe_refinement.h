@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "prt/glossy/lobe_kernel.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {

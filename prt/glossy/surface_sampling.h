@@ -8,7 +8,7 @@
 #include <glm/vec2.hpp>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/glossy/surface.h"
+#include "prt/receivers/surface.h"
 
 namespace relumine::prt {
 

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "prt/bounces/bounce_samples.h"
-#include "prt/clusters/visible_counts.h"
-#include "prt/glossy/glossy_transfer.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
 #include "prt/scene/scene_file.h"
 #include "prt/team.h"
-#include "prt/transfer.h"
+#include "prt/transfer/glossy_transfer.h"
+#include "prt/transfer/transfer.h"
+#include "prt/transfer/visible_counts.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {

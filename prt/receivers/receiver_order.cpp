@@ -10,7 +10,7 @@
 #include <glm/common.hpp>
 
 #include "files/parallel.h"
-#include "prt/clusters/visible_counts.h"
+#include "prt/receivers/block_size.h"
 #include "prt/visibility/blockers.h"
 
 namespace relumine::prt {

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "prt/clusters/visible_counts.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
+#include "prt/transfer/visible_counts.h"
 
 namespace relumine::prt {
 

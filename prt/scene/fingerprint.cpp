@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
-#include "prt/glossy/surface.h"
+#include "prt/receivers/surface.h"
 
 namespace relumine::prt {
 

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "prt/clusters/cell_index.h"
 #include "prt/scene/section_picker.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "prt/glossy/glossy_transfer.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
+#include "prt/transfer/glossy_transfer.h"
 
 namespace relumine::prt {
 

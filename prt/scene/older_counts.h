@@ -6,8 +6,8 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/clusters/quadtree.h"
-#include "prt/clusters/visible_counts.h"
+#include "prt/transfer/quadtree.h"
+#include "prt/transfer/visible_counts.h"
 
 namespace relumine::prt {
 

@@ -10,7 +10,7 @@
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/receivers/receiver_layout.h"
 #include "prt/receivers/receivers.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 
 namespace relumine::prt {
 

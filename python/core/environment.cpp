@@ -145,7 +145,7 @@ struct Target {
 
 /// Returns the pixels and the layout's name.
 py::tuple convert_to_array(const EnvironmentHandle& own, const py::dict& given) {
-    const relight::EnvironmentFile file = own.made.file;
+    const cubemap::EnvironmentFile file = own.made.file;
     const Target target(Options(given), *file.image, false);
     cubemap::EnvironmentImage image = in_background(py::none(), [file, target](const Reins&) {
         return converted(*file.image, file.turn, *target.to, target.layout,
@@ -158,7 +158,7 @@ py::tuple convert_to_array(const EnvironmentHandle& own, const py::dict& given) 
 
 void convert_to_file(const Path& path, const EnvironmentHandle& own, const py::dict& given) {
     cubemap::check_environment_name(path);
-    const relight::EnvironmentFile file = own.made.file;
+    const cubemap::EnvironmentFile file = own.made.file;
     const Target target(Options(given), *file.image, cubemap::environment_files(path).size() > 1);
     in_background(py::none(), [path, file, target](const Reins&) {
         const cubemap::Sampling sampling = target.to->has_attribute

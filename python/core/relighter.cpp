@@ -13,8 +13,8 @@
 #include "files/json_value.h"
 #include "lights.h"
 #include "options.h"
+#include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/picture.h"
-#include "relight/transfer_lights.h"
 #include "run.h"
 #include "scene.h"
 

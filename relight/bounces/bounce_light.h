@@ -12,7 +12,7 @@
 
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/team.h"
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 
 namespace relumine::relight {
 

@@ -12,7 +12,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "cubemap/resample/projection.h"
+#include "cubemap/image/projection.h"
 #include "cubemap/resample/resample.h"
 #include "files/parallel.h"
 
@@ -171,7 +171,7 @@ Backdrop image_backdrop(std::shared_ptr<const EnvironmentImage> image, const glm
     };
 }
 
-Backdrop backdrop_of(const EnvironmentFile& file) {
+Backdrop backdrop_of(const cubemap::EnvironmentFile& file) {
     return file.image ? image_backdrop(file.image, file.turn) : Backdrop();
 }
 

@@ -9,7 +9,7 @@
 
 #include "cubemap/cube_map.h"
 #include "cubemap/image/environment.h"
-#include "relight/exact.h"
+#include "cubemap/image/environment_file.h"
 
 namespace relumine::relight {
 
@@ -30,7 +30,7 @@ using Backdrop = std::function<glm::vec3(const glm::vec3& direction)>;
                                       const glm::dmat3& turn = glm::dmat3(1.0));
 
 /// The same for an environment's file; empty where there is none.
-[[nodiscard]] Backdrop backdrop_of(const EnvironmentFile& file);
+[[nodiscard]] Backdrop backdrop_of(const cubemap::EnvironmentFile& file);
 
 /// Shows what an edit made of a sharp backdrop: darker in proportion where the edited map is darker
 /// than the base, brighter by the difference where it is brighter. So what was not edited stays as

@@ -9,7 +9,7 @@
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
 #include "prt/receivers/mesh_point.h"
-#include "relight/light_packets.h"
+#include "relight/sharp/light_packets.h"
 
 namespace relumine::relight {
 

@@ -14,13 +14,13 @@
 
 #include "cubemap/image/picture.h"
 #include "mesh/triangle_mesh.h"
-#include "prt/glossy/surface.h"
 #include "prt/receivers/camera.h"
+#include "prt/receivers/surface.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/surface_colors.h"
 #include "relight/pictures/twin_triangles.h"
-#include "relight/sharp_lights.h"
+#include "relight/sharp/sharp_lights.h"
 
 namespace relumine::relight {
 

@@ -8,8 +8,8 @@
 #include <glm/vec3.hpp>
 
 #include "mesh/triangle_mesh.h"
-#include "prt/glossy/surface.h"
 #include "prt/receivers/mesh_point.h"
+#include "prt/receivers/surface.h"
 
 namespace relumine::relight {
 

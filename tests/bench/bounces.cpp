@@ -9,13 +9,13 @@
 
 #include "prt/bounces/bounce_precompute.h"
 #include "relight/bounces/bounce_light.h"
-#include "relight/bounces/path_tracer.h"
-#include "relight/bounces/probe_lights.h"
-#include "relight/exact.h"
+#include "relight/probe_lights.h"
+#include "relight/reference/exact.h"
+#include "relight/reference/path_tracer.h"
 #include "relumine/relumine.h"
-#include "tests/prt/all_bounces.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
+#include "tests/prt/all_bounces.h"
 
 using namespace relumine;
 

@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 
 namespace relumine::bench {
 

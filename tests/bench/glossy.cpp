@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/parallel.h"
-#include "relight/glossy_kernels.h"
+#include "relight/kernels/glossy_kernels.h"
 #include "relight/light_pyramid.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"

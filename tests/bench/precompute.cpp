@@ -121,8 +121,12 @@ void measure(const std::string& name, const prt::Receivers& receivers,
     LongestGap gap;
     prt::PrecomputeStatistics statistics;
     const double before = bench::cpu_seconds();
-    const prt::Transfer transfer = prt::precompute(
-        receivers, blockers, options, {.on_progress = [&](double) { gap.call(); }}, &statistics);
+    const prt::Transfer transfer = prt::precompute(receivers, blockers, options,
+                                                   {.on_progress =
+                                                        [&](double) {
+                                                            gap.call();
+                                                        }},
+                                                   &statistics);
     print(name, statistics.seconds, bench::cpu_seconds() - before, transfer.num_clusters());
     fmt::print("  {:.0f} M rays  longest without progress {:.0f} ms  peak {:.0f} MB\n",
                static_cast<double>(statistics.num_rays) * 1e-6, gap.seconds() * 1e3,

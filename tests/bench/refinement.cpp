@@ -20,7 +20,7 @@
 #include "mesh/normals.h"
 #include "prt/receivers/mesh_point.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/exact.h"
+#include "relight/reference/exact.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/process_usage.h"

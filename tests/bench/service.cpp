@@ -26,7 +26,7 @@
 #include "app/service/line_server.h"
 #include "app/service/service.h"
 #include "app/session.h"
-#include "cubemap/image/environment.h"
+#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "data_gen/scenes.h"
 #include "files/descriptor.h"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -17,8 +18,9 @@
 #include "lights/light_clusters.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
-#include "relight/flicker.h"
-#include "relight/shadow_rays.h"
+#include "relight/pictures/plot.h"
+#include "relight/reference/flicker.h"
+#include "relight/sharp/shadow_rays.h"
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
@@ -53,6 +55,26 @@ struct Sequence {
     std::string name;
     data_gen::FrameMaker map;
 };
+
+/// Returns an SVG document with the directions of the lights of some frames, by longitude and
+/// latitude, one colour for each frame [S, Fig. 4 and 5].
+std::string light_positions_plot(const lights::FrameLights& lights, std::size_t first_frame,
+                                 std::size_t num_frames, const std::string& title) {
+    constexpr double Degrees = 180.0 * std::numbers::inv_pi;
+    relight::Plot plot{
+        .title = title, .x_label = "longitude (degrees, from +Z to +X)", .y_label = "latitude"};
+    const std::size_t end = std::min(first_frame + num_frames, lights.num_frames());
+    for (std::size_t frame = first_frame; frame < end; ++frame) {
+        relight::Plot::Series series{
+            .name = fmt::format("frame {}", frame), .x = {}, .y = {}, .line = false};
+        for (const lights::DistantLight& light : lights.at(frame)) {
+            series.x.push_back(Degrees * std::atan2(light.direction.x, light.direction.z));
+            series.y.push_back(Degrees * std::asin(std::clamp(light.direction.y, -1.0, 1.0)));
+        }
+        plot.series.push_back(std::move(series));
+    }
+    return relight::svg(plot);
+}
 
 /// Those of `relumine generate sequence` that the tables of docs/measurements.md show.
 std::vector<Sequence> sequences(const Settings& settings, const bench::Inputs& inputs) {
@@ -304,9 +326,8 @@ void write_plots(const Settings& settings, std::size_t index, const Sequence& se
             row.method == FollowedClusters || row.method == "prt")
             reports.push_back({row.method, row.report});
     write("inconsistency", relight::inconsistency_plot(reports, sequence.name));
-    write("clusters",
-          relight::light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
-                                        fmt::format("{}: clusters", sequence.name)));
+    write("clusters", light_positions_plot(experiment.cluster_lights(), settings.num_frames / 2, 5,
+                                           fmt::format("{}: clusters", sequence.name)));
     const lights::FrameLights jumping = lights::importance_lights(
         [&](std::size_t frame) {
             return lights::lat_long_of(sequence.map(settings.num_frames / 2 + frame));
@@ -314,7 +335,7 @@ void write_plots(const Settings& settings, std::size_t index, const Sequence& se
         std::min<std::size_t>(5, settings.num_frames / 2),
         static_cast<std::size_t>(rows.front().lights),
         {.seed = settings.seed, .seed_per_frame = true});
-    write("importance", relight::light_positions_plot(
+    write("importance", light_positions_plot(
                             jumping, 0, 5, fmt::format("{}: importance sampling", sequence.name)));
 }
 

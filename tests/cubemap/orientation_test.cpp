@@ -12,6 +12,7 @@
 #include "cubemap/image/image_file.h"
 #include "cubemap/resample/convert.h"
 #include "cubemap/resample/resample.h"
+#include "cubemap/resample/save_environment.h"
 #include "files/output_file.h"
 #include "tests/cubemap/test_images.h"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cubemap/cube_map.h"
-#include "prt/clusters/quadtree.h"
+#include "prt/transfer/quadtree.h"
 #include "relight/relighter.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "mesh/texture.h"
+#include "mesh/materials/texture.h"
 #include "tests/fuzz/fuzz.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -18,8 +18,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "mesh/formats/polygon_soup.h"
 #include "mesh/load.h"
-#include "mesh/polygon_soup.h"
 
 namespace relumine::mesh {
 

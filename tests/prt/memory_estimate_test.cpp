@@ -84,12 +84,13 @@ TEST(MemoryEstimate, ATrialStopsWhenTheLimitIsReached) {
 TEST(MemoryEstimate, ARunStopsAtItsLimitAndLeavesACheckpoint) {
     const MemoryScene scene;
     PrecomputeStatistics statistics;
-    const Transfer expected = precompute(scene.receivers, scene.rays, scene.options, {}, &statistics);
+    const Transfer expected =
+        precompute(scene.receivers, scene.rays, scene.options, {}, &statistics);
     MemoryCheckpoint checkpoint;
     PrecomputeOptions options = scene.options;
     options.max_column_bytes = statistics.column_bytes;
-    EXPECT_NO_THROW(static_cast<void>(precompute(scene.receivers, scene.rays, options,
-                                               {.checkpoint = &checkpoint})));
+    EXPECT_NO_THROW(static_cast<void>(
+        precompute(scene.receivers, scene.rays, options, {.checkpoint = &checkpoint})));
     MemoryCheckpoint half;
     options.max_column_bytes = statistics.column_bytes / 2;
     try {

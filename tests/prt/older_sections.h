@@ -1,9 +1,9 @@
 // Sections of a .prt file as older versions have them.
 #pragma once
 
-#include "prt/clusters/visible_counts.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
+#include "prt/transfer/visible_counts.h"
 
 namespace relumine::scenes {
 

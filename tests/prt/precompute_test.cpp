@@ -432,10 +432,10 @@ TEST(Precompute, StopsSoon) {
             std::stop_source& source_;
             std::atomic<std::size_t>& packets_;
         };
-        EXPECT_THROW(static_cast<void>(precompute(
-                         random_receivers(num_receivers, 3), Watched(stop, num_packets),
-                         {.tolerance = 0.0f, .min_level = 8, .face_resolution = 256},
-                         {.stop = stop.get_token()})),
+        EXPECT_THROW(static_cast<void>(
+                         precompute(random_receivers(num_receivers, 3), Watched(stop, num_packets),
+                                    {.tolerance = 0.0f, .min_level = 8, .face_resolution = 256},
+                                    {.stop = stop.get_token()})),
                      Cancelled);
         EXPECT_LT(num_packets, 400000u) << num_receivers << " receivers";
     }
@@ -443,8 +443,9 @@ TEST(Precompute, StopsSoon) {
 
 TEST(Precompute, ProgressNeverFallsAndEndsByOne) {
     std::vector<double> fractions;
-    static_cast<void>(SmallScene().transfer(
-        {.on_progress = [&](double fraction) { fractions.push_back(fraction); }}));
+    static_cast<void>(SmallScene().transfer({.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }}));
     ASSERT_GE(fractions.size(), 3u);
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
     EXPECT_GE(fractions.front(), 0.0);
@@ -453,7 +454,9 @@ TEST(Precompute, ProgressNeverFallsAndEndsByOne) {
 }
 
 TEST(Precompute, WhatTheProgressCallThrowsComesOut) {
-    const Work work{.on_progress = [](double) { throw std::runtime_error("enough"); }};
+    const Work work{.on_progress = [](double) {
+        throw std::runtime_error("enough");
+    }};
     EXPECT_THROW(static_cast<void>(SmallScene().transfer(work)), std::runtime_error);
 }
 

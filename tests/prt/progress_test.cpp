@@ -9,7 +9,9 @@ namespace {
 
 TEST(Progress, GoesOnWhereAnEarlierStageThoughtThatMoreWasDone) {
     std::vector<double> fractions;
-    const Work work{.on_progress = [&](double fraction) { fractions.push_back(fraction); }};
+    const Work work{.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }};
     Progress progress(work);
     progress.start_stage(0.0, 0.6);
     progress.report(1.0);
@@ -26,7 +28,9 @@ TEST(Progress, GoesOnWhereAnEarlierStageThoughtThatMoreWasDone) {
 
 TEST(Progress, JumpsToWhereALaterEstimateIs) {
     std::vector<double> fractions;
-    const Work work{.on_progress = [&](double fraction) { fractions.push_back(fraction); }};
+    const Work work{.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }};
     Progress progress(work);
     progress.start_stage(0.0, 0.1);
     progress.report(1.0);
@@ -37,7 +41,9 @@ TEST(Progress, JumpsToWhereALaterEstimateIs) {
 
 TEST(Progress, NeverFalls) {
     std::vector<double> fractions;
-    const Work work{.on_progress = [&](double fraction) { fractions.push_back(fraction); }};
+    const Work work{.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }};
     Progress progress(work);
     progress.start_stage(0.0, 1.0);
     for (const double part : {0.5, 0.25, 0.75})

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "prt/transfer.h"
+#include "prt/transfer/transfer.h"
 
 namespace relumine::prt {
 

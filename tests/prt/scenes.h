@@ -10,8 +10,8 @@
 
 #include "cubemap/face.h"
 #include "mesh/triangle_mesh.h"
-#include "prt/clusters/quadtree.h"
 #include "prt/receivers/receivers.h"
+#include "prt/transfer/quadtree.h"
 
 namespace relumine::scenes {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-#include "mesh/texture.h"
+#include "mesh/materials/texture.h"
 #include "mesh/triangle_mesh.h"
 
 namespace relumine::scenes {

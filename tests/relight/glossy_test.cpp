@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "prt/glossy/brdf.h"
-#include "relight/exact.h"
-#include "relight/glossy_kernels.h"
+#include "relight/kernels/glossy_kernels.h"
 #include "relight/light_pyramid.h"
+#include "relight/reference/exact.h"
 #include "relight/relighter.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"

@@ -9,10 +9,10 @@
 
 #include "files/parallel.h"
 #include "lights/place_lights.h"
-#include "relight/exact.h"
-#include "relight/light_packets.h"
+#include "relight/light_fit/transfer_lights.h"
+#include "relight/reference/exact.h"
 #include "relight/relighter.h"
-#include "relight/transfer_lights.h"
+#include "relight/sharp/light_packets.h"
 #include "tests/relight/environments.h"
 #include "tests/relight/relit_scene.h"
 

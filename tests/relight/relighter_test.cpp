@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"
-#include "relight/block_kernels.h"
+#include "relight/kernels/block_kernels.h"
 #include "relight/light_editor.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/every_target.h"

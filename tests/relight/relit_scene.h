@@ -9,7 +9,7 @@
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/ray_scene.h"
-#include "relight/shadow_rays.h"
+#include "relight/sharp/shadow_rays.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::scenes {

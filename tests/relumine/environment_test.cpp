@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "cubemap/resample/resample.h"
+#include "cubemap/resample/save_environment.h"
 #include "data_gen/environments.h"
 #include "tests/relumine/small_scenes.h"
 

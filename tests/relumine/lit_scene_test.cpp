@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cubemap/layers/layer_composite.h"
-#include "relight/shadow_rays.h"
+#include "relight/sharp/shadow_rays.h"
 #include "tests/relight/environments.h"
 #include "tests/relumine/small_scenes.h"
 

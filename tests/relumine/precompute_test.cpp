@@ -83,12 +83,12 @@ TEST(Precompute, LightsTexelsOfALightmap) {
     for (std::size_t vertex = 4; vertex < 8; ++vertex)
         mesh.uvs[vertex].x -= 0.5f;
     std::vector<std::string> warnings;
-    static_cast<void>(
-        precompute(mesh, {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}},
-                   {.on_warning = [&](Warning kind, const std::string& text) {
-                       EXPECT_EQ(kind, Warning::ChartsOverlap);
-                       warnings.push_back(text);
-                   }}));
+    static_cast<void>(precompute(mesh,
+                                 {.tolerance = 0.2f, .receivers = Texels{.width = 8, .height = 4}},
+                                 {.on_warning = [&](Warning kind, const std::string& text) {
+                                     EXPECT_EQ(kind, Warning::ChartsOverlap);
+                                     warnings.push_back(text);
+                                 }}));
     ASSERT_EQ(warnings.size(), 1u);
     EXPECT_EQ(warnings[0], "12 texels lie in several triangles, the first at column 0, row 0: "
                            "charts overlap, the first triangle of the mesh wins");
@@ -185,7 +185,8 @@ TEST_F(PrecomputeFile, IsWrittenAndItsCheckpointGoes) {
     PrecomputeReport report;
     const Scene scene = precompute(
         boulder(),
-        {.tolerance = Tolerance, .output = file("scene.prt"), .checkpoint_seconds = 1e-9}, {}, &report);
+        {.tolerance = Tolerance, .output = file("scene.prt"), .checkpoint_seconds = 1e-9}, {},
+        &report);
     EXPECT_EQ(report.file_bytes, std::filesystem::file_size(file("scene.prt")));
     EXPECT_FALSE(std::filesystem::exists(file("scene.prt.checkpoint")));
     save_scene(file("again.prt"), scene);
@@ -207,16 +208,20 @@ TEST_F(PrecomputeFile, StoppedIsResumedToTheSameBytes) {
             stop.request_stop();
     };
     PrecomputeReport report;
-    EXPECT_THROW(static_cast<void>(precompute(boulder(), options("scene.prt"), first, &report)), Cancelled);
+    EXPECT_THROW(static_cast<void>(precompute(boulder(), options("scene.prt"), first, &report)),
+                 Cancelled);
     EXPECT_EQ(report.checkpoint, file("scene.prt.checkpoint"));
     EXPECT_FALSE(std::filesystem::exists(file("scene.prt")));
 
     PrecomputeOptions second = options("scene.prt");
     second.resume = true;
     std::vector<std::string> notes;
-    static_cast<void>(precompute(
-        boulder(), second,
-        {.on_note = [&](const std::string& text) { notes.push_back(text); }}, &report));
+    static_cast<void>(precompute(boulder(), second,
+                                 {.on_note =
+                                      [&](const std::string& text) {
+                                          notes.push_back(text);
+                                      }},
+                                 &report));
     EXPECT_EQ(notes, std::vector{"going on from " + file("scene.prt.checkpoint").string()});
     EXPECT_TRUE(report.checkpoint.empty());
     EXPECT_EQ(read("scene.prt"), read("whole.prt"));

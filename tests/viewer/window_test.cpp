@@ -13,6 +13,7 @@
 
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/light_layer.h"
+#include "cubemap/resample/save_environment.h"
 #include "data_gen/scenes.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"

@@ -1,4 +1,5 @@
 #include "cubemap/image/environment.h"
+#include "cubemap/resample/save_environment.h"
 
 #include <ctime>
 #include <fstream>

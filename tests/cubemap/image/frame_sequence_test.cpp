@@ -15,6 +15,7 @@
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_size.h"
 #include "cubemap/resample/resample.h"
+#include "cubemap/resample/save_environment.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {

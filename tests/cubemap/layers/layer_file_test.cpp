@@ -1,4 +1,5 @@
 #include "cubemap/layers/layer_file.h"
+#include "cubemap/resample/save_environment.h"
 
 #include <algorithm>
 #include <cmath>

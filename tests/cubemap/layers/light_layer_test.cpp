@@ -1,4 +1,5 @@
 #include "cubemap/layers/light_layer.h"
+#include "cubemap/resample/save_environment.h"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 // Small meshes of the half-edge tests.
 #pragma once
 
-#include "mesh/half_edge/edge_uses.h"
+#include "mesh/edge_uses.h"
 #include "mesh/normals.h"
 #include "tests/mesh/mesh_files.h"
 

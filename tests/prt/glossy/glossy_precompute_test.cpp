@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"
-#include "prt/clusters/cell_index.h"
 #include "prt/glossy/brdf.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/memory_checkpoint.h"
@@ -37,9 +36,9 @@ Transfer with_glossy(const Receivers& receivers, const Blockers& blockers, float
                      GlossyStatistics* statistics = nullptr) {
     Transfer transfer =
         precompute(receivers, blockers, {.tolerance = 0.01f, .face_resolution = FaceResolution});
-    transfer.glossy =
-        precompute_glossy(receivers, blockers, transfer,
-                          {.tolerance = tolerance, .face_resolution = FaceResolution}, {}, statistics);
+    transfer.glossy = precompute_glossy(receivers, blockers, transfer,
+                                        {.tolerance = tolerance, .face_resolution = FaceResolution},
+                                        {}, statistics);
     return transfer;
 }
 
@@ -238,7 +237,9 @@ TEST(GlossyPrecompute, CellsOfABlockNeverOverlap) {
 TEST(GlossyPrecompute, StopsWhenAsked) {
     const scenes::GlossyScene& scene = scenes::glossy_scene();
     std::stop_source stop;
-    const Work work{.stop = stop.get_token(), .on_progress = [&](double) { stop.request_stop(); }};
+    const Work work{.stop = stop.get_token(), .on_progress = [&](double) {
+                        stop.request_stop();
+                    }};
     EXPECT_THROW(static_cast<void>(precompute_glossy(scene.receivers, scene.diffuse.rays,
                                                      scene.transfer, scene.options, work)),
                  Cancelled);

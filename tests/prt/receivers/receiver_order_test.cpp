@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "files/parallel.h"
-#include "prt/clusters/visible_counts.h"
+#include "prt/transfer/visible_counts.h"
 #include "tests/prt/scenes.h"
 
 namespace relumine::prt {

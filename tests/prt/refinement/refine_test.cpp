@@ -11,7 +11,7 @@
 
 #include "cubemap/cube_map.h"
 #include "files/parallel.h"
-#include "mesh/half_edge/edge_uses.h"
+#include "mesh/edge_uses.h"
 #include "prt/precompute.h"
 #include "prt/refinement/coarse_transfer.h"
 #include "prt/visibility/beam_scene.h"
@@ -390,8 +390,8 @@ TEST(Refine, OptionsOutOfRangeAreRefused) {
     refuse(flat, {});
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(
-        static_cast<void>(refine(mesh, RayScene(mesh), {}, {.stop = stop.get_token()})), Cancelled);
+    EXPECT_THROW(static_cast<void>(refine(mesh, RayScene(mesh), {}, {.stop = stop.get_token()})),
+                 Cancelled);
 }
 
 } // namespace

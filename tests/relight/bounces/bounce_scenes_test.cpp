@@ -11,9 +11,9 @@
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/precompute.h"
 #include "relight/bounces/bounce_light.h"
-#include "relight/bounces/path_tracer.h"
-#include "relight/bounces/probe_lights.h"
-#include "relight/exact.h"
+#include "relight/probe_lights.h"
+#include "relight/reference/exact.h"
+#include "relight/reference/path_tracer.h"
 #include "relight/relighter.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"
@@ -274,9 +274,9 @@ TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
     const auto probes = probe_radiance(scene.transfer);
     prt::BounceStatistics found;
     const auto rows = [&](prt::Checkpoint& checkpoint) {
-        return prt::precompute_bounces(
-            scene.mesh, scene.receivers, scene.transfer, probes, scene.rays,
-            {.tolerance = 0.005f, .bias = scene.bias}, {.checkpoint = &checkpoint}, &found);
+        return prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer, probes,
+                                       scene.rays, {.tolerance = 0.005f, .bias = scene.bias},
+                                       {.checkpoint = &checkpoint}, &found);
     };
     std::size_t num_saves = 0;
     for (;; ++num_saves) {
@@ -301,12 +301,11 @@ TEST(BounceScenes, AKilledRunThatIsTakenUpFindsTheSameRows) {
     prt::MemoryCheckpoint checkpoint;
     checkpoint.every = 2;
     std::stop_source stop;
-    const prt::Work work{.checkpoint = &checkpoint,
-                         .stop = stop.get_token(),
-                         .on_progress = [&](double done) {
-                             if (done > 0.8)
-                                 stop.request_stop();
-                         }};
+    const prt::Work work{
+        .checkpoint = &checkpoint, .stop = stop.get_token(), .on_progress = [&](double done) {
+            if (done > 0.8)
+                stop.request_stop();
+        }};
     EXPECT_THROW(static_cast<void>(prt::precompute_bounces(
                      scene.mesh, scene.receivers, scene.transfer, probes, scene.rays,
                      {.tolerance = 0.005f, .bias = scene.bias}, work)),
@@ -370,11 +369,10 @@ TEST(BounceScenes, RefusesWhatDoesNotFit) {
                  std::invalid_argument);
     std::stop_source stop;
     stop.request_stop();
-    EXPECT_THROW(
-        static_cast<void>(prt::precompute_bounces(scene.mesh, scene.receivers, scene.transfer,
-                                                  probes, scene.rays, {},
-                                                  {.stop = stop.get_token()})),
-        prt::Cancelled);
+    EXPECT_THROW(static_cast<void>(prt::precompute_bounces(scene.mesh, scene.receivers,
+                                                           scene.transfer, probes, scene.rays, {},
+                                                           {.stop = stop.get_token()})),
+                 prt::Cancelled);
 }
 
 } // namespace

@@ -11,7 +11,7 @@
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/bounces/bounce_light.h"
-#include "relight/bounces/probe_lights.h"
+#include "relight/probe_lights.h"
 #include "tests/prt/all_bounces.h"
 
 namespace relumine::relight {
@@ -26,7 +26,8 @@ struct BouncingScene {
               receivers, rays,
               {.tolerance = transfer_tolerance, .face_resolution = 256, .bias = bias})),
           matrix(prt::precompute_bounces(mesh, receivers, transfer, probe_radiance(transfer), rays,
-                                         {.tolerance = tolerance, .bias = bias}, {}, &statistics)) {}
+                                         {.tolerance = tolerance, .bias = bias}, {}, &statistics)) {
+    }
 
     /// Returns one bounce of the emitters' radiance, [num_vertices].
     [[nodiscard]] std::vector<float> bounce(const std::vector<float>& radiance) const {

@@ -1,0 +1,65 @@
+// What `relumine animate` is asked to do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "app/options/bounce_option.h"
+#include "app/options/environment_options.h"
+#include "app/options/lit_scene.h"
+#include "app/options/output_options.h"
+#include "cubemap/image/frame_pattern.h"
+#include "cubemap/image/frame_sequence.h"
+
+namespace relumine::app {
+
+struct AnimateOptions {
+    SceneOptions scene;
+    /// The argument FRAMES: a pattern of file names.
+    std::string frames;
+    /// --frames. Empty: all frames.
+    std::string range;
+    EnvironmentOptions environment;
+    std::string method = "prt";
+    /// --method prt: only clusters whose light changed by more than this part of it are updated. 0:
+    /// all clusters that changed.
+    double bound = 0.0;
+    /// --method importance: lights per frame.
+    std::size_t num_lights = 64;
+    std::uint64_t seed = 1;
+    /// --method clusters: clusters of all frames together.
+    std::size_t num_clusters = 512;
+    /// Samples of one frame.
+    std::size_t num_samples = 1024;
+    /// frames
+    std::size_t fade = 0;
+    /// --method clusters: a light is equally strong in all its frames, as in the paper.
+    bool even = false;
+    /// --measure: a .npy with the reference of all frames. Empty: nothing is measured.
+    std::string reference;
+    /// An .svg plot of what --measure finds. Empty: none.
+    std::string plot;
+    /// Its path is a pattern. Empty: no picture files.
+    OutputOptions output;
+    BounceOption bounces;
+    /// A .npy of all frames. Empty: none.
+    std::string vertices;
+    /// An .mp4 movie. Empty: none.
+    std::string movie;
+    double frames_per_second = 24.0;
+    bool resume = false;
+
+    void add_to(Command& command);
+
+    /// Refuses what cannot be done before any work is.
+    void check(const cubemap::FrameSequence& sequence) const;
+    /// The pattern of -o, nothing without -o. Throws std::runtime_error where the number has no
+    /// place.
+    [[nodiscard]] std::optional<cubemap::FramePattern> output_pattern() const;
+    /// All that shapes every frame, for FrameRecord.
+    [[nodiscard]] std::string settings(const cubemap::FrameSequence& sequence) const;
+};
+
+} // namespace relumine::app

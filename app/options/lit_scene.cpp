@@ -1,0 +1,85 @@
+#include "app/options/lit_scene.h"
+
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "app/session.h"
+#include "mesh/load.h"
+
+namespace relumine::app {
+
+void SceneOptions::add_to(Command& command) {
+    command
+        .add_option("SCENE", path,
+                    mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
+                             : "scene file from `relumine precompute`")
+        .file()
+        .required();
+    command.add_flag("--clusters-only", clusters_only,
+                     "light the sun through its cluster too, without shadow rays of its own");
+    command.add_option("--surface-albedo", albedo,
+                       "scenes with materials: albedo of all surfaces in place of the "
+                       "precompute's, a number or R,G,B");
+    command.add_option(
+        "--surface-specular", specular,
+        "scenes with highlights: their F0 (Ks) in place of the precompute's, a number or R,G,B");
+}
+
+namespace {
+
+Scene load(const SceneOptions& options) {
+    if (!options.mesh_too || !mesh::has_mesh_extension(options.path))
+        return load_scene(options.path);
+    if (options.clusters_only)
+        throw std::runtime_error(fmt::format(
+            "{}: expected a scene file with --clusters-only, got a mesh", options.path));
+    return unclustered_scene(load_mesh(options.path));
+}
+
+void recolour(Scene& scene, const SceneOptions& options) {
+    SurfaceColors colors;
+    if (!options.albedo.empty())
+        colors.albedo = parse_color("--surface-albedo", options.albedo);
+    if (!options.specular.empty())
+        colors.specular = parse_color("--surface-specular", options.specular);
+    if (!colors.albedo && !colors.specular)
+        return;
+    if (scene.receivers.surfaces.empty())
+        throw UsageError(
+            colors.albedo ? "--surface-albedo" : "--surface-specular",
+            fmt::format("expected a scene with materials, got {} without", options.path));
+    set_colors(scene, colors);
+}
+
+/// Errors about the mesh do not know its name.
+template<typename Make>
+auto naming_scene(const std::string& path, const Make& make) {
+    try {
+        return make();
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    }
+}
+
+} // namespace
+
+LitScene lit_scene(const SceneOptions& options) {
+    Scene scene = load(options);
+    recolour(scene, options);
+    return naming_scene(options.path, [&] {
+        return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
+    });
+}
+
+SharedLight shared_light(const SceneOptions& options, prt::Team& team) {
+    prt::ScenePart part = prt::load_scene_part(options.path, team.part());
+    recolour(part.scene, options);
+    return SharedLight(team, options.path, std::move(part),
+                       {.clusters_only = options.clusters_only});
+}
+
+} // namespace relumine::app

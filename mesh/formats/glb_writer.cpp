@@ -1,0 +1,211 @@
+#include "mesh/formats/glb_writer.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+#include <fmt/format.h>
+#include <glm/common.hpp>
+
+#include "files/json.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "glTF buffers are little-endian");
+static_assert(sizeof(glm::vec3) == 12 && sizeof(Triangle) == 12, "arrays are written as they are");
+
+// Numbers of the format.
+constexpr int Float = 5126, UnsignedInt = 5125;
+constexpr int ArrayBuffer = 34962, ElementArrayBuffer = 34963;
+constexpr int Triangles = 4;
+constexpr std::uint32_t Magic = 0x46546c67, Version = 2;
+constexpr std::uint32_t JsonChunk = 0x4e4f534a, BinaryChunk = 0x004e4942;
+
+/// How an accessor describes its array.
+struct ArrayKind {
+    int component_type;
+    const char* type;
+    int target;
+};
+
+/// The arrays of a file, one after the other, with a view and an accessor for each.
+struct Arrays {
+    files::Json::Array views;
+    files::Json::Array accessors;
+    std::string bytes;
+
+    /// Appends an array. Returns the index of its accessor.
+    template<class Value>
+    std::size_t append(std::span<const Value> values, const ArrayKind& kind, std::size_t count) {
+        files::Json view = {
+            {"buffer", 0}, {"byteLength", values.size_bytes()}, {"target", kind.target}};
+        if (!bytes.empty())
+            view.set("byteOffset", bytes.size());
+        accessors.push_back({{"bufferView", views.size()},
+                             {"componentType", kind.component_type},
+                             {"count", count},
+                             {"type", kind.type}});
+        views.push_back(std::move(view));
+        bytes.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+        return accessors.size() - 1;
+    }
+
+    std::size_t append(std::span<const glm::vec3> values) {
+        return append(values, {Float, "VEC3", ArrayBuffer}, values.size());
+    }
+};
+
+/// Sets the exact bounds of positions, which the format demands.
+void set_bounds(files::Json& accessor, std::span<const glm::vec3> positions) {
+    glm::vec3 min = positions[0], max = positions[0];
+    for (const glm::vec3& position : positions) {
+        min = glm::min(min, position);
+        max = glm::max(max, position);
+    }
+    // Doubles give the floats' exact values in JSON.
+    accessor.set("min", {double{min.x}, double{min.y}, double{min.z}});
+    accessor.set("max", {double{max.x}, double{max.y}, double{max.z}});
+}
+
+void append_number(std::string& file, std::uint32_t number) {
+    file.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+void append_chunk(std::string& file, std::uint32_t type, const std::string& content) {
+    append_number(file, static_cast<std::uint32_t>(content.size()));
+    append_number(file, type);
+    file += content;
+}
+
+/// Returns the whole file: a header, a chunk of JSON and a chunk of bytes. Chunks are filled up to
+/// multiples of four bytes, JSON with spaces. The bytes are such a multiple already.
+std::string container(std::string json, const std::string& bytes) {
+    constexpr std::size_t HeaderSize = 12, ChunkHeaderSize = 8;
+    json.resize((json.size() + 3) / 4 * 4, ' ');
+    const std::size_t size = HeaderSize + 2 * ChunkHeaderSize + json.size() + bytes.size();
+    std::string file;
+    file.reserve(size);
+    append_number(file, Magic);
+    append_number(file, Version);
+    append_number(file, static_cast<std::uint32_t>(size));
+    append_chunk(file, JsonChunk, json);
+    append_chunk(file, BinaryChunk, bytes);
+    return file;
+}
+
+void check_size(const TriangleMesh& mesh, std::uint64_t bytes_per_vertex) {
+    const std::uint64_t num_bytes = std::uint64_t{mesh.num_vertices()} * bytes_per_vertex +
+                                    std::uint64_t{mesh.num_triangles()} * 12;
+    // Leaves room for the JSON part.
+    constexpr std::uint64_t MaxBytes = std::numeric_limits<std::uint32_t>::max() - 65536;
+    if (num_bytes > MaxBytes)
+        throw std::runtime_error(
+            fmt::format("expected at most {} bytes in a .glb file, got {}", MaxBytes, num_bytes));
+}
+
+/// Appends positions and normals. Returns the attributes of primitives.
+files::Json append_shape(Arrays& arrays, const TriangleMesh& mesh) {
+    std::vector<glm::vec3> normals = mesh.normals;
+    normals.resize(mesh.num_vertices(), glm::vec3(0.0f));
+    for (glm::vec3& normal : normals)
+        if (normal == glm::vec3(0.0f))
+            normal.y = 1.0f;
+    files::Json attributes;
+    attributes.set("POSITION", arrays.append(std::span<const glm::vec3>(mesh.positions)));
+    set_bounds(arrays.accessors.back(), mesh.positions);
+    attributes.set("NORMAL", arrays.append(std::span<const glm::vec3>(normals)));
+    return attributes;
+}
+
+files::Json primitive(const files::Json& attributes, std::size_t indices, std::size_t material) {
+    return {{"attributes", attributes},
+            {"indices", indices},
+            {"material", material},
+            {"mode", Triangles}};
+}
+
+std::size_t append_indices(Arrays& arrays, std::span<const Triangle> triangles) {
+    return arrays.append(triangles, {UnsignedInt, "SCALAR", ElementArrayBuffer},
+                         3 * triangles.size());
+}
+
+/// A file with one mesh. `extensions` are the names of those that its materials use.
+std::string file_of(const Arrays& arrays, files::Json materials, files::Json primitives,
+                    const char* extension) {
+    using files::Json;
+    Json document = {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
+                     {"buffers", Json::array({{{"byteLength", arrays.bytes.size()}}})},
+                     {"bufferViews", arrays.views},
+                     {"accessors", arrays.accessors},
+                     {"materials", std::move(materials)},
+                     {"meshes", Json::array({{{"primitives", std::move(primitives)}}})},
+                     {"nodes", Json::array({{{"mesh", 0}}})},
+                     {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                     {"scene", 0}};
+    if (extension != nullptr)
+        document.set("extensionsUsed", Json::array({extension}));
+    return container(document.text(), arrays.bytes);
+}
+
+/// Phong's exponent becomes a roughness of about the same highlight.
+files::Json material_of(const Material& material) {
+    using files::Json;
+    const bool is_phong = material.model == MaterialModel::Phong;
+    const double roughness = !is_phong ? double{material.roughness}
+                             : material.specular == glm::vec3(0.0f)
+                                 ? 1.0
+                                 : std::pow(2.0 / (double{material.exponent} + 2.0), 0.25);
+    return {{"name", material.name},
+            {"pbrMetallicRoughness",
+             {{"baseColorFactor",
+               Json::array({double{material.base_color.r}, double{material.base_color.g},
+                            double{material.base_color.b}, 1.0})},
+              {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
+              {"roughnessFactor", roughness}}}};
+}
+
+} // namespace
+
+std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
+    check_size(mesh, 36);
+    Arrays arrays;
+    files::Json attributes = append_shape(arrays, mesh);
+    attributes.set("COLOR_0", arrays.append(colors));
+    using files::Json;
+    const std::size_t indices = append_indices(arrays, mesh.triangles);
+    return file_of(arrays,
+                   Json::array({{{"name", "radiance"},
+                                 {"doubleSided", true},
+                                 {"extensions", {{"KHR_materials_unlit", Json::object()}}}}}),
+                   Json::array({primitive(attributes, indices, 0)}), "KHR_materials_unlit");
+}
+
+std::string glb(const TriangleMesh& mesh) {
+    check_size(mesh, 36);
+    Arrays arrays;
+    files::Json attributes = append_shape(arrays, mesh);
+    if (!mesh.colors.empty())
+        attributes.set("COLOR_0", arrays.append(std::span<const glm::vec3>(mesh.colors)));
+    std::vector<Material> materials = mesh.materials;
+    if (mesh.triangle_materials.empty())
+        materials = {Material{.name = "surface"}};
+    std::vector<std::vector<Triangle>> by_material(materials.size());
+    for (std::size_t i = 0; i < mesh.num_triangles(); ++i)
+        by_material[mesh.triangle_materials.empty() ? 0 : mesh.triangle_materials[i]].push_back(
+            mesh.triangles[i]);
+    files::Json::Array descriptions, primitives;
+    for (std::size_t i = 0; i < materials.size(); ++i) {
+        descriptions.push_back(material_of(materials[i]));
+        if (!by_material[i].empty())
+            primitives.push_back(primitive(attributes, append_indices(arrays, by_material[i]), i));
+    }
+    return file_of(arrays, std::move(descriptions), std::move(primitives), nullptr);
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,235 @@
+#include "mesh/formats/gltf_materials.h"
+
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace relumine::mesh::gltf {
+
+namespace {
+
+class MaterialReader {
+public:
+    explicit MaterialReader(Document& document) : document_(document) {}
+    Materials read();
+
+private:
+    [[nodiscard]] Material material(const Json& description, std::size_t index);
+    [[nodiscard]] std::optional<TextureSlot> slot(const Json& parent, const char* key,
+                                                  bool is_srgb);
+    [[nodiscard]] std::optional<std::uint32_t> source(const Json& texture);
+    [[nodiscard]] std::optional<std::uint32_t> image(std::uint64_t index);
+    template<class Decode>
+    [[nodiscard]] std::optional<Texture> decoded(std::uint64_t index, const Decode& decode);
+    void read_specular_glossiness(const Json& extension, Material& material);
+
+    Document& document_;
+    Materials result_;
+    /// Texture of each image. Empty: the image is missing.
+    std::map<std::uint64_t, std::optional<std::uint32_t>> textures_;
+    /// Image of each texture.
+    std::map<std::uint32_t, std::uint64_t> images_;
+    /// UV set of the current material.
+    std::optional<std::uint64_t> uv_set_;
+};
+
+/// Decodes an image. Returns nothing if its file does not exist.
+template<class Decode>
+std::optional<Texture> MaterialReader::decoded(std::uint64_t index, const Decode& decode) {
+    const Json& description = document_.element("images", index);
+    const std::string uri = text(description, "uri");
+    const std::string name = !uri.empty() && !uri.starts_with("data:")
+                                 ? uri
+                                 : text(description, "name", fmt::format("image {}", index));
+    std::optional<std::vector<std::byte>> fetched;
+    if (!uri.empty() && !(fetched = document_.fetch(uri)))
+        return std::nullopt;
+    const std::span<const std::byte> bytes = fetched
+                                                 ? std::span<const std::byte>(*fetched)
+                                                 : document_.view(whole(description, "bufferView"));
+    try {
+        Texture texture = decode(bytes, VOrigin::Top);
+        texture.name = name;
+        return texture;
+    } catch (const std::runtime_error& error) {
+        throw std::runtime_error(fmt::format("{}: {}", name, error.what()));
+    }
+}
+
+/// Returns the texture of an image. Each image is decoded once, and only if a material uses it.
+std::optional<std::uint32_t> MaterialReader::image(std::uint64_t index) {
+    if (const auto found = textures_.find(index); found != textures_.end())
+        return found->second;
+    std::optional<std::uint32_t> place;
+    if (std::optional<Texture> texture = decoded(index, decode_texture)) {
+        place = static_cast<std::uint32_t>(result_.textures.size());
+        result_.textures.push_back(std::move(*texture));
+        images_.emplace(*place, index);
+    } else {
+        result_.missing.push_back(text(document_.element("images", index), "uri"));
+    }
+    textures_.emplace(index, place);
+    return place;
+}
+
+/// Returns the texture that a "texture" of the file shows. The image of EXT_texture_webp comes
+/// before its twin in another format.
+std::optional<std::uint32_t> MaterialReader::source(const Json& texture) {
+    const Json& webp = child(child(texture, "extensions"), "EXT_texture_webp");
+    for (const Json* holder : {&webp, &texture})
+        if (holder->contains("source"))
+            if (const auto place = image(whole(*holder, "source")))
+                return place;
+    return std::nullopt;
+}
+
+Wrap wrap_mode(const Json& sampler, const char* key) {
+    switch (const std::uint64_t mode = whole(sampler, key, 10497)) {
+    case 10497:
+        return Wrap::Repeat;
+    case 33071:
+        return Wrap::Clamp;
+    case 33648:
+        return Wrap::Mirror;
+    default:
+        throw std::runtime_error(
+            fmt::format("expected 10497, 33071 or 33648 as \"{}\", got {}", key, mode));
+    }
+}
+
+std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* key, bool is_srgb) {
+    const Json& info = child(parent, key);
+    if (info.empty())
+        return std::nullopt;
+    const Json& texture = document_.element("textures", whole(info, "index"));
+    const std::optional<std::uint32_t> index = source(texture);
+    if (!index)
+        return std::nullopt;
+    TextureSlot slot{.texture = *index, .is_srgb = is_srgb};
+    if (texture.contains("sampler")) {
+        const Json& sampler = document_.element("samplers", whole(texture, "sampler"));
+        slot.wrap = {wrap_mode(sampler, "wrapS"), wrap_mode(sampler, "wrapT")};
+    }
+    std::uint64_t uv_set = whole(info, "texCoord", 0);
+    if (const Json& transform = child(child(info, "extensions"), "KHR_texture_transform");
+        !transform.empty()) {
+        // The extension defines uv' = translation * rotation * scale * uv, with a rotation from v
+        // to u.
+        const std::vector<double> scale = numbers(transform, "scale", {1.0, 1.0});
+        const std::vector<double> offset = numbers(transform, "offset", {0.0, 0.0});
+        const double angle = number(transform, "rotation", 0.0);
+        const double c = std::cos(angle), s = std::sin(angle);
+        slot.uv_from_mesh_uv = glm::mat2(c * scale[0], -s * scale[0], s * scale[1], c * scale[1]);
+        slot.uv_offset = glm::vec2(offset[0], offset[1]);
+        uv_set = whole(transform, "texCoord", uv_set);
+    }
+    if (uv_set_ && *uv_set_ != uv_set)
+        throw std::runtime_error(
+            fmt::format("expected one texCoord for the textures of a material, got {} and {}",
+                        *uv_set_, uv_set));
+    uv_set_ = uv_set;
+    return slot;
+}
+
+/// Returns factors of a colour, each in [0, 1].
+std::vector<double> factors(const Json& object, const char* key, std::vector<double> fallback) {
+    std::vector<double> values = numbers(object, key, std::move(fallback));
+    for (const double value : values)
+        if (!(value >= 0.0 && value <= 1.0))
+            throw std::runtime_error(
+                fmt::format("expected numbers of 0 to 1 as \"{}\", got {}", key, value));
+    return values;
+}
+
+/// Reads KHR_materials_pbrSpecularGlossiness. Glossiness times the texture's alpha becomes a
+/// texture of roughness.
+void MaterialReader::read_specular_glossiness(const Json& extension, Material& material) {
+    const std::vector<double> diffuse = factors(extension, "diffuseFactor", {1.0, 1.0, 1.0, 1.0});
+    const std::vector<double> specular = factors(extension, "specularFactor", {1.0, 1.0, 1.0});
+    const float glossiness = fraction(extension, "glossinessFactor", 1.0f);
+    material.model = MaterialModel::SpecularGlossiness;
+    material.base_color = glm::vec3(diffuse[0], diffuse[1], diffuse[2]);
+    material.base_color_texture = slot(extension, "diffuseTexture", true);
+    material.specular = glm::vec3(specular[0], specular[1], specular[2]);
+    material.specular_texture = slot(extension, "specularGlossinessTexture", true);
+    material.roughness = 1.0f - glossiness;
+    if (!material.specular_texture)
+        return;
+    std::optional<Texture> texture =
+        decoded(images_.at(material.specular_texture->texture), decode_alpha_texture);
+    if (!texture) // gone since its colours were read
+        return;
+    for (auto& texel : texture->texels)
+        texel.fill(static_cast<std::uint8_t>(
+            std::lround(255.0f - glossiness * static_cast<float>(texel[0]))));
+    texture->name += " (roughness)";
+    material.roughness = 1.0f;
+    material.metallic_roughness_texture = material.specular_texture;
+    material.metallic_roughness_texture->is_srgb = false;
+    material.metallic_roughness_texture->texture =
+        static_cast<std::uint32_t>(result_.textures.size());
+    result_.textures.push_back(std::move(*texture));
+}
+
+Material MaterialReader::material(const Json& description, std::size_t index) {
+    const Json& pbr = child(description, "pbrMetallicRoughness");
+    const Json& extensions = child(description, "extensions");
+    Material material;
+    material.name = text(description, "name", fmt::format("material {}", index));
+    material.times_vertex_color = true;
+    if (const Json& specular = child(extensions, "KHR_materials_pbrSpecularGlossiness");
+        extensions.contains("KHR_materials_pbrSpecularGlossiness")) {
+        read_specular_glossiness(specular, material);
+        return material;
+    }
+    const std::vector<double> base = factors(pbr, "baseColorFactor", {1.0, 1.0, 1.0, 1.0});
+    material.base_color = glm::vec3(base[0], base[1], base[2]);
+    material.base_color_texture = slot(pbr, "baseColorTexture", true);
+    if (extensions.contains("KHR_materials_unlit")) {
+        material.times_vertex_color = false; // vertex colours of such a material are radiance
+        return material;
+    }
+    material.model = MaterialModel::MetallicRoughness;
+    material.metallic = fraction(pbr, "metallicFactor", 1.0f);
+    material.roughness = fraction(pbr, "roughnessFactor", 1.0f);
+    material.metallic_roughness_texture = slot(pbr, "metallicRoughnessTexture", false);
+    return material;
+}
+
+Materials MaterialReader::read() {
+    std::size_t num_masked = 0, num_blended = 0;
+    for (std::size_t i = 0; i < document_.count("materials"); ++i) {
+        uv_set_.reset();
+        try {
+            const Json& description = document_.element("materials", i);
+            result_.materials.push_back(material(description, i));
+            const std::string mode = text(description, "alphaMode", "OPAQUE");
+            if (mode == "MASK")
+                ++num_masked;
+            else if (mode != "OPAQUE")
+                ++num_blended;
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error(fmt::format("material {}: {}", i, error.what()));
+        }
+        result_.uv_sets.push_back(uv_set_);
+    }
+    const auto warn = [this](std::size_t num_materials, const char* kind, const char* instead) {
+        if (num_materials > 0)
+            result_.warnings.push_back(fmt::format("{} material{} {}; alpha is not read: {}",
+                                                   num_materials, num_materials == 1 ? "" : "s",
+                                                   kind, instead));
+    };
+    warn(num_masked, "cut out by alpha (leaves, fences)", "what is cut out is opaque");
+    warn(num_blended, "transparent by alpha", "surfaces are opaque");
+    return std::move(result_);
+}
+
+} // namespace
+
+Materials read_materials(Document& document) {
+    return MaterialReader(document).read();
+}
+
+} // namespace relumine::mesh::gltf

@@ -1,0 +1,33 @@
+// Materials and textures of a glTF file.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/formats/gltf_document.h"
+#include "mesh/materials/material.h"
+#include "mesh/materials/texture.h"
+
+namespace relumine::mesh::gltf {
+
+/// The materials of a file.
+struct Materials {
+    /// Materials in the file's order.
+    std::vector<Material> materials;
+    /// [materials] the number of the TEXCOORD set that the material's textures use. Empty: no
+    /// textures.
+    std::vector<std::optional<std::uint64_t>> uv_sets;
+    std::vector<Texture> textures;
+    std::vector<std::string> missing;
+    /// What the materials have and the result does not, a line each.
+    std::vector<std::string> warnings;
+};
+
+/// Reads factors, textures, samplers, KHR_texture_transform and EXT_texture_webp. A
+/// KHR_materials_unlit material becomes Lambert, KHR_materials_pbrSpecularGlossiness its own model.
+/// Alpha, emission, normal maps and the other extensions are skipped.
+/// Throws:  std::runtime_error "expected X, got Y".
+[[nodiscard]] Materials read_materials(Document& document);
+
+} // namespace relumine::mesh::gltf

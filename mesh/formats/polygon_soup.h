@@ -1,0 +1,66 @@
+// Vertices and polygons as a file has them: the readers make them for load().
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/normals.h"
+#include "mesh/triangle_mesh.h"
+
+namespace relumine::mesh {
+
+/// Vertices and faces as they stand in a file, not checked.
+struct PolygonSoup {
+    /// [num_vertices]. Values may be infinite or NaN; load() checks them.
+    std::vector<glm::vec3> positions;
+    /// Vertex indices of all faces, one face after the other. They may be out of range.
+    std::vector<std::uint32_t> corners;
+    /// [num_faces], the end of each face in `corners`.
+    std::vector<std::size_t> face_ends;
+    /// [num_vertices] of any length, or empty.
+    std::vector<glm::vec3> normals;
+    /// [num_vertices], or empty.
+    std::vector<glm::vec3> colors;
+    /// [num_vertices], or empty.
+    std::vector<glm::vec2> uvs;
+    /// Parallel to `corners`, or empty.
+    std::vector<glm::vec2> corner_uvs;
+
+    /// [num_faces] indices into materials, or empty.
+    std::vector<std::uint32_t> face_materials;
+    /// [num_faces] indices into groups, or empty.
+    std::vector<std::uint32_t> face_groups;
+    std::vector<Material> materials;
+    std::vector<std::string> groups;
+    std::vector<Texture> textures;
+    /// As in TriangleMesh.
+    std::vector<std::string> missing, warnings;
+
+    /// Closes the face whose corners were appended to `corners` since the last call.
+    void end_face() { face_ends.push_back(corners.size()); }
+};
+
+/// Checks the soup, cuts its polygons into triangles and completes the normals, as load() promises.
+/// Throws:  std::runtime_error "expected X, got Y".
+[[nodiscard]] TriangleMesh to_mesh(PolygonSoup soup, NormalSource source);
+
+/// The readers, one per format. They take a whole file's bytes, never read outside them, and
+/// allocate no more than a small multiple of their size. Other files that a file names are looked
+/// up from its `folder`. A glTF mesh of several nodes is repeated for each node.
+/// Throws:  std::runtime_error "expected X, got Y"; load() puts the path in front.
+[[nodiscard]] PolygonSoup read_gltf(std::span<const std::byte> bytes,
+                                    const std::filesystem::path& folder);
+[[nodiscard]] PolygonSoup read_obj(std::span<const std::byte> bytes,
+                                   const std::filesystem::path& folder = {});
+[[nodiscard]] PolygonSoup read_off(std::span<const std::byte> bytes);
+[[nodiscard]] PolygonSoup read_ply(std::span<const std::byte> bytes);
+[[nodiscard]] PolygonSoup read_stl(std::span<const std::byte> bytes);
+
+} // namespace relumine::mesh

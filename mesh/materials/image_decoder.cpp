@@ -1,0 +1,194 @@
+// stb_image is compiled here for three formats. Debian's library reads ten, and has faults:
+// fourteen bytes that begin like a PNM picture end the program, and missing bytes of a short file
+// are read as whatever the memory held. Its JPEG decoder writes beyond its tables if a file
+// declares too many Huffman codes; libjpeg does not.
+#include "mesh/materials/image_decoder.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <limits>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_NO_STDIO
+#define STBI_ONLY_BMP
+#define STBI_ONLY_PNG
+#define STBI_ONLY_TGA
+#include <stb/stb_image.h>
+
+#include "mesh/materials/jpeg_decoder.h"
+#include "mesh/materials/webp_decoder.h"
+#include "mesh/text_reader.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+enum class Format { Png, Jpeg, WebP, Bmp, Tga };
+
+/// Returns the format by the file's first bytes. TGA files have no mark, so a file with no other
+/// mark counts as TGA.
+Format format_of(std::span<const std::byte> file) {
+    const auto begins_with = [&](std::string_view magic) {
+        return file.size() >= magic.size() &&
+               std::memcmp(file.data(), magic.data(), magic.size()) == 0;
+    };
+    const bool is_webp =
+        begins_with("RIFF") && file.size() >= 12 && std::memcmp(file.data() + 8, "WEBP", 4) == 0;
+    return begins_with("\x89PNG")        ? Format::Png
+           : begins_with("\xff\xd8\xff") ? Format::Jpeg
+           : is_webp                     ? Format::WebP
+           : begins_with("BM")           ? Format::Bmp
+                                         : Format::Tga;
+}
+
+/// Returns an unsigned number, low byte first. Bytes beyond the end count as 0.
+std::uint64_t number_at(std::span<const std::byte> file, std::size_t at, std::size_t num_bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 0; i < num_bytes && at + i < file.size(); ++i)
+        value |= std::to_integer<std::uint64_t>(file[at + i]) << (8 * i);
+    return value;
+}
+
+/// Returns the fewest bytes that the rows of an image of this size can take.
+std::uint64_t least_bytes(Format format, std::span<const std::byte> file, std::uint64_t width,
+                          std::uint64_t height) {
+    const std::uint64_t num_pixels = width * height;
+    switch (format) {
+    case Format::Png: // deflate packs at most 1032 to 1, and a pixel has at least one bit
+        return num_pixels / 1032 / 8;
+    // A block of 64 takes at least a bit, and chroma may be four times as coarse in each direction.
+    case Format::Jpeg:
+        return num_pixels / 1024;
+    case Format::WebP: // one colour takes no bytes at all
+        return 0;
+    // stb_image reads only uncompressed files. Rows end at multiples of four bytes.
+    case Format::Bmp: {
+        const std::uint64_t data = number_at(file, 10, 4);
+        const std::uint64_t bits = number_at(file, number_at(file, 14, 4) == 12 ? 24 : 28, 2);
+        return data + (width * bits + 31) / 32 * 4 * height;
+    }
+    case Format::Tga: {
+        const std::uint64_t kind = number_at(file, 2, 1), bits = number_at(file, 16, 1);
+        const std::uint64_t num_bytes = num_pixels * ((bits + 7) / 8);
+        return (kind & 8) != 0 ? num_pixels / 64
+                               : 18 + num_bytes; // a run of 128 pixels takes at least two bytes
+    }
+    }
+    return 0;
+}
+
+/// Checks the sizes of chunks, because stb_image allocates what a chunk declares before it reads
+/// the chunk.
+void check_png_chunks(std::span<const std::byte> file) {
+    constexpr std::size_t Signature = 8, Around = 12; // length, type, checksum
+    const auto length_at = [&](std::size_t at) {      // high byte first
+        std::uint64_t length = 0;
+        for (std::size_t i = 0; i < 4; ++i)
+            length = length << 8 | std::to_integer<std::uint64_t>(file[at + i]);
+        return length;
+    };
+    for (std::size_t at = Signature; at + Around <= file.size();) {
+        const std::uint64_t length = length_at(at);
+        if (length > file.size() - at - Around)
+            throw std::runtime_error(
+                fmt::format("expected PNG chunks inside the file, got one of {} bytes", length));
+        if (std::memcmp(file.data() + at + 4, "IEND", 4) == 0)
+            return;
+        at += Around + length;
+    }
+    throw std::runtime_error("expected a PNG image with its end, got none");
+}
+
+void check_size(std::span<const std::byte> file, std::uint64_t width, std::uint64_t height) {
+    if (width < 1 || height < 1 || width > MaxImageEdge || height > MaxImageEdge)
+        throw std::runtime_error(
+            fmt::format("expected an image of at most {0} x {0} pixels, got {1} x {2}",
+                        MaxImageEdge, width, height));
+    const std::uint64_t num_pixels = width * height;
+    const std::uint64_t of_large = num_pixels > MaxCheapPixels ? num_pixels / 128 : 0;
+    if (std::max(of_large, least_bytes(format_of(file), file, width, height)) > file.size())
+        throw std::runtime_error(fmt::format("expected the data of {} x {} pixels, got {} bytes",
+                                             width, height, file.size()));
+}
+
+/// Decodes to bytes of RGB (3 channels) or RGBA (4; not JPEG).
+DecodedImage decode(std::span<const std::byte> file, int num_channels) {
+    if (file.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+        throw std::runtime_error(
+            fmt::format("expected an image below 2 GiB, got {} bytes", file.size()));
+    DecodedImage image{.bytes = {nullptr, std::free}};
+    const auto check = [&](std::uint32_t width, std::uint32_t height) {
+        check_size(file, width, height);
+        image.width = width;
+        image.height = height;
+    };
+    const auto allocate = [&](std::uint32_t width, std::uint32_t height) {
+        check(width, height);
+        const std::size_t size =
+            std::size_t{width} * height * static_cast<std::size_t>(num_channels);
+        image.bytes.reset(static_cast<std::uint8_t*>(std::malloc(size)));
+        if (!image.bytes)
+            throw std::bad_alloc();
+        return image.bytes.get();
+    };
+    const Format format = format_of(file);
+    if (format == Format::Jpeg) {
+        decode_jpeg(file, allocate);
+        return image;
+    }
+    if (format == Format::WebP) {
+        decode_webp(file, num_channels == 4, allocate);
+        return image;
+    }
+    const auto* bytes = reinterpret_cast<const stbi_uc*>(file.data());
+    const int num_bytes = static_cast<int>(file.size());
+    int width = 0, height = 0, channels = 0;
+    if (file.empty() || stbi_info_from_memory(bytes, num_bytes, &width, &height, &channels) == 0)
+        throw std::runtime_error(fmt::format(
+            "expected a PNG, JPEG, WebP, BMP or TGA image, got {} bytes of something else",
+            file.size()));
+    if (format == Format::Png)
+        check_png_chunks(file);
+    check(static_cast<std::uint32_t>(std::max(width, 0)),
+          static_cast<std::uint32_t>(std::max(height, 0)));
+    image.bytes.reset(
+        stbi_load_from_memory(bytes, num_bytes, &width, &height, &channels, num_channels));
+    if (!image.bytes)
+        throw std::runtime_error(
+            fmt::format("expected a whole image of {} x {} pixels, got broken data: {}",
+                        image.width, image.height,
+                        excerpt(stbi_failure_reason()))); // may quote the file
+    return image;
+}
+
+} // namespace
+
+DecodedImage decode_image(std::span<const std::byte> file) {
+    return decode(file, 3);
+}
+
+DecodedImage decode_alpha(std::span<const std::byte> file) {
+    if (format_of(file) == Format::Jpeg) {
+        DecodedImage image{.width = 1,
+                           .height = 1,
+                           .bytes = {static_cast<std::uint8_t*>(std::malloc(1)), std::free}};
+        if (!image.bytes)
+            throw std::bad_alloc();
+        *image.bytes = 255;
+        return image;
+    }
+    DecodedImage image = decode(file, 4);
+    const std::size_t num_pixels = std::size_t{image.width} * image.height;
+    for (std::size_t i = 0; i < num_pixels; ++i)
+        image.bytes.get()[i] = image.bytes.get()[4 * i + 3];
+    return image;
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,112 @@
+#include "mesh/materials/texture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include <glm/common.hpp>
+
+#include "mesh/materials/image_decoder.h"
+
+namespace relumine::mesh {
+
+namespace {
+
+using Channels = std::array<std::uint8_t, 3>;
+
+/// The sRGB curve of IEC 61966-2-1.
+std::array<float, 256> srgb_table() {
+    std::array<float, 256> table{};
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const double s = static_cast<double>(i) / 255.0;
+        table[i] =
+            static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+    }
+    return table;
+}
+
+glm::vec3 decoded(const Channels& texel, bool is_srgb) {
+    static const std::array<float, 256> srgb = srgb_table();
+    if (is_srgb)
+        return {srgb[texel[0]], srgb[texel[1]], srgb[texel[2]]};
+    return glm::vec3(texel[0], texel[1], texel[2]) / 255.0f;
+}
+
+/// Returns the texel for an integer coordinate that may lie outside 0..size-1.
+std::uint32_t wrapped(std::int64_t i, std::uint32_t size, Wrap wrap) {
+    const std::int64_t n = size;
+    if (wrap == Wrap::Clamp)
+        return static_cast<std::uint32_t>(std::clamp<std::int64_t>(i, 0, n - 1));
+    const std::int64_t period = wrap == Wrap::Mirror ? 2 * n : n;
+    i = (i % period + period) % period;
+    return static_cast<std::uint32_t>(i < n ? i : period - 1 - i);
+}
+
+/// The two texels of a coordinate, and the weight of the second.
+struct Pair {
+    std::uint32_t first, second;
+    float weight;
+};
+
+Pair neighbours(float coordinate, std::uint32_t size, Wrap wrap) {
+    // In double. A repeating coordinate is first brought near 0, so large coordinates keep the
+    // fraction that their float has.
+    double x = std::isfinite(coordinate) ? double{coordinate} : 0.0;
+    x = wrap == Wrap::Clamp ? std::clamp(x, 0.0, 1.0) : x - 2.0 * std::floor(0.5 * x);
+    x = x * size - 0.5;
+    const double below = std::floor(x);
+    const auto i = static_cast<std::int64_t>(below);
+    return {wrapped(i, size, wrap), wrapped(i + 1, size, wrap), static_cast<float>(x - below)};
+}
+
+/// Puts the image's rows into the order of v. `texel` gives the pixel of a number from the top
+/// left.
+template<class Texel>
+Texture in_rows_of_v(const DecodedImage& image, VOrigin origin, const Texel& texel) {
+    Texture texture;
+    texture.width = image.width;
+    texture.height = image.height;
+    texture.texels.resize(std::size_t{texture.width} * texture.height);
+    for (std::size_t row = 0; row < texture.height; ++row) {
+        const std::size_t from = origin == VOrigin::Top ? row : texture.height - 1 - row;
+        for (std::size_t column = 0; column < texture.width; ++column)
+            texture.texels[row * texture.width + column] = texel(from * texture.width + column);
+    }
+    return texture;
+}
+
+} // namespace
+
+Texture decode_texture(std::span<const std::byte> file, VOrigin origin) {
+    const DecodedImage image = decode_image(file);
+    Texture texture = in_rows_of_v(image, origin, [&](std::size_t pixel) {
+        Channels texel{};
+        std::memcpy(texel.data(), image.bytes.get() + 3 * pixel, texel.size());
+        return texel;
+    });
+    texture.file.assign(file.begin(), file.end());
+    texture.origin = origin;
+    return texture;
+}
+
+Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin) {
+    const DecodedImage image = decode_alpha(file);
+    return in_rows_of_v(image, origin, [&](std::size_t pixel) {
+        const std::uint8_t alpha = image.bytes.get()[pixel];
+        return Channels{alpha, alpha, alpha};
+    });
+}
+
+glm::vec3 sample(const Texture& texture, const TextureSlot& slot, const glm::vec2& mesh_uv) {
+    const glm::vec2 uv = slot.uv_from_mesh_uv * mesh_uv + slot.uv_offset;
+    const Pair u = neighbours(uv.x, texture.width, slot.wrap[0]);
+    const Pair v = neighbours(uv.y, texture.height, slot.wrap[1]);
+    const auto texel = [&](std::uint32_t column, std::uint32_t row) {
+        return decoded(texture.texels[std::size_t{row} * texture.width + column], slot.is_srgb);
+    };
+    return glm::mix(glm::mix(texel(u.first, v.first), texel(u.second, v.first), u.weight),
+                    glm::mix(texel(u.first, v.second), texel(u.second, v.second), u.weight),
+                    v.weight);
+}
+
+} // namespace relumine::mesh

@@ -1,0 +1,55 @@
+// Textures: images of eight bits per channel, and how they are looked up.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "mesh/materials/material.h"
+
+namespace relumine::mesh {
+
+/// The end of an image at which v is 0: OBJ counts from the bottom, glTF from the top.
+enum class VOrigin : std::uint8_t { Bottom, Top };
+
+/// An image in the orientation of the mesh's uvs. Row 0 is at v = 0, so a lookup needs no
+/// convention.
+struct Texture {
+    /// Name of the file, or the name in the mesh file.
+    std::string name;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    /// [height x width], rows along u, from v = 0 on.
+    std::vector<std::array<std::uint8_t, 3>> texels;
+    /// The image file that was decoded, and its end at v = 0. Empty for a texture that was
+    /// computed.
+    std::vector<std::byte> file = {};
+    VOrigin origin = VOrigin::Top;
+
+    bool operator==(const Texture&) const = default;
+};
+
+/// Decodes a PNG, JPEG, WebP, BMP or TGA file. Grey becomes RGB, alpha is dropped, 16 bits become
+/// 8. `origin` is the end from which the mesh's uvs count.
+///
+/// Throws:  std::runtime_error "expected X, got Y" for a file that is no such image, is broken, or
+///          declares more than 16384 x 16384 pixels or more than its bytes can hold
+///          (mesh/materials/image_decoder.h).
+[[nodiscard]] Texture decode_texture(std::span<const std::byte> file, VOrigin origin);
+
+/// Decodes the alpha of an image, as grey: 255 if it has none.
+/// Throws:  as decode_texture().
+[[nodiscard]] Texture decode_alpha_texture(std::span<const std::byte> file, VOrigin origin);
+
+/// Returns the texture's value at a uv of the mesh, each channel in [0, 1]. Values are bilinear
+/// between texel centres, which lie at (i + 0.5) / width. A uv that is not finite counts as 0.
+[[nodiscard]] glm::vec3 sample(const Texture& texture, const TextureSlot& slot,
+                               const glm::vec2& mesh_uv);
+
+} // namespace relumine::mesh

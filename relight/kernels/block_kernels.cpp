@@ -1,0 +1,526 @@
+#include "relight/kernels/block_kernels.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "prt/clusters/lattice.h"
+
+// Highway compiles the block below once per instruction set and picks one at run time.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "relight/kernels/block_kernels.cpp"
+#include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace relumine::relight::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Sums of float for the 16 receivers, [channel][receiver].
+using FloatSum = std::array<std::array<float, prt::BlockSize>, 3>;
+
+using Floats = hn::CappedTag<float, prt::BlockSize>;
+
+/// Normals of some of a block's receivers.
+template<class D>
+struct Normals {
+    using Vec = hn::Vec<D>;
+    Vec x, y, z;
+
+    Normals(const BlockNormals& normals, std::size_t lane)
+        : x(hn::LoadU(D(), normals.axes[0].data() + lane)),
+          y(hn::LoadU(D(), normals.axes[1].data() + lane)),
+          z(hn::LoadU(D(), normals.axes[2].data() + lane)) {}
+
+    /// Returns n.e.
+    [[nodiscard]] Vec dot(const float* e) const {
+        const D d;
+        const auto along_z = hn::Mul(z, hn::Set(d, e[2]));
+        return hn::MulAdd(x, hn::Set(d, e[0]), hn::MulAdd(y, hn::Set(d, e[1]), along_z));
+    }
+};
+
+template<class D>
+hn::Vec<D> load_counts(D d, const std::uint8_t* counts) {
+    const hn::Rebind<std::uint8_t, D> bytes;
+    const hn::Rebind<std::int32_t, D> integers;
+    return hn::ConvertTo(d, hn::PromoteTo(integers, hn::LoadU(bytes, counts)));
+}
+
+std::size_t first_bit(std::uint64_t bits) {
+    return static_cast<std::size_t>(std::countr_zero(bits));
+}
+
+/// Returns how many counts the mixed pairs of a word have.
+std::size_t num_counts(std::uint64_t mixed) {
+    return static_cast<std::size_t>(std::popcount(mixed)) * prt::BlockSize;
+}
+
+/// Returns how many counts of the word come before the counts of a cluster. `cluster` is its bit.
+std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
+    return num_counts(mixed & (cluster - 1));
+}
+
+/// The light of a word's clusters.
+struct WordLights {
+    const float* vectors;
+    const float* beams;
+    std::uint64_t spread;
+};
+
+/// The clusters of a block and word that add up per receiver.
+struct PairWord {
+    /// Seen in part.
+    std::uint64_t mixed;
+    /// Seen whole, across a horizon.
+    std::uint64_t across;
+    /// Begins at the first entry of `mixed`.
+    const std::uint8_t* counts;
+    const BlockNormals& normals;
+};
+
+/// Radiance of some receivers, per channel.
+struct Sum {
+    hn::Vec<Floats> red, green, blue;
+
+    // Written out: g++ compiles an implicit constructor without the instruction set of the
+    // functions around it.
+    Sum() : red(hn::Zero(Floats())), green(red), blue(red) {}
+    Sum(const FloatSum& sum, std::size_t lane)
+        : red(hn::LoadU(Floats(), sum[0].data() + lane)),
+          green(hn::LoadU(Floats(), sum[1].data() + lane)),
+          blue(hn::LoadU(Floats(), sum[2].data() + lane)) {}
+
+    void store(FloatSum& sum, std::size_t lane) const {
+        hn::StoreU(red, Floats(), sum[0].data() + lane);
+        hn::StoreU(green, Floats(), sum[1].data() + lane);
+        hn::StoreU(blue, Floats(), sum[2].data() + lane);
+    }
+    void add(hn::Vec<Floats> part, const float* colour) {
+        const Floats d;
+        red = hn::MulAdd(part, hn::Set(d, colour[0]), red);
+        green = hn::MulAdd(part, hn::Set(d, colour[1]), green);
+        blue = hn::MulAdd(part, hn::Set(d, colour[2]), blue);
+    }
+};
+
+/// Adds max(n.E, 0) of clusters.
+template<bool AnySpread>
+void add_whole(std::uint64_t bits, const Normals<Floats>& n, const WordLights& lights, Sum& sum) {
+    const auto zero = hn::Zero(Floats());
+    const float* beams = lights.beams;
+    for (; bits != 0; bits &= bits - 1) {
+        const std::size_t i = first_bit(bits);
+        if (AnySpread && (lights.spread >> i & 1u) != 0) {
+            const float* e = lights.vectors + i * ClusterLights::Stride;
+            sum.red = hn::Add(sum.red, hn::Max(n.dot(e), zero));
+            sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
+            sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
+        } else {
+            const float* beam = beams + i * ClusterLights::BeamStride;
+            sum.add(hn::Max(n.dot(beam), zero), beam + 3);
+        }
+    }
+}
+
+/// Adds c max(n.E, 0) of clusters.
+template<bool AnySpread>
+void add_counted(std::uint64_t bits, const std::uint8_t* counts, const Normals<Floats>& n,
+                 const WordLights& lights, Sum& sum) {
+    const Floats d;
+    const auto zero = hn::Zero(d);
+    const float* beams = lights.beams;
+    for (; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
+        const std::size_t i = first_bit(bits);
+        const auto count = load_counts(d, counts);
+        if (AnySpread && (lights.spread >> i & 1u) != 0) {
+            const float* e = lights.vectors + i * ClusterLights::Stride;
+            sum.red = hn::MulAdd(count, hn::Max(n.dot(e), zero), sum.red);
+            sum.green = hn::MulAdd(count, hn::Max(n.dot(e + 3), zero), sum.green);
+            sum.blue = hn::MulAdd(count, hn::Max(n.dot(e + 6), zero), sum.blue);
+        } else {
+            const float* beam = beams + i * ClusterLights::BeamStride;
+            sum.add(hn::Mul(count, hn::Max(n.dot(beam), zero)), beam + 3);
+        }
+    }
+}
+
+/// Adds the clusters of a block and word that add up per receiver.
+template<bool AnySpread>
+void add_pairs(const PairWord& word, const WordLights& lights, FloatSum& result) {
+    const Floats d;
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+        const Normals<Floats> n(word.normals, lane);
+        Sum sum(result, lane);
+        if (word.across != 0) {
+            Sum whole;
+            add_whole<AnySpread>(word.across, n, lights, whole);
+            const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
+            sum.red = hn::MulAdd(full, whole.red, sum.red);
+            sum.green = hn::MulAdd(full, whole.green, sum.green);
+            sum.blue = hn::MulAdd(full, whole.blue, sum.blue);
+        }
+        add_counted<AnySpread>(word.mixed, word.counts + lane, n, lights, sum);
+        sum.store(result, lane);
+    }
+}
+
+void add(const FloatSum& sum, BlockLight& light) {
+    const hn::CappedTag<double, prt::BlockSize> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    for (std::size_t channel = 0; channel < 3; ++channel)
+        for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+            double* total = light.mixed[channel].data() + lane;
+            const auto more = hn::PromoteTo(d, hn::LoadU(floats, sum[channel].data() + lane));
+            hn::StoreU(hn::Add(hn::LoadU(d, total), more), d, total);
+        }
+}
+
+/// Sums the clusters of runs: a sum of all clusters before each run's end, minus a sum of those
+/// before its beginning. `edges` are the bits where a run begins, which is `visible` there, or
+/// ends. `prefix` begins at the word's first cluster.
+void add_runs(std::uint64_t edges, std::uint64_t visible, const double* prefix, double* sum) {
+    constexpr std::size_t Last = ClusterLights::Stride - 1;
+    constexpr std::array<double, 2> Signs = {1.0, -1.0};
+    const hn::CappedTag<double, Last> d;
+    double last = sum[Last];
+    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d)) {
+        auto lanes = hn::LoadU(d, sum + lane);
+        for (std::uint64_t bits = edges; bits != 0; bits &= bits - 1) {
+            const std::size_t i = first_bit(bits);
+            const double sign = Signs[visible >> i & 1u];
+            const double* before = prefix + i * ClusterLights::Stride;
+            lanes = hn::MulAdd(hn::Set(d, sign), hn::LoadU(d, before + lane), lanes);
+            if (lane == 0)
+                last += sign * before[Last];
+        }
+        hn::StoreU(lanes, d, sum + lane);
+    }
+    sum[Last] = last;
+}
+
+double block_radiance(const BlockNormals& normals, const BlockLight& light,
+                      const TracedRadiance* traced, BlockRadiance& radiance) {
+    const hn::CappedTag<double, 8> doubles;
+    const hn::Rebind<float, decltype(doubles)> d;
+    constexpr std::size_t Last = ClusterLights::Stride - 1;
+    const auto full = static_cast<double>(prt::FullCount);
+    std::array<float, ClusterLights::Stride> visible;
+    visible[Last] = static_cast<float>(full * light.visible[Last]);
+    auto largest = hn::Set(d, std::abs(visible[Last]));
+    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d)) {
+        const auto part = hn::DemoteTo(
+            d, hn::Mul(hn::Set(doubles, full), hn::LoadU(doubles, light.visible.data() + lane)));
+        hn::StoreU(part, d, visible.data() + lane);
+        largest = hn::Max(largest, hn::Abs(part));
+    }
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+        const Normals<decltype(d)> n(normals, lane);
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const auto mixed =
+                hn::DemoteTo(d, hn::LoadU(doubles, light.mixed[channel].data() + lane));
+            largest = hn::Max(largest, hn::Abs(mixed));
+            // A sum of nothing may round to a hair below zero.
+            auto sum = hn::Max(hn::Zero(d), hn::Add(n.dot(visible.data() + 3 * channel), mixed));
+            if (traced != nullptr)
+                sum = hn::Add(
+                    sum,
+                    hn::DemoteTo(d, hn::LoadU(doubles, traced->channels[channel].data() + lane)));
+            hn::StoreU(sum, d, radiance.channels[channel].data() + lane);
+        }
+    }
+    return static_cast<double>(hn::GetLane(hn::MaxOfLanes(d, largest)));
+}
+
+/// Calls visit(block) for the set bits, blocks of a tile.
+template<class Visit>
+void for_blocks(std::uint64_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1)
+        visit(first_bit(bits));
+}
+
+/// Adds up the clusters that the chosen blocks of a tile see whole.
+void add_visible(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                 std::uint64_t chosen, BlockLight* of_block) {
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile);
+    const std::size_t num_words = counts.words_per_block();
+    // Side by side, because BlockLights are too far apart for the nearest cache.
+    using Vector = std::array<double, ClusterLights::Stride>;
+    std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
+    const double* prefix = lights.prefix.data();
+    std::uint64_t inside = 0; // blocks in the middle of a run
+    for (std::size_t w = 0; w < num_words; ++w, prefix += 64 * ClusterLights::Stride) {
+        const TileWord& blocks = scene.words.words[tile * num_words + w];
+        const std::uint64_t* words = counts.visible.data() + counts.word(begin, w);
+        for_blocks(blocks.edges & chosen, [&](std::size_t block) {
+            const std::uint64_t visible = words[block] & ~scene.words.across_of(blocks, block);
+            add_runs(visible ^ (visible << 1 | (inside >> block & 1u)), visible, prefix,
+                     sums[block].data());
+            inside = (inside & ~(std::uint64_t{1} << block)) | visible >> 63 << block;
+        });
+    }
+    for_blocks(chosen, [&](std::size_t block) {
+        // A run up to the last bit of the last word ends behind it.
+        add_runs(inside >> block & 1u, 0, prefix, sums[block].data());
+        of_block[block].visible = sums[block];
+    });
+}
+
+/// Adds up the clusters that the chosen blocks of a tile see in part or across a horizon.
+void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                      std::uint64_t chosen, BlockLight* of_block) {
+    // So many words add up in float.
+    constexpr std::size_t FloatWords = 8;
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile);
+    const std::size_t num_words = counts.words_per_block();
+    std::array<FloatSum, prt::VisibleCounts::TileBlocks> sums{};
+    std::uint64_t summed = 0;
+    for (std::size_t w = 0; w < num_words; ++w) {
+        const TileWord& blocks = scene.words.words[tile * num_words + w];
+        const std::size_t first_word = counts.word(begin, w);
+        const WordLights of_word{.vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride,
+                                 .beams = lights.beams.data() + w * 64 * ClusterLights::BeamStride,
+                                 .spread = lights.spread[w]};
+        const std::uint64_t pairs = (blocks.mixed | blocks.across) & chosen;
+        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
+        for_blocks(blocks.mixed | pairs, [&](std::size_t block) {
+            const PairWord word{counts.mixed[first_word + block],
+                                scene.words.across_of(blocks, block), of_pairs,
+                                scene.normals[begin + block]};
+            of_pairs += num_counts(word.mixed);
+            if ((chosen >> block & 1u) == 0)
+                return;
+            if (((word.mixed | word.across) & of_word.spread) != 0)
+                add_pairs<true>(word, of_word, sums[block]);
+            else
+                add_pairs<false>(word, of_word, sums[block]);
+        });
+        summed |= pairs;
+        if (w % FloatWords == FloatWords - 1 || w == num_words - 1) {
+            for_blocks(summed, [&](std::size_t block) {
+                add(sums[block], of_block[block]);
+                sums[block] = {};
+            });
+            summed = 0;
+        }
+    }
+}
+
+void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                BlockLight* light, std::uint64_t chosen) {
+    const std::size_t begin = scene.counts.tile_begin(tile);
+    chosen &= scene.counts.tile_blocks(tile);
+    for_blocks(chosen, [&](std::size_t block) { light[begin + block] = {}; });
+    add_visible(scene, tile, lights, chosen, light + begin);
+    add_per_receiver(scene, tile, lights, chosen, light + begin);
+}
+
+/// A channel's sums of some receivers in double: two vectors for one of Floats. (Where vectors have
+/// one lane, both are the same.)
+class DoubleSum {
+    using D = hn::CappedTag<double, prt::BlockSize>;
+
+public:
+    explicit DoubleSum(const double* sum)
+        : lower_(hn::LoadU(D(), sum)), upper_(hn::LoadU(D(), sum + begin_of_upper())) {}
+    void store(double* sum) const {
+        hn::StoreU(lower_, D(), sum);
+        hn::StoreU(upper_, D(), sum + begin_of_upper());
+    }
+
+    /// Floats turned to double.
+    struct Part {
+        hn::Vec<D> lower, upper;
+
+        explicit Part(hn::Vec<Floats> part) : lower(hn::Zero(D())), upper(lower) {
+            const hn::Rebind<float, D> half;
+            std::array<float, prt::BlockSize> values;
+            hn::StoreU(part, Floats(), values.data());
+            lower = hn::PromoteTo(D(), hn::LoadU(half, values.data()));
+            upper = hn::PromoteTo(D(), hn::LoadU(half, values.data() + begin_of_upper()));
+        }
+    };
+    void add(const Part& part, double factor) {
+        const auto f = hn::Set(D(), factor);
+        lower_ = hn::MulAdd(part.lower, f, lower_);
+        upper_ = hn::MulAdd(part.upper, f, upper_);
+    }
+
+private:
+    static std::size_t begin_of_upper() { return hn::Lanes(Floats()) - hn::Lanes(D()); }
+
+    hn::Vec<D> lower_, upper_;
+};
+
+/// A changed cluster that a block sees in part or across a horizon.
+struct ChangedPair {
+    /// Null: the block sees it whole.
+    const std::uint8_t* counts;
+    /// Among the changed clusters.
+    std::size_t cluster;
+};
+
+/// Adds the changes of a block's pairs to what adds up per receiver.
+void change_pairs(std::span<const ChangedPair> pairs, const BlockNormals& normals,
+                  const LightChanges& changes, BlockLight& light) {
+    const Floats d;
+    const auto zero = hn::Zero(d);
+    const auto full = hn::Set(d, static_cast<float>(prt::FullCount));
+    for (std::size_t lane = 0; lane < prt::BlockSize; lane += hn::Lanes(d)) {
+        const Normals<Floats> n(normals, lane);
+        DoubleSum red(light.mixed[0].data() + lane);
+        DoubleSum green(light.mixed[1].data() + lane);
+        DoubleSum blue(light.mixed[2].data() + lane);
+        for (const ChangedPair& pair : pairs) {
+            const auto count = pair.counts != nullptr ? load_counts(d, pair.counts + lane) : full;
+            for (std::size_t i = changes.beams_before[pair.cluster];
+                 i < changes.beams_before[pair.cluster + 1]; ++i) {
+                const BeamChange& beam = changes.beams[i];
+                const auto cosine = n.dot(beam.direction.data());
+                const DoubleSum::Part part(hn::Mul(count, hn::Max(cosine, zero)));
+                red.add(part, beam.colour[0]);
+                green.add(part, beam.colour[1]);
+                blue.add(part, beam.colour[2]);
+            }
+        }
+        red.store(light.mixed[0].data() + lane);
+        green.store(light.mixed[1].data() + lane);
+        blue.store(light.mixed[2].data() + lane);
+    }
+}
+
+/// Changed pairs of a tile's blocks. They are kept for a while, so that their counts, which lie far
+/// apart, can come from memory, and a block's light is read and written once for many.
+class ChangedPairs {
+public:
+    ChangedPairs(const BlockNormals* normals, const LightChanges& changes, BlockLight* of_block)
+        : normals_(normals), changes_(changes), of_block_(of_block) {}
+
+    void add(std::size_t block, const ChangedPair& pair) {
+        if (pair.counts != nullptr)
+            hwy::Prefetch(pair.counts);
+        pairs_[block][sizes_[block]++] = pair;
+        if (sizes_[block] == MostPairs)
+            finish(block);
+    }
+    void finish(std::size_t block) {
+        change_pairs({pairs_[block].data(), sizes_[block]}, normals_[block], changes_,
+                     of_block_[block]);
+        sizes_[block] = 0;
+    }
+
+private:
+    static constexpr std::size_t MostPairs = 32;
+
+    const BlockNormals* normals_;
+    const LightChanges& changes_;
+    BlockLight* of_block_;
+    std::array<std::array<ChangedPair, MostPairs>, prt::VisibleCounts::TileBlocks> pairs_;
+    std::array<std::uint8_t, prt::VisibleCounts::TileBlocks> sizes_{};
+};
+
+void add(const std::array<double, ClusterLights::Stride>& vector,
+         std::array<double, ClusterLights::Stride>& sum) {
+    constexpr std::size_t Last = ClusterLights::Stride - 1;
+    const hn::CappedTag<double, Last> d;
+    for (std::size_t lane = 0; lane < Last; lane += hn::Lanes(d))
+        hn::StoreU(hn::Add(hn::LoadU(d, sum.data() + lane), hn::LoadU(d, vector.data() + lane)), d,
+                   sum.data() + lane);
+    sum[Last] += vector[Last];
+}
+
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
+                          BlockLight* light) {
+    const prt::VisibleCounts& counts = scene.counts;
+    const std::size_t begin = counts.tile_begin(tile);
+    BlockLight* of_block = light + begin;
+    // Side by side, as in add_visible().
+    using Vector = std::array<double, ClusterLights::Stride>;
+    std::array<Vector, prt::VisibleCounts::TileBlocks> sums{};
+    std::uint64_t summed = 0, paired = 0;
+    ChangedPairs pairs(scene.normals.data() + begin, changes, of_block);
+    for (const ChangedWord& change : changes.words) {
+        const TileWord& blocks = scene.words.words[tile * counts.words_per_block() + change.word];
+        const std::size_t first_word = counts.word(begin, change.word);
+        const std::uint64_t* const visible = counts.visible.data() + first_word;
+        const std::uint64_t* const mixed = counts.mixed.data() + first_word;
+        const auto index_of = [&](std::uint64_t bit) {
+            return change.first +
+                   static_cast<std::size_t>(std::popcount(change.clusters & (bit - 1)));
+        };
+        const auto for_clusters = [&](std::uint64_t bits, const auto& visit) {
+            for (; bits != 0; bits &= bits - 1)
+                visit(bits & (~bits + 1));
+        };
+        for_blocks(blocks.full, [&](std::size_t block) { add(change.vector, sums[block]); });
+        summed |= blocks.full;
+        for_blocks((blocks.visible | blocks.across) & ~blocks.full, [&](std::size_t block) {
+            const std::uint64_t bit = std::uint64_t{1} << block;
+            const std::uint64_t seen = visible[block] & change.clusters;
+            if (seen == 0)
+                return;
+            const std::uint64_t across = scene.words.across_of(blocks, block) & seen;
+            paired |= across != 0 ? bit : 0;
+            for_clusters(across, [&](std::uint64_t cluster) {
+                pairs.add(block, {.counts = nullptr, .cluster = index_of(cluster)});
+            });
+            // Most blocks that see one changed cluster whole see all of them, because these are
+            // neighbours in the sky.
+            const std::uint64_t whole = seen & ~across;
+            summed |= whole != 0 ? bit : 0;
+            if (whole == change.clusters)
+                add(change.vector, sums[block]);
+            else
+                for_clusters(whole, [&](std::uint64_t cluster) {
+                    add(changes.vectors[index_of(cluster)], sums[block]);
+                });
+        });
+        const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
+        for_blocks(blocks.mixed, [&](std::size_t block) {
+            const std::uint64_t hit = mixed[block] & change.clusters;
+            paired |= std::uint64_t{hit != 0} << block;
+            for_clusters(hit, [&](std::uint64_t cluster) {
+                pairs.add(block, {.counts = of_pairs + counts_before(mixed[block], cluster),
+                                  .cluster = index_of(cluster)});
+            });
+            of_pairs += num_counts(mixed[block]);
+        });
+    }
+    for_blocks(paired, [&](std::size_t block) { pairs.finish(block); });
+    for_blocks(summed, [&](std::size_t block) { add(sums[block], of_block[block].visible); });
+    return paired | summed;
+}
+
+} // namespace relumine::relight::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace relumine::relight {
+
+namespace {
+HWY_EXPORT(block_radiance);
+HWY_EXPORT(light_tile);
+HWY_EXPORT(update_tile);
+} // namespace
+
+double block_radiance(const BlockNormals& normals, const BlockLight& light,
+                      const TracedRadiance* traced, BlockRadiance& radiance) {
+    return HWY_DYNAMIC_DISPATCH(block_radiance)(normals, light, traced, radiance);
+}
+
+void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
+                std::span<BlockLight> light, std::uint64_t blocks) {
+    HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data(), blocks);
+}
+
+std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
+                          std::span<BlockLight> light) {
+    return HWY_DYNAMIC_DISPATCH(update_tile)(scene, tile, changes, light.data());
+}
+
+} // namespace relumine::relight
+#endif // HWY_ONCE

@@ -1,0 +1,131 @@
+#include "relight/kernels/kernel_lights.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+namespace relumine::relight {
+
+ClusterLights::ClusterLights(std::size_t num_clusters)
+    : vectors(num_clusters * Stride), beams(num_clusters * BeamStride),
+      spread((num_clusters + 63) / 64), prefix((spread.size() * 64 + 1) * Stride) {}
+
+void ClusterLights::set(std::size_t cluster, const VectorIrradiance& irradiance) {
+    constexpr double Scale = 1.0 / (16.0 * std::numbers::pi);
+    const std::array<glm::vec3, 3> channels = {glm::vec3(irradiance.red * Scale),
+                                               glm::vec3(irradiance.green * Scale),
+                                               glm::vec3(irradiance.blue * Scale)};
+    float* vector = vectors.data() + cluster * Stride;
+    float* beam = beams.data() + cluster * BeamStride;
+    for (const glm::vec3& channel : channels)
+        for (int axis = 0; axis < 3; ++axis)
+            *vector++ = channel[axis];
+
+    const glm::dvec3 luminance = irradiance.luminance();
+    const double length = glm::length(luminance);
+    const glm::vec3 direction = length > 0.0 ? glm::vec3(luminance / length) : glm::vec3(0.0f);
+    const double per_square =
+        length > 0.0 ? 1.0 / glm::dot(glm::dvec3(direction), glm::dvec3(direction)) : 0.0;
+    double off = 0.0, all = 0.0;
+    for (int i = 0; i < 3; ++i) {
+        const glm::dvec3 channel(channels[static_cast<std::size_t>(i)]);
+        const double colour = glm::dot(channel, glm::dvec3(direction)) * per_square;
+        const glm::dvec3 rest = channel - colour * glm::dvec3(direction);
+        off += glm::dot(rest, rest);
+        all += glm::dot(channel, channel);
+        beam[i] = direction[i];
+        beam[3 + i] = static_cast<float>(colour);
+    }
+    const std::uint64_t bit = std::uint64_t{1} << (cluster % 64);
+    if (off > BeamTolerance * BeamTolerance * all)
+        spread[cluster / 64] |= bit;
+    else
+        spread[cluster / 64] &= ~bit;
+}
+
+void ClusterLights::sum_prefix() {
+    for (std::size_t i = 0; i < vectors.size(); ++i)
+        prefix[i + Stride] = prefix[i] + static_cast<double>(vectors[i]);
+}
+
+glm::dvec3 ClusterLights::of_vectors(std::size_t cluster, const glm::vec3& normal) const {
+    const float* vector = vectors.data() + cluster * Stride;
+    const auto on = [&](const float* e) {
+        return std::max(0.0, glm::dot(glm::dvec3(normal), glm::dvec3(e[0], e[1], e[2])));
+    };
+    return {on(vector), on(vector + 3), on(vector + 6)};
+}
+
+glm::dvec3 ClusterLights::of_beams(std::size_t cluster, const glm::vec3& normal) const {
+    if (is_spread(cluster))
+        return of_vectors(cluster, normal);
+    const float* beam = beams.data() + cluster * BeamStride;
+    return std::max(0.0, glm::dot(glm::dvec3(normal), glm::dvec3(beam[0], beam[1], beam[2]))) *
+           glm::dvec3(beam[3], beam[4], beam[5]);
+}
+
+void LightChanges::clear() {
+    words.clear();
+    vectors.clear();
+    beams_before.resize(1);
+    beams.clear();
+}
+
+void LightChanges::set(ClusterLights& lights, std::size_t cluster,
+                       const VectorIrradiance& irradiance) {
+    struct Light {
+        std::array<float, ClusterLights::Stride> vector;
+        std::array<float, ClusterLights::BeamStride> beam;
+        bool is_spread;
+        bool operator==(const Light&) const = default;
+
+        Light(const ClusterLights& all, std::size_t c) : is_spread(all.is_spread(c)) {
+            std::copy_n(all.vectors.begin() + static_cast<std::ptrdiff_t>(c * vector.size()),
+                        vector.size(), vector.begin());
+            std::copy_n(all.beams.begin() + static_cast<std::ptrdiff_t>(c * beam.size()),
+                        beam.size(), beam.begin());
+        }
+    };
+    const Light before(lights, cluster);
+    lights.set(cluster, irradiance);
+    const Light after(lights, cluster);
+    if (before == after)
+        return;
+
+    if (words.empty() || words.back().word != cluster / 64)
+        words.push_back({.word = static_cast<std::uint32_t>(cluster / 64),
+                         .first = static_cast<std::uint32_t>(vectors.size())});
+    words.back().clusters |= std::uint64_t{1} << (cluster % 64);
+    std::array<double, ClusterLights::Stride>& change = vectors.emplace_back();
+    for (std::size_t i = 0; i < change.size(); ++i) {
+        change[i] = static_cast<double>(after.vector[i]) - static_cast<double>(before.vector[i]);
+        words.back().vector[i] += change[i];
+    }
+
+    const auto add = [&](const Light& light, double sign) {
+        const auto& v = light.vector;
+        if (light.is_spread) {
+            beams.push_back({.direction = {v[0], v[1], v[2]}, .colour = {sign, 0.0, 0.0}});
+            beams.push_back({.direction = {v[3], v[4], v[5]}, .colour = {0.0, sign, 0.0}});
+            beams.push_back({.direction = {v[6], v[7], v[8]}, .colour = {0.0, 0.0, sign}});
+        } else {
+            beams.push_back({.direction = {light.beam[0], light.beam[1], light.beam[2]},
+                             .colour = {sign * static_cast<double>(light.beam[3]),
+                                        sign * static_cast<double>(light.beam[4]),
+                                        sign * static_cast<double>(light.beam[5])}});
+        }
+    };
+    add(before, -1.0);
+    add(after, 1.0);
+    // One beam instead of two where only the colour changes.
+    BeamChange& last = beams.back();
+    if (!before.is_spread && !after.is_spread && beams.end()[-2].direction == last.direction) {
+        for (std::size_t i = 0; i < 3; ++i)
+            last.colour[i] += beams.end()[-2].colour[i];
+        beams.erase(beams.end() - 2);
+    }
+    beams_before.push_back(static_cast<std::uint32_t>(beams.size()));
+}
+
+} // namespace relumine::relight

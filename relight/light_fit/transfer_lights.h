@@ -1,0 +1,50 @@
+// A few distant lights chosen for one scene: they light its receivers nearly as the whole
+// environment does.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "lights/light_list.h"
+#include "relight/relighter.h"
+
+namespace relumine::relight {
+
+struct TransferLightOptions {
+    /// Receivers that the lights are chosen with. The lights are moved with twice as many.
+    std::size_t num_receivers = 16000;
+    /// Polled after each light. A stop ends the work with prt::Cancelled.
+    std::stop_token stop = {};
+    /// Receives the fraction done, in [0, 1].
+    std::function<void(double)> on_progress = {};
+};
+
+/// Chooses `count` lights for the scene of a relighter that has an environment and shadow rays.
+/// Returns fewer lights where more would not help. Deterministic for any number of threads.
+///
+/// t_j(x) = V(x, w_j) max(n.w_j, 0)/pi is the traced transfer from a direction w_j to the chosen
+/// receivers. The squared error of sum E_j t_j against the relighter's radiance is minimised over
+/// directions and irradiances E_j >= 0.
+///
+/// Orthogonal least squares (Chen, Billings and Luo 1989) takes one direction after the other: the
+/// one that lowers the error most once all irradiances are fitted anew (Lawson and Hanson 1974).
+/// Then single lights are exchanged, and moved by small steps, where it pays.
+///
+/// Candidate directions are denser where there is much light. Most of the squared error is at few
+/// receivers, at borders of shadows and in creases. So receivers that median cut and variance
+/// minimisation light badly are chosen more often and count less
+/// (relight/light_fit/scaled_receivers.h). Lights fitted to evenly chosen receivers would fit only
+/// those.
+///
+/// The lights' total power is whatever fits the scene: light that no receiver sees is left out.
+///
+/// Cost:    docs/light-lists.md has time and memory.
+/// Throws:  std::invalid_argument without environment or shadow rays, or for count 0;
+///          prt::Cancelled when stopped.
+[[nodiscard]] std::vector<lights::DistantLight>
+transfer_lights(const Relighter& relighter, std::size_t count,
+                const TransferLightOptions& options = {});
+
+} // namespace relumine::relight

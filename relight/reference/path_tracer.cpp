@@ -1,0 +1,238 @@
+#include "relight/reference/path_tracer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+#include <numbers>
+#include <stdexcept>
+
+#include <fmt/format.h>
+#include <glm/geometric.hpp>
+
+#include "cubemap/luminance.h"
+#include "cubemap/split_mix64.h"
+#include "files/parallel.h"
+#include "prt/precompute.h"
+#include "prt/receivers/mesh_point.h"
+
+namespace relumine::relight {
+
+namespace {
+
+constexpr std::uint32_t BouncesBeforeRoulette = 3;
+constexpr double LargestSurvival = 0.95;
+
+/// Random numbers in [0, 1).
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : bits_(seed) {}
+    double operator()() { return static_cast<double>(bits_.next() >> 11u) * 0x1p-53; }
+
+private:
+    cubemap::SplitMix64 bits_;
+};
+
+/// Draws texels of an environment by their power.
+class EnvironmentSampler {
+public:
+    explicit EnvironmentSampler(const cubemap::CubeMap& map)
+        : map_(map), solid_angles_(cubemap::texel_solid_angles(map.resolution)),
+          sums_(map.texels.size() + 1) {
+        for (std::size_t i = 0; i < map.texels.size(); ++i)
+            sums_[i + 1] = sums_[i] + static_cast<double>(cubemap::luminance(map.texels[i])) *
+                                          solid_angles_[i % solid_angles_.size()];
+    }
+
+    struct Sample {
+        glm::dvec3 direction{0.0};
+        glm::dvec3 radiance{0.0};
+        /// Per steradian; 0: no light.
+        double density = 0.0;
+    };
+
+    Sample draw(Random& random) const {
+        if (sums_.back() <= 0.0)
+            return {};
+        const auto found =
+            std::upper_bound(sums_.begin() + 1, sums_.end() - 1, random() * sums_.back());
+        const auto texel = static_cast<std::size_t>(found - sums_.begin()) - 1;
+        const std::size_t r = map_.resolution;
+        const auto face = static_cast<cubemap::Face>(texel / (r * r));
+        const double s = (static_cast<double>(texel % r) + random()) / static_cast<double>(r);
+        const double t = (static_cast<double>(texel / r % r) + random()) / static_cast<double>(r);
+        return {.direction = cubemap::direction(face, s, t),
+                .radiance = glm::dvec3(map_.texels[texel]),
+                .density = density(texel, cubemap::cube_point(face, s, t))};
+    }
+
+    [[nodiscard]] Sample at(const glm::dvec3& direction) const {
+        const cubemap::FacePoint point = cubemap::face_point(direction);
+        const std::uint32_t r = map_.resolution;
+        const auto index = [r](double s) {
+            return std::min(static_cast<std::uint32_t>(s * r), r - 1);
+        };
+        const std::size_t texel = map_.index(point.face, index(point.s), index(point.t));
+        return {.direction = direction,
+                .radiance = glm::dvec3(map_.texels[texel]),
+                .density = density(texel, cubemap::cube_point(point.face, point.s, point.t))};
+    }
+
+private:
+    /// Points are even over the texel's square, so the density follows the cube's projection.
+    [[nodiscard]] double density(std::size_t texel, const glm::dvec3& cube_point) const {
+        if (sums_.back() <= 0.0)
+            return 0.0;
+        const double chance = (sums_[texel + 1] - sums_[texel]) / sums_.back();
+        const double distance = glm::length(cube_point);
+        const double side = 2.0 / map_.resolution;
+        return chance * distance * distance * distance / (side * side);
+    }
+
+    const cubemap::CubeMap& map_;
+    /// [R * R]
+    std::vector<double> solid_angles_;
+    /// [6 R^2 + 1] power of the texels before.
+    std::vector<double> sums_;
+};
+
+/// A point of a path.
+struct PathPoint {
+    glm::vec3 origin{0.0f};
+    glm::dvec3 normal{0.0};
+};
+
+glm::dvec3 cosine_direction(const glm::dvec3& normal, Random& random) {
+    // A point of the unit sphere, added to the normal.
+    const double z = 1.0 - 2.0 * random();
+    const double angle = 2.0 * std::numbers::pi * random();
+    const double radius = std::sqrt(std::max(0.0, 1.0 - z * z));
+    const glm::dvec3 sum =
+        normal + glm::dvec3(radius * std::cos(angle), radius * std::sin(angle), z);
+    const double length = glm::length(sum);
+    return length > 0.0 ? sum / length : normal;
+}
+
+class PathTracer {
+public:
+    PathTracer(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
+               const prt::RayScene& rays, const cubemap::CubeMap& environment,
+               const PathTracerOptions& options)
+        : mesh_(mesh), albedo_(albedo), rays_(rays), lights_(environment), options_(options) {}
+
+    /// One path's light from surfaces, for albedo 1 at its start.
+    [[nodiscard]] glm::dvec3 trace(PathPoint point, Random& random) const {
+        glm::dvec3 sum(0.0);
+        glm::dvec3 throughput(1.0);
+        for (std::uint32_t bounce = 0;; ++bounce) {
+            const glm::dvec3 direction = cosine_direction(point.normal, random);
+            const auto hit = rays_.closest_hit(point.origin, glm::vec3(direction));
+            if (!hit) {
+                // The start's own direct light is no bounce.
+                if (bounce > 0)
+                    sum += throughput * weighted_sky(point, direction);
+                return sum;
+            }
+            if (options_.num_bounces && bounce == *options_.num_bounces)
+                return sum;
+            const prt::MeshPoint at{.triangle = hit->triangle, .barycentric = hit->barycentric};
+            // A back sends what its front does, or nothing: the path goes on from the front.
+            if (!options_.two_sided && !prt::meets_front(mesh_, at, glm::vec3(direction)))
+                return sum;
+            const glm::dvec3 normal(prt::shading_normal(mesh_, at));
+            throughput *= glm::dvec3(prt::value_at(mesh_, albedo_, at));
+            if (bounce >= BouncesBeforeRoulette) {
+                const double survival =
+                    std::min(LargestSurvival, std::max({throughput.r, throughput.g, throughput.b}));
+                if (random() >= survival)
+                    return sum;
+                throughput /= survival;
+            }
+            point = {.origin = prt::ray_origin(prt::value_at(mesh_, mesh_.positions, at),
+                                               glm::vec3(normal), options_.bias),
+                     .normal = normal};
+            sum += throughput * light_sample(point, random);
+        }
+    }
+
+private:
+    /// The sample of the environment: radiance times cosine over pi, weighted.
+    [[nodiscard]] glm::dvec3 light_sample(const PathPoint& point, Random& random) const {
+        const EnvironmentSampler::Sample light = lights_.draw(random);
+        const double cosine = glm::dot(point.normal, light.direction);
+        if (!(light.density > 0.0 && cosine > 0.0) ||
+            rays_.occluded(point.origin, glm::vec3(light.direction)))
+            return glm::dvec3(0.0);
+        const double diffuse = cosine / std::numbers::pi;
+        return light.radiance * (diffuse / (light.density + diffuse));
+    }
+
+    /// The sample of the hemisphere, which met nothing.
+    [[nodiscard]] glm::dvec3 weighted_sky(const PathPoint& point,
+                                          const glm::dvec3& direction) const {
+        const EnvironmentSampler::Sample light = lights_.at(direction);
+        const double diffuse = std::max(glm::dot(point.normal, direction), 0.0) / std::numbers::pi;
+        return diffuse > 0.0 ? light.radiance * (diffuse / (light.density + diffuse))
+                             : glm::dvec3(0.0);
+    }
+
+    const mesh::TriangleMesh& mesh_;
+    std::span<const glm::vec3> albedo_;
+    const prt::RayScene& rays_;
+    EnvironmentSampler lights_;
+    const PathTracerOptions& options_;
+};
+
+} // namespace
+
+std::vector<TracedBounces>
+trace_bounces(const mesh::TriangleMesh& mesh, std::span<const glm::vec3> albedo,
+              const prt::Receivers& receivers, std::span<const std::uint32_t> receiver_indices,
+              const prt::RayScene& rays, const cubemap::CubeMap& environment,
+              const PathTracerOptions& options) {
+    if (albedo.size() != mesh.num_vertices())
+        throw std::invalid_argument(fmt::format("expected the albedo of {} vertices, got {}",
+                                                mesh.num_vertices(), albedo.size()));
+    if (environment.resolution == 0)
+        throw std::invalid_argument("expected an environment with texels");
+    if (options.num_paths == 0)
+        throw std::invalid_argument("expected at least one path per receiver");
+    for (const std::uint32_t index : receiver_indices)
+        if (index >= receivers.size())
+            throw std::invalid_argument("expected indices of receivers");
+
+    const PathTracer tracer(mesh, albedo, rays, environment, options);
+    std::vector<TracedBounces> result(receiver_indices.size());
+    std::size_t num_done = 0;
+    std::mutex progress;
+    files::parallel_for(std::size_t{0}, receiver_indices.size(), [&](std::size_t i) {
+        const std::uint32_t index = receiver_indices[i];
+        const glm::vec3& normal = receivers.normals[index];
+        if (options.stop.stop_requested() || normal == glm::vec3(0.0f))
+            return;
+        Random random(options.seed * cubemap::SplitMix64::Step ^ cubemap::SplitMix64(index).next());
+        const PathPoint start{.origin =
+                                  prt::ray_origin(receivers.positions[index], normal, options.bias),
+                              .normal = glm::dvec3(normal)};
+        glm::dvec3 sum(0.0), squares(0.0);
+        for (std::uint32_t path = 0; path < options.num_paths; ++path) {
+            const glm::dvec3 light = tracer.trace(start, random);
+            sum += light;
+            squares += light * light;
+        }
+        const double n = options.num_paths;
+        result[i].radiance = sum / n;
+        const glm::dvec3 variance =
+            glm::max(squares / n - result[i].radiance * result[i].radiance, glm::dvec3(0.0));
+        result[i].standard_error = glm::sqrt(variance / std::max(n - 1.0, 1.0));
+        const std::scoped_lock lock(progress);
+        ++num_done;
+        if (options.on_progress)
+            options.on_progress(static_cast<double>(num_done) /
+                                static_cast<double>(receiver_indices.size()));
+    });
+    if (options.stop.stop_requested())
+        throw prt::Cancelled();
+    return result;
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,150 @@
+#include "relight/sharp/sharp_lights.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <functional>
+#include <numbers>
+#include <numeric>
+
+#include <glm/geometric.hpp>
+
+namespace relumine::relight {
+
+namespace {
+
+// The error, relative to the mean radiance, beyond which a light is traced. Four such lights in one
+// map stay within 0.5 %, the error of clusters on the measured environments.
+constexpr double AllowedError = 0.0025;
+
+// Levels between a cluster and its candidate cells, which have a sixteenth of its area. A light
+// that fills less is "small".
+constexpr std::uint32_t LevelsBelowCluster = 2;
+
+// With even light a candidate has a sixteenth of its cluster's power. With twice as much the light
+// is not even.
+constexpr double SharpShare = 0.125;
+
+// A light of this part of its sharp cell's power is not cut further. So a cell becomes a hundred
+// lights at most.
+constexpr double FinestShare = 1.0 / 64.0;
+
+// Cells of this level are at most 0.2 degrees wide: a sun of half a degree becomes about ten rays.
+constexpr std::uint32_t FinestLevel = 9;
+
+/// Returns the sum of term(value). Keeps sums side by side: each addition waits for the one before
+/// it, and this function runs with every edit.
+template<class Term>
+double sum_of(std::span<const double> values, const Term& term) {
+    std::array<double, 16> sums{};
+    std::size_t i = 0;
+    for (; i + sums.size() <= values.size(); i += sums.size())
+        for (std::size_t k = 0; k < sums.size(); ++k)
+            sums[k] += term(values[i + k]);
+    for (; i < values.size(); ++i)
+        sums[0] += term(values[i]);
+    return std::accumulate(sums.begin(), sums.end(), 0.0);
+}
+
+/// Finds the sharp cells below one cluster and cuts them into lights.
+class Search {
+public:
+    Search(const cubemap::CubeMap& environment, const LightBinning& binning, double min_power,
+           bool even_too, std::vector<SharpLight>& lights)
+        : environment_(environment), binning_(binning), min_power_(min_power), even_too_(even_too),
+          texel_level_(static_cast<std::uint32_t>(std::bit_width(environment.resolution - 1))),
+          lights_(lights) {}
+
+    /// Finds the sharp cells of a cluster of this power. Without `even_too`, one of them must stand
+    /// out.
+    void look_into(std::uint32_t cluster, double cluster_power, const prt::Cell& cell) {
+        candidates_.clear();
+        collect(cell, LevelsBelowCluster);
+        const bool uneven =
+            std::any_of(candidates_.begin(), candidates_.end(), [&](const Candidate& candidate) {
+                return candidate.power > SharpShare * cluster_power;
+            });
+        if (uneven || even_too_)
+            for (const Candidate& candidate : candidates_)
+                cut(cluster, candidate.power, candidate.cell);
+    }
+
+private:
+    struct Candidate {
+        prt::Cell cell;
+        double power = 0.0;
+    };
+
+    /// Collects the cells with enough power so many levels below; texels are not split.
+    void collect(const prt::Cell& cell, std::uint32_t levels_left) {
+        const double power = glm::length(binning_.sum(environment_, cell).luminance());
+        if (power < min_power_)
+            return;
+        if (levels_left == 0 || cell.level >= texel_level_)
+            candidates_.push_back({cell, power});
+        else
+            for (std::uint32_t i = 0; i < 4; ++i)
+                collect(cell.child(i), levels_left - 1);
+    }
+
+    /// Quarters a sharp cell where its power is. Dark parts stay in one piece.
+    void cut(std::uint32_t cluster, double sharp_power, const prt::Cell& cell) {
+        const VectorIrradiance sum = binning_.sum(environment_, cell);
+        const glm::dvec3 luminance = sum.luminance();
+        const double power = glm::length(luminance);
+        if (cell.level < std::min(FinestLevel, texel_level_) && power > FinestShare * sharp_power) {
+            for (std::uint32_t i = 0; i < 4; ++i)
+                cut(cluster, sharp_power, cell.child(i));
+        } else if (power > 0.0) {
+            lights_.push_back({.cluster = cluster,
+                               .cell = cell,
+                               .direction = luminance / power,
+                               .irradiance = sum});
+        }
+    }
+
+    const cubemap::CubeMap& environment_;
+    const LightBinning& binning_;
+    double min_power_;
+    bool even_too_;
+    /// The level where a cell is no larger than a texel.
+    std::uint32_t texel_level_;
+    std::vector<Candidate> candidates_;
+    std::vector<SharpLight>& lights_;
+};
+
+} // namespace
+
+std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
+                                          const LightBinning& binning,
+                                          std::span<const prt::Cell> clusters,
+                                          std::span<const double> powers, float tolerance,
+                                          bool glossy) {
+    // The length of a small cell's vector irradiance is its power.
+    const double total_power = sum_of(powers, std::identity());
+    std::vector<SharpLight> lights;
+    if (total_power == 0.0 || tolerance <= 0.0f)
+        return lights;
+    const double min_power =
+        AllowedError * total_power / (4.0 * std::numbers::pi) / static_cast<double>(tolerance);
+
+    Search search(environment, binning, min_power, glossy, lights);
+    const auto is_bright = [=](double power) {
+        return power >= min_power;
+    };
+    // Most runs of so many clusters have no bright one. Counting them is quicker than asking each.
+    constexpr std::size_t Run = 512;
+    for (std::size_t begin = 0; begin < powers.size(); begin += Run) {
+        const std::size_t end = std::min(begin + Run, powers.size());
+        const double num_bright = sum_of(powers.subspan(begin, end - begin), [&](double power) {
+            return is_bright(power) ? 1.0 : 0.0;
+        });
+        for (std::size_t cluster = begin; num_bright > 0.0 && cluster < end; ++cluster)
+            if (is_bright(powers[cluster]))
+                search.look_into(static_cast<std::uint32_t>(cluster), powers[cluster],
+                                 clusters[cluster]);
+    }
+    return lights;
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,53 @@
+// Lights that are too small and bright for their cluster, the sun above all. They are found when
+// the environment is known, and lit by shadow rays of their own.
+//
+// A cluster knows how much of its cell a receiver sees, not which part. For light spread over the
+// cell this is enough: the precompute's tolerance bounds the error, whatever the light is. But half
+// a degree of sun in a cell of three degrees would get shadows three degrees soft.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "cubemap/cube_map.h"
+#include "prt/transfer/quadtree.h"
+#include "relight/kernels/cluster_lights.h"
+
+namespace relumine::relight {
+
+/// A sharp light: a part of a cluster's cell, at most 0.2 degrees wide (or one texel) where the
+/// power is.
+struct SharpLight {
+    std::uint32_t cluster = 0;
+    prt::Cell cell = {};
+    /// Unit length.
+    glm::dvec3 direction{0.0, 0.0, 1.0};
+    /// Taken out of the cluster's own irradiance.
+    VectorIrradiance irradiance;
+    bool operator==(const SharpLight&) const = default;
+};
+
+/// Returns the sharp lights of an environment, clusters ascending. There are a few dozen at most:
+/// large sources have no sharp cells. Deterministic.
+///
+/// Cells two levels below a cluster are candidates. A candidate of power p is sharp when p is large
+/// beside the map's power P. In the cluster, a point light of power p may make an error of
+/// tolerance p. This error must exceed 0.25 % of the mean radiance P / (4 pi).
+///
+/// Also, the candidate or a sister must hold more than an eighth of the cluster's power. With
+/// `glossy` receivers this condition is dropped: highlights may be smaller than any cluster, so
+/// bright cells are sharp even where the cluster's light is even.
+///
+/// Shape:   powers is [clusters.size()]: the length of each cluster's full vector irradiance, in
+///          luminance.
+/// Cost:    O(clusters + texels of the brightest clusters).
+[[nodiscard]] std::vector<SharpLight> find_sharp_lights(const cubemap::CubeMap& environment,
+                                                        const LightBinning& binning,
+                                                        std::span<const prt::Cell> clusters,
+                                                        std::span<const double> powers,
+                                                        float tolerance, bool glossy = false);
+
+} // namespace relumine::relight

@@ -1,0 +1,170 @@
+#include "relight/sharp/traced_light.h"
+
+#include <algorithm>
+#include <bit>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include <glm/geometric.hpp>
+
+#include "files/parallel.h"
+#include "relight/sharp/light_packets.h"
+
+namespace relumine::relight {
+
+namespace {
+
+void set(TracedRadiance& radiance, std::size_t receiver, const glm::dvec3& value) {
+    for (int channel = 0; channel < 3; ++channel)
+        radiance.channels[static_cast<std::size_t>(channel)][receiver] = value[channel];
+}
+
+/// Calls visit(receiver) for the set bits.
+template<class Visit>
+void for_receivers(std::uint32_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1)
+        visit(static_cast<std::size_t>(std::countr_zero(bits)));
+}
+
+} // namespace
+
+TracedLight::TracedLight(const prt::Transfer& transfer, const ShadowRays& rays)
+    : transfer_(transfer), rays_(rays) {
+    if (rays.blockers == nullptr)
+        return;
+    if (rays.positions.size() != transfer.num_receivers())
+        throw std::invalid_argument("expected one position per receiver");
+    diffuse_.resize(transfer.counts.num_blocks());
+    if (transfer.glossy)
+        highlights_.resize(transfer.num_receivers());
+}
+
+std::size_t TracedLight::trace(std::span<const SharpLight> lights) {
+    if (rays_.blockers == nullptr)
+        return 0;
+    // What a ray meets depends on its direction in float alone.
+    ReachedBlocks reached;
+    std::vector<FreshPatch> fresh;
+    std::size_t num_fresh = 0;
+    std::vector<Reached*> of_light;
+    for (const SharpLight& light : lights) {
+        const glm::vec3 direction(light.direction);
+        const auto [place, is_new] =
+            reached.try_emplace({direction.x, direction.y, direction.z}, nullptr);
+        if (is_new) {
+            if (const auto before = reached_.find(place->first); before != reached_.end()) {
+                place->second = std::move(before->second);
+            } else {
+                place->second = std::make_unique<Reached>(diffuse_.size());
+                add(fresh, direction, place->second.get());
+                ++num_fresh;
+            }
+        }
+        of_light.push_back(place->second.get());
+    }
+    reached_ = std::move(reached);
+    rays_.blockers->prepare(std::uint64_t{num_fresh} * transfer_.num_receivers());
+
+    constexpr std::size_t BlocksPerGroup = prt::ReceiverGroup::MaxSize / prt::BlockSize;
+    const std::size_t num_groups = (diffuse_.size() + BlocksPerGroup - 1) / BlocksPerGroup;
+    files::parallel_for(std::size_t{0}, num_groups, [&](std::size_t index) {
+        const std::size_t first = index * prt::ReceiverGroup::MaxSize;
+        const std::size_t size =
+            std::min(prt::ReceiverGroup::MaxSize, transfer_.num_receivers() - first);
+        std::array<glm::vec3, prt::ReceiverGroup::MaxSize> origins;
+        glm::vec3 mean_normal(0.0f);
+        for (std::size_t i = 0; i < size && !fresh.empty(); ++i) {
+            const glm::vec3& normal = transfer_.normals[first + i];
+            origins[i] =
+                prt::ray_origin(rays_.positions[transfer_.order[first + i]], normal, rays_.bias);
+            mean_normal += normal;
+        }
+        for (const FreshPatch& patch : fresh)
+            find_reached(patch, first, {std::span(origins).first(size), mean_normal});
+        for (std::size_t block = index * BlocksPerGroup;
+             block < std::min((index + 1) * BlocksPerGroup, diffuse_.size()); ++block) {
+            if (transfer_.glossy)
+                light_glossy_block(lights, of_light, block);
+            else
+                light_block(lights, of_light, block);
+        }
+    });
+    return num_fresh;
+}
+
+/// Lights of neighbouring clusters follow each other.
+void TracedLight::add(std::vector<FreshPatch>& patches, const glm::vec3& direction,
+                      Reached* reached) {
+    // So wide a patch makes a shaft that few triangles lie in: 3 degrees around its first light.
+    constexpr float CosineOfPatch = 0.9986f;
+    if (patches.empty() || patches.back().directions.full() ||
+        glm::dot(patches.back().directions.direction(0), direction) < CosineOfPatch)
+        patches.emplace_back();
+    FreshPatch& patch = patches.back();
+    patch.reached[patch.directions.num_directions] = reached;
+    patch.directions.add(direction);
+}
+
+/// Traces the rays of neighbouring receivers, the first one at place `first`, through a patch.
+void TracedLight::find_reached(const FreshPatch& patch, std::size_t first,
+                               const prt::ReceiverGroup& group) const {
+    std::array<std::uint64_t, prt::ReceiverGroup::MaxSize> rays{}; // a bit per direction
+    const std::span<std::uint64_t> of_group(rays.data(), group.origins.size());
+    const std::size_t num_directions = patch.directions.num_directions;
+    std::uint64_t any = 0;
+    for (std::size_t j = 0; j < num_directions; ++j) {
+        const glm::vec3 direction = patch.directions.direction(j);
+        for (std::size_t i = 0; i < of_group.size(); ++i)
+            of_group[i] |=
+                static_cast<std::uint64_t>(prt::is_above(transfer_.normals[first + i], direction))
+                << j;
+    }
+    for (const std::uint64_t bits : of_group)
+        any |= bits;
+    if (any == 0)
+        return;
+    rays_.blockers->clear_blocked(group, patch.directions, of_group);
+    for (std::size_t i = 0; i < of_group.size(); ++i) {
+        const std::size_t place = first + i;
+        for (std::uint64_t bits = of_group[i]; bits != 0; bits &= bits - 1)
+            (*patch.reached[static_cast<std::size_t>(std::countr_zero(bits))])[place /
+                                                                               prt::BlockSize] |=
+                static_cast<std::uint16_t>(1u << place % prt::BlockSize);
+    }
+}
+
+void TracedLight::light_block(std::span<const SharpLight> lights,
+                              std::span<Reached* const> of_light, std::size_t block) {
+    const std::size_t begin = block * prt::BlockSize;
+    std::array<glm::dvec3, prt::BlockSize> irradiance{};
+    for (std::size_t light = 0; light < lights.size(); ++light)
+        for_receivers((*of_light[light])[block], [&](std::size_t i) {
+            irradiance[i] += lights[light].irradiance.on(transfer_.normals[begin + i]);
+        });
+    for (std::size_t i = 0; i < irradiance.size(); ++i)
+        set(diffuse_[block], i, irradiance[i] / std::numbers::pi);
+}
+
+void TracedLight::light_glossy_block(std::span<const SharpLight> lights,
+                                     std::span<Reached* const> of_light, std::size_t block) {
+    const std::size_t begin = block * prt::BlockSize;
+    const std::size_t size = std::min(prt::BlockSize, transfer_.num_receivers() - begin);
+    prt::BlockSurfaces surfaces;
+    for (std::size_t i = 0; i < size; ++i)
+        surfaces.set(i, transfer_.surfaces[begin + i], transfer_.normals[begin + i],
+                     transfer_.glossy->to_eye[begin + i]);
+    const std::span<const glm::vec3> normals = std::span(transfer_.normals).subspan(begin, size);
+    std::array<prt::Lobes<glm::dvec3>, prt::BlockSize> lobes;
+    for (std::size_t light = 0; light < lights.size(); ++light)
+        add_light(surfaces, normals, glm::vec3(lights[light].direction), lights[light].irradiance,
+                  (*of_light[light])[block], std::span(lobes).first(size));
+    for (std::size_t i = 0; i < size; ++i) {
+        set(diffuse_[block], i, lobes[i].diffuse);
+        highlights_[begin + i] = {.diffuse_grazing = glm::vec3(lobes[i].diffuse_grazing),
+                                  .specular = glm::vec3(lobes[i].specular),
+                                  .specular_grazing = glm::vec3(lobes[i].specular_grazing)};
+    }
+}
+
+} // namespace relumine::relight

@@ -1,0 +1,77 @@
+// Light that reaches the receivers from sharp lights. They are traced, not looked up in clusters.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "prt/glossy/brdf.h"
+#include "prt/transfer/transfer.h"
+#include "relight/kernels/block_kernels.h"
+#include "relight/sharp/shadow_rays.h"
+#include "relight/sharp/sharp_lights.h"
+
+namespace relumine::relight {
+
+/// Keeps the part of each receiver's radiance that comes from sharp lights. Without blockers
+/// nothing is traced and nothing is kept.
+class TracedLight {
+public:
+    /// The transfer must outlive this object.
+    ///
+    /// Throws:  std::invalid_argument unless there is a position per receiver, or no blockers.
+    TracedLight(const prt::Transfer& transfer, const ShadowRays& rays);
+
+    /// Takes new lights in place of all before; parallel. Returns how many directions were traced.
+    ///
+    /// Cost:    a shadow ray for each receiver that faces a light. Lights that stand where a light
+    ///          stood before need none, however bright they are now.
+    /// Memory:  a bit for each receiver and light.
+    std::size_t trace(std::span<const SharpLight> lights);
+
+    /// Returns a block's radiance for albedo 1, or null where nothing is traced.
+    [[nodiscard]] const TracedRadiance* diffuse(std::size_t block) const {
+        return diffuse_.empty() ? nullptr : &diffuse_[block];
+    }
+    /// Returns a receiver's radiance through all lobes but the diffuse one, which stays 0.
+    [[nodiscard]] prt::Lobes<glm::vec3> highlights(std::size_t place) const {
+        return highlights_.empty() ? prt::Lobes<glm::vec3>() : highlights_[place];
+    }
+
+private:
+    /// [num_blocks] bit i is set where a light reaches the block's receiver i.
+    using Reached = std::vector<std::uint16_t>;
+    /// By direction: x, y, z.
+    using ReachedBlocks = std::map<std::array<float, 3>, std::unique_ptr<Reached>>;
+
+    /// New lights side by side in the sky, and what they reach.
+    struct FreshPatch {
+        prt::DirectionPatch directions;
+        std::array<Reached*, prt::DirectionPatch::Size> reached{};
+    };
+    static void add(std::vector<FreshPatch>& patches, const glm::vec3& direction, Reached* reached);
+
+    void find_reached(const FreshPatch& patch, std::size_t first,
+                      const prt::ReceiverGroup& group) const;
+    void light_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
+                     std::size_t block);
+    void light_glossy_block(std::span<const SharpLight> lights, std::span<Reached* const> of_light,
+                            std::size_t block);
+
+    const prt::Transfer& transfer_;
+    ShadowRays rays_;
+    /// Of the present lights.
+    ReachedBlocks reached_;
+    /// [num_blocks]; empty where nothing is traced.
+    std::vector<TracedRadiance> diffuse_;
+    /// [num_receivers] by place; empty without traced highlights.
+    std::vector<prt::Lobes<glm::vec3>> highlights_;
+};
+
+} // namespace relumine::relight
