@@ -101,6 +101,7 @@ std::string advice(MemoryLimitExceeded::Part part) {
 
 Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
                   PrecomputeReport& report) {
+    const Patience for_checkpoints;
     const auto with_checkpoint = [&](const std::string& message) {
         return report.checkpoint.empty()
                    ? message
@@ -259,10 +260,10 @@ void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
 }
 
 /// What there is to say of a plan.
-void write_plan(Mesh mesh, const PrecomputeOptions& options, const Stopwatch& watch,
-                Session& session) {
+void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                const Stopwatch& watch, Session& session) {
     PrecomputeReport facts;
-    plan(std::move(mesh), options, precompute_work(session), &facts);
+    plan(std::move(mesh), options, work, &facts);
     session.end_progress();
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
@@ -280,32 +281,13 @@ void write_plan(Mesh mesh, const PrecomputeOptions& options, const Stopwatch& wa
                     {"seconds", seconds}});
 }
 
-void run(const PrecomputeArguments& options, const Command& command, Session& session) {
-    if (options.parts.is_given() && session.team != nullptr)
-        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
-                                   "precompute` does them without mpirun");
-    if (options.parts.is_given())
-        return options.parts.run(command, options.output,
-                                 options.engine == "beam" ? Engine::Beams : Engine::Embree,
-                                 precompute_work(session), session);
-    if (options.mesh.empty())
-        throw UsageError("MESH", "expected a mesh, got none");
-    if (session.team != nullptr && session.team->part().index != 0) {
-        const Patience for_checkpoints;
-        return assist(precompute_work(session));
-    }
-    Stopwatch watch;
-    // Found out now, not after a minute of work.
-    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
-    check_output(options.output, {options.mesh});
-    options.receivers.check();
-    options.surfaces.check();
-    options.refine.check();
-    if ((options.refine.is_wanted() || options.simplify != 0) &&
-        !std::holds_alternative<Vertices>(options.receivers.receivers()))
-        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
-                         "expected vertices as receivers");
+/// Whether the mesh is turned up by the custom of its format, which has Z up.
+bool turns_by_custom(const PrecomputeArguments& options) {
+    return options.up.empty() && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
+}
 
+/// Loads the mesh, says what is odd about it, and gives it the vertices that are asked for.
+Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     MeshOptions mesh_options = options.mesh_options;
     mesh_options.normals =
         options.normals == "smooth" ? mesh::NormalSource::Smooth : mesh::NormalSource::File;
@@ -314,9 +296,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
                           : options.up == "z" ? mesh::UpAxis::Z
                                               : mesh::UpAxis::Y;
     Mesh mesh = load_mesh(options.mesh, mesh_options);
-    const bool turns_by_custom =
-        options.up.empty() && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
-    if (turns_by_custom)
+    if (turns_by_custom(options))
         session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
                                 options.mesh));
     for (const std::string& warning : mesh.geometry.warnings)
@@ -326,30 +306,23 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
     warn_of_winding(mesh.geometry, options.mesh, session);
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
-
     if (options.simplify != 0)
         mesh = simplified_to(std::move(mesh), options.simplify, session);
     if (options.refine.is_wanted())
         mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
+    return mesh;
+}
 
-    const PrecomputeOptions work = precompute_options(options, mesh.geometry);
-    if (options.is_plan)
-        return write_plan(std::move(mesh), work, watch, session);
-    PrecomputeReport facts;
-    const Scene scene = [&] {
-        const Patience for_checkpoints;
-        return precomputed(std::move(mesh), work, precompute_work(session), facts);
-    }();
-    session.end_progress();
-
+/// What there is to say of a scene.
+void write_report(const PrecomputeArguments& options, const PrecomputeOptions& work,
+                  const PrecomputeReport& facts, const Scene& scene, double seconds,
+                  Session& session) {
     Report report = report_of(work, facts, scene, session);
-    const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
-    const std::string others = on_vertices
+    const std::string others = std::holds_alternative<prt::VertexLayout>(scene.layout)
                                    ? ""
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));
     const prt::PrecomputeStatistics& clusters = facts.clusters;
-    const double seconds = watch.total();
     session.say(fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({}; "
                             "{:.1f} M rays/s), {:.1f} MB",
                             options.output, facts.num_vertices, facts.num_triangles, others,
@@ -362,9 +335,45 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         report.set("bounces", bounce_report(*facts.bounces, scene, session));
     if (session.team != nullptr)
         report.set("processes", process_report(facts.processes, session));
-    report.set("up", turns_by_custom ? "z" : options.up.empty() ? "y" : options.up);
+    report.set("up", turns_by_custom(options) ? "z" : options.up.empty() ? "y" : options.up);
     report.set("seconds", seconds);
     session.report(report);
+}
+
+void run(const PrecomputeArguments& options, const Command& command, Session& session) {
+    if (options.parts.is_given() && session.team != nullptr)
+        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
+                                   "precompute` does them without mpirun");
+    const PrecomputeWork work = precompute_work(session);
+    if (options.parts.is_given())
+        return options.parts.run(command, options.output,
+                                 options.engine == "beam" ? Engine::Beams : Engine::Embree, work,
+                                 session);
+    if (options.mesh.empty())
+        throw UsageError("MESH", "expected a mesh, got none");
+    if (!work.team.is_first()) {
+        const Patience for_checkpoints;
+        return assist(work);
+    }
+    const Stopwatch watch;
+    // Found out now, not after a minute of work.
+    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
+    check_output(options.output, {options.mesh});
+    options.receivers.check();
+    options.surfaces.check();
+    options.refine.check();
+    if ((options.refine.is_wanted() || options.simplify != 0) &&
+        !std::holds_alternative<Vertices>(options.receivers.receivers()))
+        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
+                         "expected vertices as receivers");
+    Mesh mesh = made_mesh(options, session);
+    const PrecomputeOptions asked = precompute_options(options, mesh.geometry);
+    if (options.is_plan)
+        return write_plan(std::move(mesh), asked, work, watch, session);
+    PrecomputeReport facts;
+    const Scene scene = precomputed(std::move(mesh), asked, work, facts);
+    session.end_progress();
+    write_report(options, asked, facts, scene, watch.total(), session);
 }
 
 /// Everything that decides which light reaches what.
