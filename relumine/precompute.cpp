@@ -170,9 +170,11 @@ private:
         const prt::RayScene rays = prepare();
         open_checkpoint();
         if (work_.team.has_others()) {
-            const prt::SceneSettings& settings = scene_.settings;
-            scene_.transfer.quadtree = prt::Quadtree::of_level(
-                std::min(settings.min_level, prt::texel_level(settings.face_resolution)));
+            // The cells to begin with.
+            const std::uint32_t level = std::min(
+                options_.min_level, prt::texel_level(options_.face_resolution));
+            scene_.transfer.quadtree =
+                prt::Quadtree::of([=](const prt::Cell& cell) { return cell.level < level; });
             scene_.transfer.order = prt::spatial_order(scene_.receivers);
             prt::share_plan(work_.team, plan_);
             static_cast<void>(shared_engine(work_.team, options_.engine));

@@ -75,23 +75,6 @@ std::uint64_t depth_first_key(const Cell& cell) {
     return key;
 }
 
-Quadtree quadtree_of(const std::vector<Cell>& leaves) {
-    std::vector<bool> flags;
-    std::size_t next = 0;
-    const auto visit = [&](const auto& self, const Cell& cell) -> void {
-        const bool is_leaf = leaves[next] == cell;
-        flags.push_back(!is_leaf);
-        if (is_leaf)
-            ++next;
-        else
-            for (std::uint32_t i = 0; i < 4; ++i)
-                self(self, cell.child(i));
-    };
-    for (const cubemap::Face face : cubemap::AllFaces)
-        visit(visit, Cell{.face = face});
-    return Quadtree(flags);
-}
-
 } // namespace
 
 Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
@@ -126,9 +109,10 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
 
 /// Pushes the cells to begin with, depth first, so that siblings follow each other.
 void Clustering::start() {
-    const Quadtree first = context_.has_clusters
-                               ? context_.given->quadtree
-                               : Quadtree::of_level(std::min(options_.min_level, max_level_));
+    const std::uint32_t level = std::min(options_.min_level, max_level_);
+    const Quadtree first =
+        context_.has_clusters ? context_.given->quadtree
+                              : Quadtree::of([=](const Cell& cell) { return cell.level < level; });
     for (const Cell& cell : first.leaves())
         pending_.push(cell);
 }
@@ -370,7 +354,11 @@ Transfer Clustering::result() {
     std::vector<Cell> leaves(order.size());
     std::transform(order.begin(), order.end(), leaves.begin(),
                    [this](std::uint32_t cluster) { return clusters_[cluster]; });
-    return {.quadtree = quadtree_of(leaves),
+    auto next = leaves.begin();
+    const auto is_split = [&](const Cell& cell) {
+        return *next == cell ? (++next, false) : true;
+    };
+    return {.quadtree = Quadtree::of(is_split),
             .order = std::move(order_),
             .normals = std::move(ordered_normals_),
             .counts = columns_->take(order)};

@@ -19,7 +19,6 @@
 #include "prt/clusters/work_estimate.h"
 #include "prt/precompute_context.h"
 #include "prt/precompute_options.h"
-#include "prt/progress.h"
 #include "prt/steps.h"
 
 namespace relumine::prt {

@@ -36,17 +36,10 @@ constexpr std::size_t BlocksPerThreadAndStep = 256;
 /// good to some percent.
 constexpr std::size_t TrialBlocks = 256;
 
-/// One block's entries of one lobe.
-struct BlockEntries {
-    std::vector<std::uint32_t> cells;
-    std::vector<float> scales;
-    std::vector<std::uint8_t> values;
-};
-
 /// Quantises a lobe. Bytes hold the square root: so a highlight's foot, shared by many directions,
 /// keeps its digits beside the peak.
-BlockEntries quantised(const LobeCut& cut) {
-    BlockEntries entries;
+LobeCuts quantised(const LobeCut& cut) {
+    LobeCuts entries;
     entries.cells.reserve(cut.cells.size());
     entries.scales.reserve(cut.cells.size());
     entries.values.reserve(cut.cells.size() * BlockSize);
@@ -58,20 +51,21 @@ BlockEntries quantised(const LobeCut& cut) {
             entries.values.push_back(
                 static_cast<std::uint8_t>(std::lround(255.0f * std::sqrt(mean / largest))));
     }
+    entries.begin.push_back(entries.cells.size());
     return entries;
 }
 
 /// Writes one block for a checkpoint.
-void add(files::ByteWriter& writer, const BlockEntries& block) {
+void add(files::ByteWriter& writer, const LobeCuts& block) {
     writer.add<std::uint64_t>(block.cells.size());
     writer.add_all(std::span(block.cells));
     writer.add_all(std::span(block.scales));
     writer.add_all(std::span(block.values));
 }
 
-BlockEntries next_entries(files::ByteReader& reader) {
+LobeCuts next_entries(files::ByteReader& reader) {
     const auto count = static_cast<std::size_t>(reader.next<std::uint64_t>());
-    BlockEntries block;
+    LobeCuts block{.begin = {0, count}};
     block.cells = reader.next_all<std::uint32_t>(count);
     block.scales = reader.next_all<float>(count);
     block.values = reader.next_all<std::uint8_t>(count * BlockSize);
@@ -80,32 +74,29 @@ BlockEntries next_entries(files::ByteReader& reader) {
 
 /// A block's entries of all lobes, and what they took.
 struct FinishedBlock {
-    std::array<BlockEntries, NumGlossyLobes> lobes;
+    std::array<LobeCuts, NumGlossyLobes> lobes;
     std::uint64_t num_rays = 0;
 
     [[nodiscard]] std::uint64_t num_entries() const {
         std::uint64_t count = 0;
-        for (const BlockEntries& of_lobe : lobes)
-            count += of_lobe.cells.size();
+        for (const LobeCuts& of_lobe : lobes)
+            count += of_lobe.num_entries();
         return count;
     }
 };
 
 /// Joins the blocks' entries of a lobe. Frees each block's arrays on the way.
 LobeCuts joined(std::span<FinishedBlock> blocks, std::size_t lobe) {
-    LobeCuts cuts;
-    cuts.begin.push_back(0);
+    std::size_t num_entries = 0;
     for (const FinishedBlock& block : blocks)
-        cuts.begin.push_back(cuts.begin.back() + block.lobes[lobe].cells.size());
-    cuts.cells.reserve(cuts.begin.back());
-    cuts.scales.reserve(cuts.begin.back());
-    cuts.values.reserve(cuts.begin.back() * BlockSize);
-    for (FinishedBlock& block : blocks) {
-        const BlockEntries moved = std::exchange(block.lobes[lobe], {});
-        cuts.cells.insert(cuts.cells.end(), moved.cells.begin(), moved.cells.end());
-        cuts.scales.insert(cuts.scales.end(), moved.scales.begin(), moved.scales.end());
-        cuts.values.insert(cuts.values.end(), moved.values.begin(), moved.values.end());
-    }
+        num_entries += block.lobes[lobe].num_entries();
+    LobeCuts cuts;
+    cuts.begin.reserve(blocks.size() + 1);
+    cuts.cells.reserve(num_entries);
+    cuts.scales.reserve(num_entries);
+    cuts.values.reserve(num_entries * BlockSize);
+    for (FinishedBlock& block : blocks)
+        cuts.append(std::exchange(block.lobes[lobe], {}), 0, 1);
     return cuts;
 }
 
@@ -194,8 +185,11 @@ FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
                             .max_level = deepest_level(options_.face_resolution)};
     for (const GlossyLobe lobe :
          {GlossyLobe::Specular, GlossyLobe::SpecularGrazing, GlossyLobe::DiffuseGrazing}) {
-        if (!to_refine.surfaces.has(lobe))
+        LobeCuts& entries = finished.lobes[static_cast<std::size_t>(lobe)];
+        if (!to_refine.surfaces.has(lobe)) {
+            entries.begin.push_back(0);
             continue;
+        }
         // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
         if (lobe == GlossyLobe::DiffuseGrazing)
             limits.reference_power =
@@ -203,7 +197,7 @@ FinishedBlock GlossyPrecompute::refine(std::size_t block) const {
         const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
         if (lobe == GlossyLobe::Specular)
             limits.reference_power = cut.power;
-        finished.lobes[static_cast<std::size_t>(lobe)] = quantised(cut);
+        entries = quantised(cut);
         finished.num_rays += cut.num_rays;
     }
     return finished;
@@ -221,12 +215,12 @@ void GlossyPrecompute::do_all_blocks() {
     };
     blocks.write = [this](std::size_t block, files::ByteWriter& writer) {
         writer.add(blocks_[block].num_rays);
-        for (const BlockEntries& of_lobe : blocks_[block].lobes)
+        for (const LobeCuts& of_lobe : blocks_[block].lobes)
             add(writer, of_lobe);
     };
     blocks.read = [&](std::size_t block, files::ByteReader& reader) {
         blocks_[block].num_rays = reader.next<std::uint64_t>();
-        for (BlockEntries& of_lobe : blocks_[block].lobes)
+        for (LobeCuts& of_lobe : blocks_[block].lobes)
             of_lobe = next_entries(reader);
         num_entries += blocks_[block].num_entries();
     };

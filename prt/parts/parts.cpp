@@ -107,24 +107,13 @@ LobeCuts joined_cuts(const VisibleCounts& whole, std::span<PartLight> parts, std
     if (parts.size() == 1)
         return std::move(parts[0].glossy->lobes[lobe]);
     LobeCuts cuts;
-    cuts.begin.push_back(0);
     for (std::size_t tile = 0; tile < whole.num_tiles(); ++tile) {
         const LobeCuts& part = parts[tile % parts.size()].glossy->lobes[lobe];
         const std::size_t first = tile / parts.size() * VisibleCounts::TileBlocks;
         const std::size_t num_blocks = whole.tile_begin(tile + 1) - whole.tile_begin(tile);
         if (first + num_blocks >= part.begin.size())
             throw std::invalid_argument("expected the highlights of all tiles");
-        const std::uint64_t begin = part.begin[first];
-        const std::uint64_t end = part.begin[first + num_blocks];
-        for (std::size_t block = first; block < first + num_blocks; ++block)
-            cuts.begin.push_back(cuts.begin.back() + part.begin[block + 1] - part.begin[block]);
-        const auto append = [&](auto& to, const auto& from, std::size_t width) {
-            to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin * width),
-                      from.begin() + static_cast<std::ptrdiff_t>(end * width));
-        };
-        append(cuts.cells, part.cells, 1);
-        append(cuts.scales, part.scales, 1);
-        append(cuts.values, part.values, BlockSize);
+        cuts.append(part, first, num_blocks);
     }
     return cuts;
 }

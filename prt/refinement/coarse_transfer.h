@@ -10,7 +10,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/cube_map.h"
-#include "prt/progress.h"
+#include "prt/steps.h"
 #include "prt/receivers/receivers.h"
 #include "prt/visibility/blockers.h"
 

@@ -32,15 +32,16 @@ void Quadtree::build(std::uint32_t node, const Cell& cell, const std::vector<boo
         build(first_child + i, cell.child(i), split_flags, next_flag);
 }
 
-Quadtree Quadtree::of_level(std::uint32_t level) {
+Quadtree Quadtree::of(const std::function<bool(const Cell&)>& is_split) {
     std::vector<bool> flags;
-    const auto visit = [&](const auto& self, std::uint32_t below) -> void {
-        flags.push_back(below != 0);
-        for (int i = 0; below != 0 && i < 4; ++i)
-            self(self, below - 1);
+    const auto visit = [&](const auto& self, const Cell& cell) -> void {
+        const bool has_children = is_split(cell);
+        flags.push_back(has_children);
+        for (std::uint32_t i = 0; has_children && i < 4; ++i)
+            self(self, cell.child(i));
     };
-    for (std::size_t face = 0; face < cubemap::NumFaces; ++face)
-        visit(visit, level);
+    for (const cubemap::Face face : cubemap::AllFaces)
+        visit(visit, Cell{.face = face});
     return Quadtree(flags);
 }
 

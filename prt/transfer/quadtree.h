@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -59,8 +60,8 @@ public:
     /// Throws:  std::invalid_argument when the flags end early, go on after the last leaf or go
     ///          deeper than MaxLevel.
     explicit Quadtree(const std::vector<bool>& split_flags);
-    /// Returns the tree whose leaves are all cells of a level.
-    [[nodiscard]] static Quadtree of_level(std::uint32_t level);
+    /// Builds the tree whose cells are split where `is_split` says so. It is asked depth first.
+    [[nodiscard]] static Quadtree of(const std::function<bool(const Cell&)>& is_split);
 
     [[nodiscard]] std::size_t num_leaves() const { return leaves_.size(); }
     [[nodiscard]] std::span<const Cell> leaves() const { return leaves_; }

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "prt/progress.h"
+#include "prt/steps.h"
 
 namespace relumine::prt {
 namespace {
