@@ -494,7 +494,7 @@ glm::dvec3 Relighter::Impl::from_cluster(std::size_t place, std::size_t cluster)
                                                   block % prt::VisibleCounts::TileBlocks);
     const glm::vec3& normal = transfer_.normals[place];
     return count * ((whole >> (cluster % 64) & 1u) != 0 ? lights_.of_vectors(cluster, normal)
-                                                        : lights_.of_beams(cluster, normal));
+                                                        : lights_.of_directional(cluster, normal));
 }
 
 /// Updates the radiance for the clusters in `changed_`, which ascend and whose sums_ are new.

@@ -66,7 +66,7 @@ std::size_t counts_before(std::uint64_t mixed, std::uint64_t cluster) {
 /// The light of a word's clusters.
 struct WordLights {
     const float* vectors;
-    const float* beams;
+    const float* directionals;
     std::uint64_t spread;
 };
 
@@ -110,7 +110,7 @@ struct Sum {
 template<bool AnySpread>
 void add_whole(std::uint64_t bits, const Normals<Floats>& n, const WordLights& lights, Sum& sum) {
     const auto zero = hn::Zero(Floats());
-    const float* beams = lights.beams;
+    const float* directionals = lights.directionals;
     for (; bits != 0; bits &= bits - 1) {
         const std::size_t i = first_bit(bits);
         if (AnySpread && (lights.spread >> i & 1u) != 0) {
@@ -119,8 +119,8 @@ void add_whole(std::uint64_t bits, const Normals<Floats>& n, const WordLights& l
             sum.green = hn::Add(sum.green, hn::Max(n.dot(e + 3), zero));
             sum.blue = hn::Add(sum.blue, hn::Max(n.dot(e + 6), zero));
         } else {
-            const float* beam = beams + i * ClusterLights::BeamStride;
-            sum.add(hn::Max(n.dot(beam), zero), beam + 3);
+            const float* directional = directionals + i * ClusterLights::DirectionalStride;
+            sum.add(hn::Max(n.dot(directional), zero), directional + 3);
         }
     }
 }
@@ -131,7 +131,7 @@ void add_counted(std::uint64_t bits, const std::uint8_t* counts, const Normals<F
                  const WordLights& lights, Sum& sum) {
     const Floats d;
     const auto zero = hn::Zero(d);
-    const float* beams = lights.beams;
+    const float* directionals = lights.directionals;
     for (; bits != 0; bits &= bits - 1, counts += prt::BlockSize) {
         const std::size_t i = first_bit(bits);
         const auto count = load_counts(d, counts);
@@ -141,8 +141,8 @@ void add_counted(std::uint64_t bits, const std::uint8_t* counts, const Normals<F
             sum.green = hn::MulAdd(count, hn::Max(n.dot(e + 3), zero), sum.green);
             sum.blue = hn::MulAdd(count, hn::Max(n.dot(e + 6), zero), sum.blue);
         } else {
-            const float* beam = beams + i * ClusterLights::BeamStride;
-            sum.add(hn::Mul(count, hn::Max(n.dot(beam), zero)), beam + 3);
+            const float* directional = directionals + i * ClusterLights::DirectionalStride;
+            sum.add(hn::Mul(count, hn::Max(n.dot(directional), zero)), directional + 3);
         }
     }
 }
@@ -283,7 +283,8 @@ void add_per_receiver(const BlockScene& scene, std::size_t tile, const ClusterLi
         const TileWord& blocks = scene.words.words[tile * num_words + w];
         const std::size_t first_word = counts.word(begin, w);
         const WordLights of_word{.vectors = lights.vectors.data() + w * 64 * ClusterLights::Stride,
-                                 .beams = lights.beams.data() + w * 64 * ClusterLights::BeamStride,
+                                 .directionals = lights.directionals.data() +
+                                                 w * 64 * ClusterLights::DirectionalStride,
                                  .spread = lights.spread[w]};
         const std::uint64_t pairs = (blocks.mixed | blocks.across) & chosen;
         const std::uint8_t* of_pairs = counts.counts.data() + blocks.mixed_before * prt::BlockSize;
@@ -377,14 +378,14 @@ void change_pairs(std::span<const ChangedPair> pairs, const BlockNormals& normal
         DoubleSum blue(light.mixed[2].data() + lane);
         for (const ChangedPair& pair : pairs) {
             const auto count = pair.counts != nullptr ? load_counts(d, pair.counts + lane) : full;
-            for (std::size_t i = changes.beams_before[pair.cluster];
-                 i < changes.beams_before[pair.cluster + 1]; ++i) {
-                const BeamChange& beam = changes.beams[i];
-                const auto cosine = n.dot(beam.direction.data());
+            for (std::size_t i = changes.directionals_before[pair.cluster];
+                 i < changes.directionals_before[pair.cluster + 1]; ++i) {
+                const DirectionalChange& directional = changes.directionals[i];
+                const auto cosine = n.dot(directional.direction.data());
                 const DoubleSum::Part part(hn::Mul(count, hn::Max(cosine, zero)));
-                red.add(part, beam.colour[0]);
-                green.add(part, beam.colour[1]);
-                blue.add(part, beam.colour[2]);
+                red.add(part, directional.colour[0]);
+                green.add(part, directional.colour[1]);
+                blue.add(part, directional.colour[2]);
             }
         }
         red.store(light.mixed[0].data() + lane);

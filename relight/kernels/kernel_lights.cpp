@@ -8,7 +8,7 @@
 namespace relumine::relight {
 
 ClusterLights::ClusterLights(std::size_t num_clusters)
-    : vectors(num_clusters * Stride), beams(num_clusters * BeamStride),
+    : vectors(num_clusters * Stride), directionals(num_clusters * DirectionalStride),
       spread((num_clusters + 63) / 64), prefix((spread.size() * 64 + 1) * Stride) {}
 
 void ClusterLights::set(std::size_t cluster, const VectorIrradiance& irradiance) {
@@ -17,7 +17,7 @@ void ClusterLights::set(std::size_t cluster, const VectorIrradiance& irradiance)
                                                glm::vec3(irradiance.green * Scale),
                                                glm::vec3(irradiance.blue * Scale)};
     float* vector = vectors.data() + cluster * Stride;
-    float* beam = beams.data() + cluster * BeamStride;
+    float* directional = directionals.data() + cluster * DirectionalStride;
     for (const glm::vec3& channel : channels)
         for (int axis = 0; axis < 3; ++axis)
             *vector++ = channel[axis];
@@ -34,11 +34,11 @@ void ClusterLights::set(std::size_t cluster, const VectorIrradiance& irradiance)
         const glm::dvec3 rest = channel - colour * glm::dvec3(direction);
         off += glm::dot(rest, rest);
         all += glm::dot(channel, channel);
-        beam[i] = direction[i];
-        beam[3 + i] = static_cast<float>(colour);
+        directional[i] = direction[i];
+        directional[3 + i] = static_cast<float>(colour);
     }
     const std::uint64_t bit = std::uint64_t{1} << (cluster % 64);
-    if (off > BeamTolerance * BeamTolerance * all)
+    if (off > DirectionalTolerance * DirectionalTolerance * all)
         spread[cluster / 64] |= bit;
     else
         spread[cluster / 64] &= ~bit;
@@ -57,34 +57,36 @@ glm::dvec3 ClusterLights::of_vectors(std::size_t cluster, const glm::vec3& norma
     return {on(vector), on(vector + 3), on(vector + 6)};
 }
 
-glm::dvec3 ClusterLights::of_beams(std::size_t cluster, const glm::vec3& normal) const {
+glm::dvec3 ClusterLights::of_directional(std::size_t cluster, const glm::vec3& normal) const {
     if (is_spread(cluster))
         return of_vectors(cluster, normal);
-    const float* beam = beams.data() + cluster * BeamStride;
-    return std::max(0.0, glm::dot(glm::dvec3(normal), glm::dvec3(beam[0], beam[1], beam[2]))) *
-           glm::dvec3(beam[3], beam[4], beam[5]);
+    const float* directional = directionals.data() + cluster * DirectionalStride;
+    return std::max(0.0, glm::dot(glm::dvec3(normal),
+                                  glm::dvec3(directional[0], directional[1], directional[2]))) *
+           glm::dvec3(directional[3], directional[4], directional[5]);
 }
 
 void LightChanges::clear() {
     words.clear();
     vectors.clear();
-    beams_before.resize(1);
-    beams.clear();
+    directionals_before.resize(1);
+    directionals.clear();
 }
 
 void LightChanges::set(ClusterLights& lights, std::size_t cluster,
                        const VectorIrradiance& irradiance) {
     struct Light {
         std::array<float, ClusterLights::Stride> vector;
-        std::array<float, ClusterLights::BeamStride> beam;
+        std::array<float, ClusterLights::DirectionalStride> directional;
         bool is_spread;
         bool operator==(const Light&) const = default;
 
         Light(const ClusterLights& all, std::size_t c) : is_spread(all.is_spread(c)) {
             std::copy_n(all.vectors.begin() + static_cast<std::ptrdiff_t>(c * vector.size()),
                         vector.size(), vector.begin());
-            std::copy_n(all.beams.begin() + static_cast<std::ptrdiff_t>(c * beam.size()),
-                        beam.size(), beam.begin());
+            std::copy_n(all.directionals.begin() +
+                            static_cast<std::ptrdiff_t>(c * directional.size()),
+                        directional.size(), directional.begin());
         }
     };
     const Light before(lights, cluster);
@@ -106,26 +108,28 @@ void LightChanges::set(ClusterLights& lights, std::size_t cluster,
     const auto add = [&](const Light& light, double sign) {
         const auto& v = light.vector;
         if (light.is_spread) {
-            beams.push_back({.direction = {v[0], v[1], v[2]}, .colour = {sign, 0.0, 0.0}});
-            beams.push_back({.direction = {v[3], v[4], v[5]}, .colour = {0.0, sign, 0.0}});
-            beams.push_back({.direction = {v[6], v[7], v[8]}, .colour = {0.0, 0.0, sign}});
+            directionals.push_back({.direction = {v[0], v[1], v[2]}, .colour = {sign, 0.0, 0.0}});
+            directionals.push_back({.direction = {v[3], v[4], v[5]}, .colour = {0.0, sign, 0.0}});
+            directionals.push_back({.direction = {v[6], v[7], v[8]}, .colour = {0.0, 0.0, sign}});
         } else {
-            beams.push_back({.direction = {light.beam[0], light.beam[1], light.beam[2]},
-                             .colour = {sign * static_cast<double>(light.beam[3]),
-                                        sign * static_cast<double>(light.beam[4]),
-                                        sign * static_cast<double>(light.beam[5])}});
+            directionals.push_back(
+                {.direction = {light.directional[0], light.directional[1], light.directional[2]},
+                 .colour = {sign * static_cast<double>(light.directional[3]),
+                            sign * static_cast<double>(light.directional[4]),
+                            sign * static_cast<double>(light.directional[5])}});
         }
     };
     add(before, -1.0);
     add(after, 1.0);
-    // One beam instead of two where only the colour changes.
-    BeamChange& last = beams.back();
-    if (!before.is_spread && !after.is_spread && beams.end()[-2].direction == last.direction) {
+    // One directional light instead of two where only the colour changes.
+    DirectionalChange& last = directionals.back();
+    if (!before.is_spread && !after.is_spread &&
+        directionals.end()[-2].direction == last.direction) {
         for (std::size_t i = 0; i < 3; ++i)
-            last.colour[i] += beams.end()[-2].colour[i];
-        beams.erase(beams.end() - 2);
+            last.colour[i] += directionals.end()[-2].colour[i];
+        directionals.erase(directionals.end() - 2);
     }
-    beams_before.push_back(static_cast<std::uint32_t>(beams.size()));
+    directionals_before.push_back(static_cast<std::uint32_t>(directionals.size()));
 }
 
 } // namespace relumine::relight

@@ -15,31 +15,32 @@ namespace relumine::relight {
 /// Light of the clusters as the kernels read it, over 16 pi.
 struct ClusterLights {
     static constexpr std::size_t Stride = 9;
-    static constexpr std::size_t BeamStride = 6;
+    static constexpr std::size_t DirectionalStride = 6;
     /// [num_clusters * 9] vector irradiance, rounded to float: red x y z, green x y z, blue x y z.
     std::vector<float> vectors;
     /// [num_clusters * 6] the light as if it all came from one direction: x y z, and red, green and
     /// blue. The direction has a length near 1. A receiver has max(n . direction, 0) times the
     /// colour: 10 operations for 16 receivers that see a part of the cluster, where three vectors
     /// take 17.
-    std::vector<float> beams;
-    /// [ceil(num_clusters / 64)] bit c % 64 is set where a beam would be farther from the cluster's
-    /// light than BeamTolerance of it. This light has a beam for each channel, in the direction of
-    /// the channel's own vector.
+    std::vector<float> directionals;
+    /// [ceil(num_clusters / 64)] bit c % 64 is set where a directional light would be farther from
+    /// the cluster's light than DirectionalTolerance of it. This light has a directional light for
+    /// each channel, in the direction of the channel's own vector.
     std::vector<std::uint64_t> spread;
     /// [(num_clusters + 1) * 9] sums of `vectors` over the clusters before each one.
     std::vector<double> prefix;
 
-    /// Largest difference of a cluster's vectors and its beam's, over the vectors' Frobenius norm.
-    static constexpr double BeamTolerance = 1.0 / 128;
+    /// Largest difference of a cluster's vectors and its directional light's, over the vectors'
+    /// Frobenius norm.
+    static constexpr double DirectionalTolerance = 1.0 / 128;
 
     explicit ClusterLights(std::size_t num_clusters);
     void set(std::size_t cluster, const VectorIrradiance& irradiance);
     /// Fills `prefix`, which only light_tile() reads.
     void sum_prefix();
     /// Returns the light on a receiver that counts 1 of a cluster and sees it in part: of the
-    /// cluster's beams.
-    [[nodiscard]] glm::dvec3 of_beams(std::size_t cluster, const glm::vec3& normal) const;
+    /// cluster's directional lights.
+    [[nodiscard]] glm::dvec3 of_directional(std::size_t cluster, const glm::vec3& normal) const;
     /// Returns the light on a receiver that counts 1 of a cluster and sees it whole: max(n.E, 0).
     [[nodiscard]] glm::dvec3 of_vectors(std::size_t cluster, const glm::vec3& normal) const;
     [[nodiscard]] bool is_spread(std::size_t cluster) const {
@@ -59,10 +60,10 @@ struct ChangedWord {
     std::array<double, ClusterLights::Stride> vector{};
 };
 
-/// A beam that a change adds.
-struct BeamChange {
+/// A directional light that a change adds.
+struct DirectionalChange {
     std::array<float, 3> direction{};
-    /// Below zero for a beam that was there before.
+    /// Below zero for a directional light that was there before.
     std::array<double, 3> colour{};
 };
 
@@ -71,9 +72,9 @@ struct LightChanges {
     std::vector<ChangedWord> words;
     /// [num_changed] new vectors of the clusters minus the old ones.
     std::vector<std::array<double, ClusterLights::Stride>> vectors;
-    /// [num_changed + 1] beams before each cluster's.
-    std::vector<std::uint32_t> beams_before = {0};
-    std::vector<BeamChange> beams;
+    /// [num_changed + 1] directional lights before each cluster's.
+    std::vector<std::uint32_t> directionals_before = {0};
+    std::vector<DirectionalChange> directionals;
 
     void clear();
     /// Sets the light of a cluster, and notes the change if it is one.

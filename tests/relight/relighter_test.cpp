@@ -38,7 +38,7 @@ using scenes::relit_scene;
 
 /// What a receiver gets of a cluster's light where the cluster is no more than partly visible, or
 /// across a horizon: from one direction, where that is near enough.
-glm::dvec3 of_beam(const VectorIrradiance& light, const glm::dvec3& n) {
+glm::dvec3 of_directional(const VectorIrradiance& light, const glm::dvec3& n) {
     const glm::dvec3 luminance = light.luminance();
     const double length = glm::length(luminance);
     if (length == 0.0)
@@ -58,10 +58,12 @@ glm::dvec3 of_beam(const VectorIrradiance& light, const glm::dvec3& n) {
     return off > all / 128.0 / 128.0 ? light.on(n) : result;
 }
 
-/// [JN, Eq. 8] as it is written: B(x) = sum over C of c/16 max(n.E_C, 0)/pi. Where `with_beams`,
-/// clusters that a block does not see whole above its horizons are beams.
+/// [JN, Eq. 8] as it is written: B(x) = sum over C of c/16 max(n.E_C, 0)/pi. Where
+/// `with_directional`, clusters that a block does not see whole above its horizons are directional
+/// lights.
 std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer,
-                                     const cubemap::CubeMap& environment, bool with_beams = true) {
+                                     const cubemap::CubeMap& environment,
+                                     bool with_directional = true) {
     const prt::VisibleCounts& counts = transfer.counts;
     const auto sums =
         LightBinning(environment.resolution).sums(environment, transfer.quadtree.leaves());
@@ -80,8 +82,8 @@ std::vector<glm::vec3> plainly_relit(const prt::Transfer& transfer,
                                  block % prt::VisibleCounts::TileBlocks) &
                  bit) != 0;
             glm::dvec3 part = sums[leaf].on(n);
-            if (with_beams && (is_across || !is_visible))
-                part = of_beam(sums[leaf], n);
+            if (with_directional && (is_across || !is_visible))
+                part = of_directional(sums[leaf], n);
             b += counts.count(place, leaf) / 16.0 * part / std::numbers::pi;
         }
         radiance[transfer.order[place]] = glm::max(b, 0.0);
@@ -130,15 +132,15 @@ TEST(Relighter, EqualsThePlainSumOnRandomTrees) {
     }
 }
 
-TEST(Relighter, BeamsAreNearTheirLight) {
-    // Each cluster is off by BeamTolerance at most.
+TEST(Relighter, DirectionalLightsAreNearTheirLight) {
+    // Each cluster is off by DirectionalTolerance at most.
     const prt::Transfer& transfer = relit_scene().transfer;
     for (const std::uint32_t r : {16u, 64u, 200u}) {
         const cubemap::CubeMap environment = scenes::random_environment(r, r);
         const std::vector<glm::vec3> exact = plainly_relit(transfer, environment, false);
-        const std::vector<glm::vec3> with_beams = plainly_relit(transfer, environment);
-        EXPECT_NE(with_beams, exact);
-        expect_close(with_beams, exact, ClusterLights::BeamTolerance);
+        const std::vector<glm::vec3> with_directional = plainly_relit(transfer, environment);
+        EXPECT_NE(with_directional, exact);
+        expect_close(with_directional, exact, ClusterLights::DirectionalTolerance);
     }
 }
 
