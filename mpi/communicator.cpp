@@ -157,8 +157,8 @@ template<typename Byte, typename Start>
 void Communicator::run_in_pieces(std::span<Byte> bytes, const Start& start) {
     for (std::size_t begin = 0; begin < bytes.size(); begin += MostBytes)
         run([&](MPI_Request& request) {
-            start(bytes.data() + begin,
-                  static_cast<int>(std::min(MostBytes, bytes.size() - begin)), request);
+            start(bytes.data() + begin, static_cast<int>(std::min(MostBytes, bytes.size() - begin)),
+                  request);
         });
 }
 
@@ -234,8 +234,8 @@ std::vector<std::byte> Communicator::scatter(std::vector<std::vector<std::byte>>
     for (std::size_t i = 0; i < bytes.size(); ++i)
         of_each[i] = bytes[i].size();
     broadcast_from(0, std::as_writable_bytes(std::span(of_each)));
-    std::vector<std::byte> own(
-        part_.index != 0 ? static_cast<std::size_t>(of_each[part_.index]) : 0);
+    std::vector<std::byte> own(part_.index != 0 ? static_cast<std::size_t>(of_each[part_.index])
+                                                : 0);
     meet(); // all have the memory
     if (part_.index != 0) {
         receive(own, 0);

@@ -171,8 +171,8 @@ private:
         open_checkpoint();
         if (work_.team.has_others()) {
             // The cells to begin with.
-            const std::uint32_t level = std::min(
-                options_.min_level, prt::texel_level(options_.face_resolution));
+            const std::uint32_t level =
+                std::min(options_.min_level, prt::texel_level(options_.face_resolution));
             scene_.transfer.quadtree =
                 prt::Quadtree::of([=](const prt::Cell& cell) { return cell.level < level; });
             scene_.transfer.order = prt::spatial_order(scene_.receivers);

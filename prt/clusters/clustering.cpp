@@ -110,9 +110,9 @@ Clustering::Clustering(const Receivers& receivers, const Blockers& blockers,
 /// Pushes the cells to begin with, depth first, so that siblings follow each other.
 void Clustering::start() {
     const std::uint32_t level = std::min(options_.min_level, max_level_);
-    const Quadtree first =
-        context_.has_clusters ? context_.given->quadtree
-                              : Quadtree::of([=](const Cell& cell) { return cell.level < level; });
+    const Quadtree first = context_.has_clusters
+                               ? context_.given->quadtree
+                               : Quadtree::of([=](const Cell& cell) { return cell.level < level; });
     for (const Cell& cell : first.leaves())
         pending_.push(cell);
 }
