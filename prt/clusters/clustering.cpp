@@ -17,6 +17,7 @@
 #include "prt/clusters/lattice.h"
 #include "prt/free_memory.h"
 #include "prt/receivers/receiver_order.h"
+#include "prt/transfer/cell_index.h"
 
 namespace relumine::prt {
 
@@ -59,20 +60,6 @@ std::uint64_t bytes_of(const LeafColumn& column, double scale) {
     const std::size_t bytes = column.counts.size() +
                               sizeof(std::uint64_t) * (column.visible.size() + column.mixed.size());
     return OverheadOfCluster + static_cast<std::uint64_t>(scale * static_cast<double>(bytes));
-}
-
-/// Returns a key for the depth-first order of cells of any level: by face, then along the Z curve.
-std::uint64_t depth_first_key(const Cell& cell) {
-    std::uint64_t key = static_cast<std::uint64_t>(cell.face);
-    for (std::uint32_t level = 0; level < MaxLevel; ++level) {
-        std::uint64_t child = 0;
-        if (level < cell.level) {
-            const std::uint32_t shift = cell.level - 1u - level;
-            child = (cell.x >> shift & 1u) | (cell.y >> shift & 1u) << 1u;
-        }
-        key = key << 2u | child;
-    }
-    return key;
 }
 
 } // namespace
@@ -130,10 +117,10 @@ void Clustering::resume(const Checkpoint::Saved& saved) {
     cells.insert(cells.end(), batch_.begin(), batch_.end());
     cells.insert(cells.end(), clusters_.begin(), clusters_.end());
     std::sort(cells.begin(), cells.end(),
-              [](const Cell& a, const Cell& b) { return depth_first_key(a) < depth_first_key(b); });
+              [](const Cell& a, const Cell& b) { return z_curve_key(a) < z_curve_key(b); });
     std::uint64_t next_key = 0;
     for (const Cell& cell : cells) {
-        if (cell.level > max_level_ || depth_first_key(cell) != next_key)
+        if (cell.level > max_level_ || z_curve_key(cell) != next_key)
             throw std::runtime_error("checkpoint: expected cells that cover the sphere");
         next_key += std::uint64_t{1} << (2 * (MaxLevel - cell.level));
     }
@@ -349,7 +336,7 @@ Transfer Clustering::result() {
     std::vector<std::uint32_t> order(clusters_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [this](std::uint32_t a, std::uint32_t b) {
-        return depth_first_key(clusters_[a]) < depth_first_key(clusters_[b]);
+        return z_curve_key(clusters_[a]) < z_curve_key(clusters_[b]);
     });
     std::vector<Cell> leaves(order.size());
     std::transform(order.begin(), order.end(), leaves.begin(),

@@ -32,10 +32,7 @@ std::vector<std::byte> text_section(const files::Json& json) {
 struct StoredPart {
     SectionReader reader;
     std::uint32_t version = 0;
-    Part part = {};
-    /// The hash of the plan
-    std::string whole = {};
-    std::uint32_t num_receivers = 0;
+    PartHead head = {};
 };
 
 StoredPart read_part(const std::filesystem::path& path) {
@@ -45,16 +42,7 @@ StoredPart read_part(const std::filesystem::path& path) {
     if (!stored.reader.has("part"))
         throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
                                              stored.reader.has("plan") ? "a plan" : "a scene"));
-    const files::Json json = stored.reader.json("part");
-    try {
-        stored.part = {.index = natural(json.at("index")), .count = natural(json.at("count"))};
-        stored.whole = json.at("plan").string();
-        stored.num_receivers = natural(json.at("receivers"));
-        if (stored.part.index >= stored.part.count || stored.part.count > MaxParts)
-            throw std::out_of_range("expected an index below the count");
-    } catch (const std::exception&) {
-        stored.reader.fail("part", "JSON with the place of the part");
-    }
+    stored.head = read_head(stored.reader, "part", "plan");
     return stored;
 }
 
@@ -175,10 +163,9 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
     NewSections sections;
     if (part.index == 0)
         sections = sections_without_light(path, plan.scene);
-    sections["part"] = text_section({{"index", part.index},
-                                     {"count", part.count},
-                                     {"plan", fmt::format("{:016x}", plan.hash)},
-                                     {"receivers", light.counts.num_receivers}});
+    const PartHead head{part, fmt::format("{:016x}", plan.hash),
+                        static_cast<std::uint32_t>(light.counts.num_receivers)};
+    sections["part"] = text_section(json_of(head, "plan"));
     // A scene's reader says what it is.
     sections["plan"] = text_section(files::Json::object());
     add_light(sections, light);
@@ -191,7 +178,7 @@ Scene join_parts(std::span<const std::filesystem::path> paths) {
     Scene scene = plan_of(first, read_sections(first));
     std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
-        light.push_back(light_of(part->reader, part->version, part->num_receivers, scene.transfer));
+        light.push_back(light_of(part->reader, part->version, part->head.num_receivers, scene.transfer));
         part.reset();
     }
     try {
