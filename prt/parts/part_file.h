@@ -27,7 +27,7 @@ struct PlannedBounces {
 /// All that a process must know to do its part of a precompute.
 struct Plan {
     /// Without counts, highlights and bounces. Settings say what is asked for.
-    Scene scene;
+    Scene scene = {};
     /// Only where light bounces
     std::optional<PlannedBounces> bounces = {};
     /// The clusters are chosen. Otherwise the processes choose them together, and the quadtree says

@@ -177,7 +177,7 @@ nlohmann::json measure_buddha(const Settings& settings, const bench::Inputs& inp
                                                      .specular = glm::vec3(0.5f),
                                                      .highlight = prt::Highlight::Ggx,
                                                      .roughness_or_exponent = Roughness})},
-                             &report);
+                             {}, &report);
     const double seconds = watch.seconds();
     const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);
 

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "prt/precompute.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/same_transfer.h"

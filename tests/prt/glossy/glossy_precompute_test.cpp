@@ -9,6 +9,8 @@
 
 #include "files/parallel.h"
 #include "prt/glossy/brdf.h"
+#include "prt/precompute.h"
+#include "prt/transfer/cell_index.h"
 #include "tests/prt/analytic_blockers.h"
 #include "tests/prt/memory_checkpoint.h"
 #include "tests/prt/scenes.h"

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "files/output_file.h"
+#include "prt/glossy/glossy_precompute.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/visibility/beam_scene.h"

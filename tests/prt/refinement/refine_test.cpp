@@ -49,7 +49,7 @@ TEST(CoarseDirections, WhatReachesAPointOverAnEmptyFloor) {
     const CoarseDirections directions;
     const mesh::TriangleMesh floor = scenes::floor_grid(2, 1.0f);
     const RayScene rays(floor);
-    const Progress progress({}, {});
+    const Progress progress{Work()};
     const auto bits = directions.trace(vertex_receivers(floor), rays, 1e-4f, progress);
     ASSERT_EQ(bits.size(), 4u);
     std::size_t count = 0;
@@ -67,7 +67,7 @@ struct BesideTheWall {
     explicit BesideTheWall(const CoarseDirections& directions) {
         points.positions = {{-1, 0, 0}, {1, 0, 0}, {0.5f, 0, 0}};
         points.normals.assign(3, glm::vec3(0, 1, 0));
-        bits = directions.trace(points, Wall(), 0.0f, Progress({}, {}));
+        bits = directions.trace(points, Wall(), 0.0f, Progress(Work()));
         for (std::size_t i = 0; i < ends.size(); ++i)
             ends[i] = {points.normals[i], &bits[i]};
     }
@@ -169,7 +169,7 @@ TEST(CoarseDirections, MiddlesOfFineEdgesHaveTheErrorOfThePlainWay) {
     const BeamScene beams(shaded, rays);
     const CountingBlockers counted(rays);
     const CoarseDirections directions;
-    const Progress progress({}, {});
+    const Progress progress{Work()};
     const float bias = automatic_bias(shaded);
     const auto at_vertices = directions.trace(vertex_receivers(mesh), beams, bias, progress);
     Receivers middles;
