@@ -89,7 +89,7 @@ void describe_scene(const InfoArguments& options, const Session& session) {
         result.set("epsilon", *settings.epsilon);
     else
         result.set("tolerance", settings.tolerance);
-    if (const Report layout = layout_json(scene); !layout.empty())
+    if (const Report layout = layout_json(scene); layout.size() != 0)
         result.set("layout", layout);
     session.report(result);
 }

@@ -228,7 +228,7 @@ Report Session::take_notes() const {
 void Session::report(Report result) const {
     if (!json)
         return;
-    result.update(take_notes());
+    files::update(result, take_notes());
     fmt::print("{}\n", result.text(2));
     std::fflush(stdout);
 }

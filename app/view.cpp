@@ -111,8 +111,7 @@ void run(const Options& options, Session& session) {
     if (!options.script.empty())
         view.script = viewer::load_script(options.script);
     else if (!options.screenshot.empty())
-        view.script =
-            std::vector{viewer::ScriptCommand{.action = viewer::Action::Wait, .numbers = {2.0}}};
+        view.script = viewer::parse_script("wait 2", "--screenshot");
 
     LitScene lit = lit_scene(options.scene);
     require_vertices(lit.scene(), options.scene.path);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -63,83 +64,86 @@ private:
     std::ptrdiff_t count_ = 0;
 };
 
+/// Numbers the vertices of a sphere whose edges are cut into `f` parts: the corners, then the inner
+/// points of each edge (from its lower corner), then the inner points of each face, row by row.
+class VertexNumbers {
+public:
+    VertexNumbers(const EdgeNumbers& edges, std::uint32_t f) : edges_(edges), f_(f) {}
+
+    /// Returns the vertex i steps towards the face's second corner and j steps towards its third.
+    [[nodiscard]] std::uint32_t operator()(std::uint32_t face, std::uint32_t i,
+                                           std::uint32_t j) const {
+        const auto [a, b, c] = Faces[face];
+        if (i == 0 && j == 0)
+            return a;
+        if (i == f_)
+            return b;
+        if (j == f_)
+            return c;
+        if (j == 0)
+            return on_edge(a, b, i);
+        if (i == 0)
+            return on_edge(a, c, j);
+        if (i + j == f_)
+            return on_edge(b, c, j);
+        const std::uint32_t first_inner = NumCorners + NumEdges * (f_ - 1);
+        const std::uint32_t inner_per_face = (f_ - 1) * (f_ - 2) / 2;
+        const std::uint32_t rows_before = (i - 1) * (f_ - 1) - (i - 1) * i / 2;
+        return first_inner + face * inner_per_face + rows_before + j - 1;
+    }
+
+private:
+    [[nodiscard]] std::uint32_t on_edge(std::uint32_t a, std::uint32_t b,
+                                        std::uint32_t steps_from_a) const {
+        const std::uint32_t steps = a < b ? steps_from_a : f_ - steps_from_a;
+        return NumCorners + edges_(a, b) * (f_ - 1) + steps - 1;
+    }
+
+    const EdgeNumbers& edges_;
+    std::uint32_t f_;
+};
+
+/// In the order of VertexNumbers.
+std::vector<glm::vec3> points_of(const EdgeNumbers& edge_number, std::uint32_t f) {
+    const auto corner = corners();
+    std::vector<glm::vec3> positions;
+    positions.reserve(10 * std::size_t{f} * f + 2);
+    const auto add = [&](const glm::dvec3& point) {
+        positions.emplace_back(glm::normalize(point));
+    };
+    for (const glm::dvec3& point : corner)
+        add(point);
+    for (const auto& [a, b] : edge_number.edges())
+        for (std::uint32_t i = 1; i < f; ++i)
+            add(corner[a] * double(f - i) + corner[b] * double(i));
+    for (const auto& [a, b, c] : Faces)
+        for (std::uint32_t i = 1; i + 1 < f; ++i)
+            for (std::uint32_t j = 1; i + j < f; ++j)
+                add(corner[a] * double(f - i - j) + corner[b] * double(i) + corner[c] * double(j));
+    return positions;
+}
+
 } // namespace
 
 mesh::TriangleMesh icosphere(std::uint32_t frequency) {
-    if (frequency < 1 || frequency > 10'000) {
+    if (frequency < 1 || frequency > 10'000)
         throw std::invalid_argument(
             fmt::format("icosphere: expected a frequency in [1, 10000], got {}", frequency));
-    }
     const std::uint32_t f = frequency;
-    const auto corner = corners();
     const EdgeNumbers edge_number;
+    const VertexNumbers vertex(edge_number, f);
     mesh::TriangleMesh sphere;
-    sphere.positions.reserve(10 * std::size_t{f} * f + 2);
-    const auto add = [&](const glm::dvec3& point) {
-        sphere.positions.emplace_back(glm::normalize(point));
-    };
-
-    // Vertices: the corners, then the inner points of each edge (from its lower corner), then the
-    // inner points of each face, row by row.
-    for (const glm::dvec3& point : corner) {
-        add(point);
-    }
-    for (const auto& [a, b] : edge_number.edges()) {
-        for (std::uint32_t i = 1; i < f; ++i) {
-            add(corner[a] * double(f - i) + corner[b] * double(i));
-        }
-    }
-    for (const auto& [a, b, c] : Faces) {
-        for (std::uint32_t i = 1; i + 1 < f; ++i) {
-            for (std::uint32_t j = 1; i + j < f; ++j) {
-                add(corner[a] * double(f - i - j) + corner[b] * double(i) + corner[c] * double(j));
-            }
-        }
-    }
-
-    const auto on_edge = [&](std::uint32_t a, std::uint32_t b, std::uint32_t steps_from_a) {
-        const std::uint32_t steps = a < b ? steps_from_a : f - steps_from_a;
-        return NumCorners + edge_number(a, b) * (f - 1) + steps - 1;
-    };
-    const std::uint32_t first_inner = NumCorners + NumEdges * (f - 1);
-    const std::uint32_t inner_per_face = f < 3 ? 0 : (f - 1) * (f - 2) / 2;
-    // Returns the vertex i steps towards the face's second corner and j steps towards its third.
-    const auto vertex = [&](std::uint32_t face, std::uint32_t i, std::uint32_t j) {
-        const auto [a, b, c] = Faces[face];
-        if (i == 0 && j == 0) {
-            return a;
-        }
-        if (i == f) {
-            return b;
-        }
-        if (j == f) {
-            return c;
-        }
-        if (j == 0) {
-            return on_edge(a, b, i);
-        }
-        if (i == 0) {
-            return on_edge(a, c, j);
-        }
-        if (i + j == f) {
-            return on_edge(b, c, j);
-        }
-        const std::uint32_t rows_before = (i - 1) * (f - 1) - (i - 1) * i / 2;
-        return first_inner + face * inner_per_face + rows_before + j - 1;
-    };
+    sphere.positions = points_of(edge_number, f);
     sphere.triangles.reserve(20 * std::size_t{f} * f);
-    for (std::uint32_t face = 0; face < Faces.size(); ++face) {
-        for (std::uint32_t i = 0; i < f; ++i) {
+    for (std::uint32_t face = 0; face < Faces.size(); ++face)
+        for (std::uint32_t i = 0; i < f; ++i)
             for (std::uint32_t j = 0; i + j < f; ++j) {
                 sphere.triangles.push_back(
                     {vertex(face, i, j), vertex(face, i + 1, j), vertex(face, i, j + 1)});
-                if (i + j + 1 < f) {
+                if (i + j + 1 < f)
                     sphere.triangles.push_back({vertex(face, i + 1, j), vertex(face, i + 1, j + 1),
                                                 vertex(face, i, j + 1)});
-                }
             }
-        }
-    }
     return sphere;
 }
 

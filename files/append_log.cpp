@@ -7,8 +7,8 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <xxhash.h>
 
+#include "files/hash.h"
 #include "files/output_file.h"
 
 namespace relumine::files {
@@ -42,7 +42,7 @@ std::vector<std::vector<std::byte>> AppendLog::read(std::optional<std::uint64_t>
         if (head.mark != Mark || head.size > end - begin)
             break;
         const std::span<const std::byte> record = std::span(bytes).subspan(begin, head.size);
-        if (XXH64(record.data(), record.size(), 0) != head.checksum)
+        if (hash_of(record) != head.checksum)
             break;
         records.emplace_back(record.begin(), record.end());
         size_ = begin + head.size;
@@ -60,7 +60,7 @@ void AppendLog::open() {
 
 void AppendLog::append(std::span<const std::byte> record) {
     open();
-    const Head head{.size = record.size(), .checksum = XXH64(record.data(), record.size(), 0)};
+    const Head head{.size = record.size(), .checksum = hash_of(record)};
     const std::uint64_t needed = sizeof head + record.size();
     // Bytes behind the last record come from a run that was killed.
     if (::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0)

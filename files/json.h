@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -23,60 +24,36 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// A text that is no JSON.
+class JsonSyntaxError : public JsonError {
+public:
+    JsonSyntaxError(const std::string& message, int at_line, std::string_view wanted,
+                    std::string_view found)
+        : JsonError(message), line(at_line), expected(wanted), got(found) {}
+    /// Counted from 1.
+    int line;
+    std::string expected, got;
+};
+
 /// An object of named values, a list, a number, text, a truth value or null.
 class Json {
 public:
     using Array = std::vector<Json>;
     /// Members in the order in which they were set.
     using Object = std::vector<std::pair<std::string, Json>>;
+    enum class Type { Null, Boolean, Number, String, Array, Object };
 
     /// Null.
     Json() = default;
-    Json(std::nullptr_t) {}
-    template<std::same_as<bool> T>
-    Json(T value) : value_(value) {}
-    template<std::signed_integral T>
-    Json(T value) : value_(std::int64_t{value}) {}
-    template<std::unsigned_integral T>
-    requires(!std::same_as<T, bool>) Json(T value) : value_(std::uint64_t{value}) {}
-    template<std::floating_point T>
-    Json(T value) : value_(double{value}) {}
-    Json(const char* text) : value_(std::string(text)) {}
-    Json(std::string_view text) : value_(std::string(text)) {}
-    Json(std::string text) : value_(std::move(text)) {}
-    Json(const glm::vec3& vector) : Json(Array{vector.x, vector.y, vector.z}) {}
-    Json(const glm::dvec3& vector) : Json(Array{vector.x, vector.y, vector.z}) {}
-    Json(Array values) : value_(std::move(values)) {}
-    Json(Object members) : value_(std::move(members)) {}
+    /// A truth value, a number, text, a vector of three numbers, a list of any of these, Array,
+    /// Object or null.
     template<typename T>
-    requires std::constructible_from<Json, T> Json(const std::vector<T>& values)
-        : value_(Array(values.begin(), values.end())) {}
+    requires(!std::same_as<T, Json>) Json(T value) : value_(content_of(std::move(value))) {}
     /// An object if each value is a pair that begins with a text: {{"vertices", 6}, {"name", "a"}}.
-    /// A list otherwise.
+    /// A list otherwise. Json::Array{...} is a list whatever the values look like.
     Json(std::initializer_list<Json> values);
 
-    /// These functions return a list or an object whatever the values look like.
-    [[nodiscard]] static Json array(std::initializer_list<Json> values = {}) {
-        return Array(values);
-    }
-    [[nodiscard]] static Json object() { return Object(); }
-
-    /// Reads a text. Objects keep their order.
-    /// Throws:  JsonError "a syntax error at byte N", "a number out of range", or "more than 100
-    ///          levels of nesting".
-    [[nodiscard]] static Json parse(std::string_view text);
-
-    [[nodiscard]] bool is_null() const { return is<std::nullptr_t>(); }
-    [[nodiscard]] bool is_boolean() const { return is<bool>(); }
-    [[nodiscard]] bool is_number() const {
-        return is<double>() || is<std::int64_t>() || is<std::uint64_t>();
-    }
-    [[nodiscard]] bool is_string() const { return is<std::string>(); }
-    [[nodiscard]] bool is_array() const { return is<Array>(); }
-    [[nodiscard]] bool is_object() const { return is<Object>(); }
-    [[nodiscard]] bool is_structured() const { return is_array() || is_object(); }
-    /// Returns "null", "boolean", "number", "string", "array" or "object".
-    [[nodiscard]] const char* type_name() const;
+    [[nodiscard]] Type type() const;
 
     /// These functions return the content.
     /// Throws:  JsonError for a value of another type. whole() also for a number that is negative
@@ -90,20 +67,15 @@ public:
 
     /// Returns the number of values or members, 0 for all other types.
     [[nodiscard]] std::size_t size() const;
-    [[nodiscard]] bool empty() const { return size() == 0; }
 
     /// Returns a member, null if there is none or the value is no object. Of members with the same
     /// name it is the last.
     [[nodiscard]] const Json* find(std::string_view name) const;
-    [[nodiscard]] bool contains(std::string_view name) const { return find(name) != nullptr; }
-    /// Throws:  JsonError if there is no such member or value.
+    /// Throws:  JsonError if there is no such member.
     [[nodiscard]] const Json& at(std::string_view name) const;
-    [[nodiscard]] const Json& at(std::size_t index) const;
 
     /// Adds a member to an object or replaces it. Null becomes an object.
     void set(std::string_view name, Json value);
-    /// Adds or replaces all members of another object. Null has none.
-    void update(const Json& other);
     /// Appends a value to a list. Null becomes a list.
     void push_back(Json value);
 
@@ -117,18 +89,51 @@ public:
                                    Utf8 utf8 = Utf8::Replace) const;
 
 private:
+    friend class JsonBuilder;
+    friend class JsonReader;
     friend class JsonWriter;
 
+    using Content = std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double,
+                                 std::string, Array, Object>;
+
     template<typename T>
-    [[nodiscard]] bool is() const {
-        return std::holds_alternative<T>(value_);
+    [[nodiscard]] static Content content_of(T value) {
+        if constexpr (std::same_as<T, bool> || std::same_as<T, std::nullptr_t> ||
+                      std::same_as<T, Array> || std::same_as<T, Object>)
+            return value;
+        else if constexpr (std::signed_integral<T>)
+            return std::int64_t{value};
+        else if constexpr (std::unsigned_integral<T>)
+            return std::uint64_t{value};
+        else if constexpr (std::floating_point<T>)
+            return double{value};
+        else if constexpr (std::constructible_from<std::string, T>)
+            return std::string(std::move(value));
+        else if constexpr (std::same_as<T, glm::vec3> || std::same_as<T, glm::dvec3>)
+            return Array{value.x, value.y, value.z};
+        else
+            return Array(value.begin(), value.end());
     }
     template<typename T>
     [[nodiscard]] const T& content(const char* expected) const;
 
-    std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Array,
-                 Object>
-        value_;
+    Content value_;
+    /// The line of a text on which the value begins; 0 for values of no text.
+    int line_ = 0;
 };
+
+/// Returns "null", "boolean", "number", "string", "array" or "object".
+[[nodiscard]] std::string_view name(Json::Type type);
+
+/// Whether an object may have a name twice.
+enum class Repeats { Allow, Refuse };
+
+/// Reads a text. Objects keep their order.
+/// Throws:  JsonSyntaxError "a syntax error at byte N", "a number out of range", "more than 100
+///          levels of nesting" or, where that is refused, a name that comes twice.
+[[nodiscard]] Json parse_json(std::string_view text, Repeats repeats = Repeats::Allow);
+
+/// Adds or replaces all members of another object. Null has none.
+void update(Json& object, const Json& members);
 
 } // namespace relumine::files

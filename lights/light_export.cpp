@@ -219,9 +219,9 @@ std::string gltf_text(const LightList& list, const ExportOptions& options) {
         "lm/W; 1 keeps the environment's own unit, as viewers without photometric units expect "
         "it, 683 makes lux of W/m^2.",
         title(list), Unit, Axes, options.lumens_per_watt);
-    Json lights = Json::array();
-    Json nodes = Json::array();
-    Json indices = Json::array();
+    Json lights = Json::Array{};
+    Json nodes = Json::Array{};
+    Json indices = Json::Array{};
     for (const DistantLight& light : list.lights) {
         const auto [colour, intensity] = split(light.irradiance);
         const auto [right, up, back] = frame_of(light.direction);

@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "files/json.h"
-#include "files/json_value.h"
+#include "files/json_reader.h"
 #include "files/output_file.h"
 
 namespace relumine::lights {
@@ -55,62 +55,48 @@ public:
         : path_(path), json_(path.string()) {}
 
     LightList read() const {
-        const files::JsonValue root = json_.parse(files::read(path_));
-        const auto& members = json_.object(root, "a light list");
+        const files::Json root = json_.parse(files::read(path_));
         json_.known(
-            members,
+            root,
             std::array<std::string_view, 5>{"version", "environment", "method", "seed", "lights"},
             "a light list");
-        const files::JsonValue& version = json_.required(root, members, "version");
-        if (const double got = json_.number(version, "\"version\""); got != Version)
-            json_.refuse(version.line, fmt::format("version {}", Version), fmt::format("{}", got));
+        json_.require_version(root, Version);
         LightList result;
-        if (const auto* value = files::JsonReader::find(members, "environment"))
+        if (const auto* value = root.find("environment"))
             result.environment = json_.string(*value, "\"environment\"");
-        if (const auto* value = files::JsonReader::find(members, "method"))
+        if (const auto* value = root.find("method"))
             result.method = json_.string(*value, "\"method\"");
-        if (const auto* value = files::JsonReader::find(members, "seed"))
+        if (const auto* value = root.find("seed"))
             result.seed = seed(*value);
-        const files::JsonValue& lights = json_.required(root, members, "lights");
-        for (const files::JsonValue& value : json_.array(lights, "\"lights\""))
+        const files::Json& lights = json_.required(root, "lights");
+        for (const files::Json& value : json_.array(lights, "\"lights\""))
             result.lights.push_back(light(value));
         if (result.lights.empty())
-            json_.refuse(lights.line, "one light at least", "none");
+            json_.refuse(lights, "one light at least", "none");
         return result;
     }
 
 private:
-    glm::dvec3 vector3(const files::JsonValue& value, std::string_view what) const {
-        const auto& array = json_.array(value, what);
-        if (array.size() != 3)
-            json_.refuse(value.line, fmt::format("{} of 3 numbers", what),
-                         fmt::format("{}", array.size()));
-        return {json_.number(array[0], what), json_.number(array[1], what),
-                json_.number(array[2], what)};
-    }
-
     /// Numbers beyond 2^53 are not exact in JSON.
-    std::uint64_t seed(const files::JsonValue& value) const {
+    std::uint64_t seed(const files::Json& value) const {
         const double number = json_.number(value, "\"seed\"");
         if (!(number >= 0.0 && number <= 0x1p53 && number == std::floor(number)))
-            json_.refuse(value.line, "\"seed\" to be a whole number from 0 to 2^53",
+            json_.refuse(value, "\"seed\" to be a whole number from 0 to 2^53",
                          fmt::format("{}", number));
         return static_cast<std::uint64_t>(number);
     }
 
-    DistantLight light(const files::JsonValue& value) const {
-        const auto& members = json_.object(value, "a light");
-        json_.known(members,
+    DistantLight light(const files::Json& value) const {
+        json_.known(value,
                     std::array<std::string_view, 3>{"direction", "irradiance", "solid_angle"},
                     "a light");
         DistantLight result;
-        result.direction = vector3(json_.required(value, members, "direction"), "\"direction\"");
-        result.irradiance = vector3(json_.required(value, members, "irradiance"), "\"irradiance\"");
-        if (const auto* solid_angle = files::JsonReader::find(members, "solid_angle"))
+        result.direction = json_.vector(json_.required(value, "direction"), "\"direction\"");
+        result.irradiance = json_.vector(json_.required(value, "irradiance"), "\"irradiance\"");
+        if (const auto* solid_angle = value.find("solid_angle"))
             result.solid_angle = json_.number(*solid_angle, "\"solid_angle\"");
         if (const auto wrong = fault(result))
-            json_.refuse(files::JsonReader::find(members, wrong->field)->line, wrong->expected,
-                         wrong->got);
+            json_.refuse(value.at(wrong->field), wrong->expected, wrong->got);
         // Directions written by hand or with few digits are normalised. Our own files stay as they
         // are, bit by bit.
         if (std::abs(glm::length(result.direction) - 1.0) > 1e-12)

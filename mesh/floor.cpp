@@ -36,34 +36,10 @@ double height_below(const Bounds& box, const glm::dvec3& center, double side) {
     return double{box.min.y} - std::max(Hair * diagonal, 8.0 * spacing);
 }
 
-} // namespace
-
-void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
-    constexpr std::uint64_t MaxVertices = std::numeric_limits<std::uint32_t>::max();
-    const std::size_t first = mesh.num_vertices();
-    const std::uint64_t num_vertices = std::uint64_t{n} * n;
-    if (n < 2)
-        throw std::invalid_argument(
-            fmt::format("floor: expected at least 2 x 2 vertices, got {} x {}", n, n));
-    if (num_vertices + first > MaxVertices)
-        throw std::invalid_argument(
-            fmt::format("floor: expected at most {} vertices in all, got {}", MaxVertices,
-                        num_vertices + first));
-
-    const Bounds box = bounds(mesh);
-    const double horizontal =
-        std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
-    // Twice as high as wide, and a low sun's shadow would leave the floor.
-    const double size = std::max(horizontal, 0.5 * (double{box.max.y} - box.min.y));
-    const double side = scale * (horizontal > 0.0 ? size : double{box.diagonal()});
-    const glm::dvec3 center = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
-    const double farthest = std::max(std::abs(center.x), std::abs(center.z)) + 0.5 * side;
-    if (!(side > 0.0) || !(farthest <= double{std::numeric_limits<float>::max()}))
-        throw std::invalid_argument(fmt::format(
-            "floor: expected a positive, finite side, got {} times the mesh's size", scale));
-
-    const auto height = static_cast<float>(height_below(box, center, side));
-    mesh.positions.reserve(first + num_vertices);
+/// Appends n x n vertices around a centre, all attributes included.
+void append_floor_vertices(TriangleMesh& mesh, std::uint32_t n, const glm::dvec3& center,
+                           double side, float height) {
+    mesh.positions.reserve(mesh.num_vertices() + std::size_t{n} * n);
     for (std::uint32_t row = 0; row < n; ++row)
         for (std::uint32_t column = 0; column < n; ++column)
             mesh.positions.emplace_back(
@@ -72,7 +48,10 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     extend(mesh.normals, mesh.num_vertices(), glm::vec3(0.0f, 1.0f, 0.0f));
     extend(mesh.colors, mesh.num_vertices(), glm::vec3(1.0f));
     extend(mesh.uvs, mesh.num_vertices(), glm::vec2(0.0f));
+}
 
+/// Appends the triangles between n x n vertices, with a material and a group of their own.
+void append_floor_triangles(TriangleMesh& mesh, std::uint32_t n, std::size_t first) {
     const std::size_t first_triangle = mesh.num_triangles();
     mesh.triangles.reserve(first_triangle + 2 * std::size_t{n - 1} * (n - 1));
     for (std::uint32_t row = 0; row + 1 < n; ++row)
@@ -99,6 +78,37 @@ void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
     if (static_cast<std::size_t>(group) == mesh.groups.size())
         mesh.groups.emplace_back("floor");
     mesh.triangle_groups.resize(mesh.num_triangles(), static_cast<std::uint32_t>(group));
+}
+
+} // namespace
+
+void append_floor(TriangleMesh& mesh, std::uint32_t n, float scale) {
+    constexpr std::uint64_t MaxVertices = std::numeric_limits<std::uint32_t>::max();
+    const std::size_t first = mesh.num_vertices();
+    const std::uint64_t num_vertices = std::uint64_t{n} * n;
+    if (n < 2)
+        throw std::invalid_argument(
+            fmt::format("floor: expected at least 2 x 2 vertices, got {} x {}", n, n));
+    if (num_vertices + first > MaxVertices)
+        throw std::invalid_argument(
+            fmt::format("floor: expected at most {} vertices in all, got {}", MaxVertices,
+                        num_vertices + first));
+
+    const Bounds box = bounds(mesh);
+    const double horizontal =
+        std::max(double{box.max.x} - box.min.x, double{box.max.z} - box.min.z);
+    // Twice as high as wide, and a low sun's shadow would leave the floor.
+    const double size = std::max(horizontal, 0.5 * (double{box.max.y} - box.min.y));
+    const double side = scale * (horizontal > 0.0 ? size : double{box.diagonal()});
+    const glm::dvec3 center = 0.5 * (glm::dvec3(box.min) + glm::dvec3(box.max));
+    const double farthest = std::max(std::abs(center.x), std::abs(center.z)) + 0.5 * side;
+    if (!(side > 0.0) || !(farthest <= double{std::numeric_limits<float>::max()}))
+        throw std::invalid_argument(fmt::format(
+            "floor: expected a positive, finite side, got {} times the mesh's size", scale));
+
+    append_floor_vertices(mesh, n, center, side,
+                          static_cast<float>(height_below(box, center, side)));
+    append_floor_triangles(mesh, n, first);
 }
 
 FloorPlace floor_place(std::span<const glm::vec3> positions, std::uint32_t n) {

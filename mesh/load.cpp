@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <new>
 #include <stdexcept>
 #include <system_error>
 
 #include <fmt/format.h>
 
+#include "files/extension.h"
+#include "files/hash.h"
 #include "files/output_file.h"
 #include "mesh/formats/polygon_soup.h"
 
@@ -29,25 +30,17 @@ PolygonSoup read_soup(const std::filesystem::path& path, const std::string& exte
     return read_stl(bytes);
 }
 
-/// Returns the extension in small letters, with the dot.
-std::string extension_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    });
-    return extension;
-}
-
 } // namespace
 
 bool has_mesh_extension(const std::filesystem::path& path) {
     constexpr std::array<std::string_view, 6> Extensions = {".glb", ".gltf", ".obj",
                                                             ".off", ".ply",  ".stl"};
-    return std::find(Extensions.begin(), Extensions.end(), extension_of(path)) != Extensions.end();
+    return std::find(Extensions.begin(), Extensions.end(), files::extension_of(path)) !=
+           Extensions.end();
 }
 
-TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
-    const std::string extension = extension_of(path);
+TriangleMesh load(const std::filesystem::path& path, NormalSource normals, std::uint64_t* hash) {
+    const std::string extension = files::extension_of(path);
     // A name that is not there says so first.
     static_cast<void>(files::size(path));
     if (!has_mesh_extension(path))
@@ -55,6 +48,8 @@ TriangleMesh load(const std::filesystem::path& path, NormalSource normals) {
             "{}: expected a mesh file (.glb, .gltf, .obj, .off, .ply or .stl), got '{}'",
             path.string(), extension));
     const std::vector<std::byte> bytes = files::read(path);
+    if (hash != nullptr)
+        *hash = files::hash_of(bytes);
     try {
         return to_mesh(read_soup(path, extension, bytes), normals);
     } catch (const std::bad_alloc&) {

@@ -1,6 +1,7 @@
 // Reads mesh files: OBJ with MTL, glTF, PLY, OFF, STL.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 
 #include "mesh/normals.h"
@@ -24,11 +25,13 @@ namespace relumine::mesh {
 /// library or image does not stop the load; TriangleMesh::missing has its name. A broken one stops
 /// it.
 ///
+/// `hash` receives the xxHash64 of the file's bytes.
 /// Throws:  std::runtime_error "path: expected X, got Y" if the file cannot be read, has no face of
 ///          three corners, has an index out of range or a position that is not finite, or declares
 ///          more or less than it holds.
 [[nodiscard]] TriangleMesh load(const std::filesystem::path& path,
-                                NormalSource normals = NormalSource::File);
+                                NormalSource normals = NormalSource::File,
+                                std::uint64_t* hash = nullptr);
 
 /// Returns true if load() knows the path's extension, in capitals or not.
 [[nodiscard]] bool has_mesh_extension(const std::filesystem::path& path);

@@ -1,14 +1,13 @@
 #include "mesh/save.h"
 
-#include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 #include <cstring>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "files/extension.h"
 #include "files/output_file.h"
 #include "mesh/formats/glb_writer.h"
 #include "mesh/formats/obj_writer.h"
@@ -56,14 +55,6 @@ std::string ply(const TriangleMesh& mesh, const std::string& comment,
     return content;
 }
 
-std::string small_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) {
-        return static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    });
-    return extension;
-}
-
 void write(const std::filesystem::path& path, const std::string& content) {
     files::OutputFile file(path);
     file.write(std::as_bytes(std::span(content)));
@@ -89,7 +80,7 @@ void check(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
 
 void save(const std::filesystem::path& path, const TriangleMesh& mesh,
           std::span<const glm::vec3> colors) {
-    const std::string extension = small_extension(path);
+    const std::string extension = files::extension_of(path);
     if (extension != ".ply" && extension != ".glb")
         throw std::runtime_error(
             fmt::format("{}: expected a mesh file to write (.ply or .glb), got '{}'", path.string(),
@@ -107,7 +98,7 @@ void save(const std::filesystem::path& path, const TriangleMesh& mesh,
 }
 
 std::vector<std::string> save(const std::filesystem::path& path, const TriangleMesh& mesh) {
-    const std::string extension = small_extension(path);
+    const std::string extension = files::extension_of(path);
     std::vector<std::string> left_out;
     if (!mesh.textures.empty())
         left_out.emplace_back("images of textures");

@@ -1,16 +1,11 @@
 #include "mesh/up_axis.h"
 
-#include <algorithm>
-#include <cctype>
-#include <string>
+#include "files/extension.h"
 
 namespace relumine::mesh {
 
 UpAxis customary_up(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension == ".stl" ? UpAxis::Z : UpAxis::Y;
+    return files::extension_of(path) == ".stl" ? UpAxis::Z : UpAxis::Y;
 }
 
 void turn_up(TriangleMesh& mesh, UpAxis axis) {

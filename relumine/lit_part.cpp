@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "files/hash.h"
 #include "prt/parts/scene_part.h"
 #include "prt/tolerance.h"
 #include "prt/visibility/ray_scene.h"
@@ -28,8 +29,8 @@ prt::LitPart lit(const LitPartOptions& options, cubemap::CubeMap environment,
     prt::LitPart lit{.part = options.part,
                      .num_receivers = static_cast<std::uint32_t>(num_receivers),
                      .light =
-                         fmt::format("{:016x} {:016x} {}", prt::file_hash(options.scene),
-                                     prt::bytes_hash(std::as_bytes(std::span(environment.texels))),
+                         fmt::format("{:016x} {:016x} {}", files::file_hash(options.scene),
+                                     files::hash_of(std::as_bytes(std::span(environment.texels))),
                                      options.clusters_only ? "clusters" : "rays")};
     const prt::Scene& scene = part.scene;
     if (!part.receivers.empty()) {

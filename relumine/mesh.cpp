@@ -11,7 +11,6 @@
 #include "mesh/floor.h"
 #include "mesh/half_edge/simplify.h"
 #include "mesh/normals.h"
-#include "prt/scene/scene_file.h"
 #include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 
@@ -125,9 +124,9 @@ std::string prefix_of(const Mesh& mesh) {
 } // namespace
 
 Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options) {
-    Mesh mesh(mesh::load(path, options.normals));
+    Mesh mesh;
+    mesh.geometry = mesh::load(path, options.normals, &mesh.source_hash);
     mesh.source = path.string();
-    mesh.source_hash = prt::file_hash(path);
     if (options.crease)
         mesh.geometry = mesh::with_creases(mesh.geometry, *options.crease);
     mesh::turn_up(mesh.geometry, options.up.value_or(mesh::customary_up(path)));

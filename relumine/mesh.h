@@ -51,7 +51,6 @@ struct MeshOptions {
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y" for a file that cannot be read;
 ///          std::invalid_argument for a floor that does not fit (mesh::append_floor()).
-/// Cost:    reads the file twice, once for its hash.
 [[nodiscard]] Mesh load_mesh(const std::filesystem::path& path, const MeshOptions& options = {});
 
 using prt::RefineOptions;

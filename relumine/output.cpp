@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/resample/resample.h"
+#include "files/extension.h"
 #include "mesh/floor.h"
 #include "mesh/save.h"
 #include "prt/receivers/mesh_point.h"
@@ -23,13 +24,6 @@
 namespace relumine {
 
 namespace {
-
-std::string extension_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
 
 bool is_picture(const std::string& extension) {
     return extension == ".png" || extension == ".exr";
@@ -331,7 +325,7 @@ std::vector<glm::vec3> Painter::values(std::span<const glm::vec3> radiance) cons
 
 void Painter::save(const std::filesystem::path& path, const Lighting& lighting) {
     const Scene& scene = impl_->scene;
-    const std::string extension = extension_of(path);
+    const std::string extension = files::extension_of(path);
     if (!is_output_of(path, scene))
         throw std::invalid_argument(fmt::format(
             "{}: expected .png, .exr{} or .npy for a scene whose receivers are {}, got "
@@ -376,17 +370,18 @@ void Painter::set_exposure_ev(double ev) {
 }
 
 bool Painter::needs_light_for(const std::filesystem::path& path) const {
-    return !is_linear_data(extension_of(path)) && !impl_->options.exposure_ev && !impl_->chosen_ev;
+    return !is_linear_data(files::extension_of(path)) && !impl_->options.exposure_ev &&
+           !impl_->chosen_ev;
 }
 
 double Painter::exposure_ev(const std::filesystem::path& path) const {
     if (impl_->options.exposure_ev)
         return *impl_->options.exposure_ev;
-    return is_linear_data(extension_of(path)) ? 0.0 : impl_->chosen_ev.value_or(0.0);
+    return is_linear_data(files::extension_of(path)) ? 0.0 : impl_->chosen_ev.value_or(0.0);
 }
 
 bool is_output_of(const std::filesystem::path& path, const Scene& scene) {
-    const std::string extension = extension_of(path);
+    const std::string extension = files::extension_of(path);
     if (is_picture(extension) || extension == ".npy")
         return true;
     return std::holds_alternative<prt::VertexLayout>(scene.layout) &&
@@ -397,7 +392,7 @@ void save_map(const std::filesystem::path& path, const cubemap::CubeMap& map, do
     const cubemap::EnvironmentImage image =
         cubemap::to_image(map, cubemap::Layout::LatLong, 4 * map.resolution, 2 * map.resolution);
     double white_ev = 0.0;
-    if (extension_of(path) == ".png") {
+    if (files::extension_of(path) == ".png") {
         // One pixel in a thousand may be brighter than white: a sun must not leave the rest black.
         std::vector<float> brightness;
         for (const glm::vec3& pixel : image.pixels)

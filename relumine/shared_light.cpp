@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "files/hash.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/scene/scene_file.h"
 
@@ -32,8 +33,8 @@ void require_same(prt::Team& team, const std::filesystem::path& path,
                   const cubemap::CubeMap* environment) {
     require_same_hash(team, path,
                       environment == nullptr
-                          ? prt::file_hash(path)
-                          : prt::bytes_hash(std::as_bytes(std::span(environment->texels))));
+                          ? files::file_hash(path)
+                          : files::hash_of(std::as_bytes(std::span(environment->texels))));
 }
 
 struct SharedLight::Impl {
@@ -199,7 +200,7 @@ UpdateReport SharedLight::set_frame(BinnedEnvironment frame, double bound) {
 }
 
 RelightTimes SharedLight::set_lights(std::span<const lights::DistantLight> lights) {
-    require_same_hash(impl_->team, impl_->path, prt::bytes_hash(std::as_bytes(lights)));
+    require_same_hash(impl_->team, impl_->path, files::hash_of(std::as_bytes(lights)));
     impl_->bounced.clear();
     return impl_->relighter ? impl_->relighter->set_lights(lights) : RelightTimes();
 }

@@ -25,47 +25,39 @@ GLuint compile(GLenum kind, const std::string& source) {
     return shader;
 }
 
+/// What makes and frees the objects of each kind: the loader's pointers, which it sets when they
+/// are first called.
+struct ObjectFunctions {
+    PFNGLGENBUFFERSPROC* make;
+    PFNGLDELETEBUFFERSPROC* free;
+};
+
+ObjectFunctions functions_of(GlKind kind) {
+    switch (kind) {
+    case GlKind::Framebuffer:
+        return {&glGenFramebuffers, &glDeleteFramebuffers};
+    case GlKind::Renderbuffer:
+        return {&glGenRenderbuffers, &glDeleteRenderbuffers};
+    case GlKind::Buffer:
+        return {&glGenBuffers, &glDeleteBuffers};
+    case GlKind::VertexArray:
+        return {&glGenVertexArrays, &glDeleteVertexArrays};
+    case GlKind::Texture:
+        break;
+    }
+    return {&glGenTextures, &glDeleteTextures};
+}
+
 } // namespace
 
-GLuint FramebufferTraits::make() {
+GLuint make_object(GlKind kind) {
     GLuint id = 0;
-    glGenFramebuffers(1, &id);
+    (*functions_of(kind).make)(1, &id);
     return id;
 }
-void FramebufferTraits::free(GLuint id) {
-    glDeleteFramebuffers(1, &id);
-}
-GLuint RenderbufferTraits::make() {
-    GLuint id = 0;
-    glGenRenderbuffers(1, &id);
-    return id;
-}
-void RenderbufferTraits::free(GLuint id) {
-    glDeleteRenderbuffers(1, &id);
-}
-GLuint BufferTraits::make() {
-    GLuint id = 0;
-    glGenBuffers(1, &id);
-    return id;
-}
-void BufferTraits::free(GLuint id) {
-    glDeleteBuffers(1, &id);
-}
-GLuint VertexArrayTraits::make() {
-    GLuint id = 0;
-    glGenVertexArrays(1, &id);
-    return id;
-}
-void VertexArrayTraits::free(GLuint id) {
-    glDeleteVertexArrays(1, &id);
-}
-GLuint TextureTraits::make() {
-    GLuint id = 0;
-    glGenTextures(1, &id);
-    return id;
-}
-void TextureTraits::free(GLuint id) {
-    glDeleteTextures(1, &id);
+
+void free_object(GlKind kind, GLuint id) {
+    (*functions_of(kind).free)(1, &id);
 }
 
 GlProgram::GlProgram(const std::string& vertex_source, const std::string& fragment_source) {

@@ -11,14 +11,19 @@
 
 namespace relumine::viewer {
 
-/// A handle whose traits make and free it.
-template<typename Traits>
+enum class GlKind { Framebuffer, Renderbuffer, Buffer, VertexArray, Texture };
+
+[[nodiscard]] GLuint make_object(GlKind kind);
+void free_object(GlKind kind, GLuint id);
+
+/// A handle to an object of OpenGL.
+template<GlKind Kind>
 class GlObject {
 public:
-    GlObject() : id_(Traits::make()) {}
+    GlObject() : id_(make_object(Kind)) {}
     ~GlObject() {
         if (id_ != 0)
-            Traits::free(id_);
+            free_object(Kind, id_);
     }
     GlObject(GlObject&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
     GlObject& operator=(GlObject&& other) noexcept {
@@ -31,32 +36,11 @@ private:
     GLuint id_ = 0;
 };
 
-struct FramebufferTraits {
-    static GLuint make();
-    static void free(GLuint id);
-};
-struct RenderbufferTraits {
-    static GLuint make();
-    static void free(GLuint id);
-};
-struct BufferTraits {
-    static GLuint make();
-    static void free(GLuint id);
-};
-struct VertexArrayTraits {
-    static GLuint make();
-    static void free(GLuint id);
-};
-struct TextureTraits {
-    static GLuint make();
-    static void free(GLuint id);
-};
-
-using GlFramebuffer = GlObject<FramebufferTraits>;
-using GlRenderbuffer = GlObject<RenderbufferTraits>;
-using GlBuffer = GlObject<BufferTraits>;
-using GlVertexArray = GlObject<VertexArrayTraits>;
-using GlTexture = GlObject<TextureTraits>;
+using GlFramebuffer = GlObject<GlKind::Framebuffer>;
+using GlRenderbuffer = GlObject<GlKind::Renderbuffer>;
+using GlBuffer = GlObject<GlKind::Buffer>;
+using GlVertexArray = GlObject<GlKind::VertexArray>;
+using GlTexture = GlObject<GlKind::Texture>;
 
 /// A vertex and a fragment shader. `#version 330 core` is put before each source.
 class GlProgram {

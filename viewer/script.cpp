@@ -4,13 +4,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <cstddef>
-#include <iterator>
-#include <optional>
+#include <limits>
+#include <numbers>
 #include <stdexcept>
-#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
+#include <glm/geometric.hpp>
 
 #include "files/output_file.h"
 
@@ -18,43 +18,227 @@ namespace relumine::viewer {
 
 namespace {
 
-/// A command's word and its arguments: t is a word or "words in quotes", v is X,Y,Z, n is a number;
-/// ? stands before optional arguments.
-struct Form {
-    std::string_view name;
-    Action action;
-    std::string_view arguments;
-    std::string_view usage;
+constexpr std::size_t DragEvents = 20;
+/// With the pointer's coming and its letting go.
+constexpr std::size_t DragFrames = DragEvents + 2;
+
+[[noreturn]] void fail(const ScriptCommand& command, const std::string& reason) {
+    throw std::runtime_error(fmt::format("script line {}: {}", command.line, reason));
+}
+
+/// One frame of a command.
+struct Step {
+    const ScriptCommand& command;
+    ViewState& state;
+    ScriptPlayer::Frame& wishes;
+    /// Of `count` frames.
+    std::size_t index, count;
+    /// Kept from frame to frame.
+    glm::dvec3& from;
+
+    [[nodiscard]] bool is_first() const { return index == 0; }
+    [[nodiscard]] bool is_last() const { return index + 1 == count; }
+    /// The part of the command that is done after this frame, up to 1.
+    [[nodiscard]] double part_done() const {
+        return static_cast<double>(index + 1) / static_cast<double>(count);
+    }
+    [[nodiscard]] double number(std::size_t i) const { return command.numbers[i]; }
+    [[nodiscard]] glm::dvec3 direction() const {
+        return glm::normalize(glm::dvec3(number(0), number(1), number(2)));
+    }
+    /// The layer that the command names.
+    [[nodiscard]] std::size_t layer() const {
+        const std::optional<std::size_t> found = state.desk.find(command.text);
+        if (!found)
+            fail(command, fmt::format("expected the name of a layer, got '{}'", command.text));
+        return *found;
+    }
 };
 
-constexpr std::array Forms = {
-    Form{"wait", Action::Wait, "n", "wait FRAMES"},
-    Form{"add_disc", Action::AddDisc, "tvn", "add_disc NAME X,Y,Z RADIUS"},
-    Form{"add_rectangle", Action::AddRectangle, "tvnn", "add_rectangle NAME X,Y,Z WIDTH HEIGHT"},
-    Form{"add_gain", Action::AddGain, "tvnn", "add_gain NAME X,Y,Z RADIUS FACTOR"},
-    Form{"drag_layer", Action::DragLayer, "tv?n", "drag_layer NAME X,Y,Z [EVENTS]"},
-    Form{"resize_layer", Action::ResizeLayer, "tn?n", "resize_layer NAME DEGREES [EVENTS]"},
-    Form{"set_gain", Action::SetGain, "tn", "set_gain NAME EV"},
-    Form{"drag_env", Action::DragEnvironment, "nnnn", "drag_env X0 Y0 X1 Y1"},
-    Form{"paint_env", Action::PaintEnvironment, "nnnn", "paint_env X0 Y0 X1 Y1"},
-    Form{"lasso_env", Action::LassoEnvironment, "nnnn", "lasso_env X0 Y0 X1 Y1"},
-    Form{"drag_mesh", Action::DragMesh, "nnnn", "drag_mesh X0 Y0 X1 Y1"},
-    Form{"click", Action::Click, "nn", "click X Y"},
-    Form{"click_mesh", Action::Click, "nn", "click_mesh X Y"},
-    Form{"rotate", Action::Rotate, "n", "rotate DEGREES"},
-    Form{"undo", Action::Undo, "", "undo"},
-    Form{"redo", Action::Redo, "", "redo"},
-    Form{"exposure", Action::SceneExposure, "n", "exposure EV"},
-    Form{"env_exposure", Action::EnvironmentExposure, "n", "env_exposure EV"},
-    Form{"wireframe", Action::Wireframe, "n", "wireframe 0|1"},
-    Form{"quadtree", Action::Quadtree, "n", "quadtree 0|1"},
-    Form{"open", Action::Open, "t", "open FILE"},
-    Form{"add_image", Action::AddImage, "t", "add_image FILE"},
-    Form{"drop", Action::Drop, "t", "drop FILE"},
-    Form{"save_layers", Action::SaveLayers, "t", "save_layers FILE"},
-    Form{"save_env", Action::SaveEnvironment, "t", "save_env FILE"},
-    Form{"screenshot", Action::Screenshot, "t", "screenshot FILE"},
-    Form{"quit", Action::Quit, "", "quit"},
+/// The pointer arrives, presses, moves, and lets go.
+Pointer dragged(const Step& s, const glm::dvec2& from, const glm::dvec2& to) {
+    const double t =
+        s.index < 2 ? 0.0 : static_cast<double>(s.index - 1) / static_cast<double>(s.count - 3);
+    return {.pixel = glm::vec2(from + (to - from) * std::min(t, 1.0)),
+            .down = !s.is_first() && !s.is_last()};
+}
+
+void drag(Step& s) {
+    s.wishes.pointer = dragged(s, {s.number(0), s.number(1)}, {s.number(2), s.number(3)});
+}
+
+void drag_to_move(Step& s) {
+    s.state.tool = Tool::Move;
+    drag(s);
+}
+
+void paint(Step& s) {
+    s.state.tool = s.is_last() ? Tool::Move : Tool::Paint;
+    drag(s);
+}
+
+/// Drags around the ellipse that fills a rectangle.
+void draw_lasso(Step& s) {
+    // The panel goes back to the move tool when the outline is closed.
+    if (s.is_first())
+        s.state.tool = Tool::Lasso;
+    Pointer pointer = dragged(s, {0.0, 0.0}, {1.0, 0.0});
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(pointer.pixel.x);
+    const glm::dvec2 from(s.number(0), s.number(1)), to(s.number(2), s.number(3));
+    pointer.pixel = glm::vec2(0.5 * (from + to) +
+                              0.5 * (to - from) * glm::dvec2(std::cos(angle), std::sin(angle)));
+    s.wishes.pointer = pointer;
+}
+
+void click(Step& s) {
+    s.wishes.pointer = Pointer{.pixel = glm::vec2(s.number(0), s.number(1)), .down = s.index == 1};
+}
+
+void add_disc(Step& s) {
+    s.state.desk.add(
+        {.name = s.command.text,
+         .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)}});
+}
+
+void add_rectangle(Step& s) {
+    s.state.desk.add({.name = s.command.text,
+                      .region = cubemap::Rectangle{.direction = s.direction(),
+                                                   .width_degrees = s.number(3),
+                                                   .height_degrees = s.number(4)}});
+}
+
+void add_gain(Step& s) {
+    s.state.desk.add(
+        {.name = s.command.text,
+         .region = cubemap::Disc{.direction = s.direction(), .radius_degrees = s.number(3)},
+         .effect = cubemap::Gain{.factor = static_cast<float>(s.number(4))}});
+}
+
+void drag_layer(Step& s) {
+    LightDesk& desk = s.state.desk;
+    const std::size_t index = s.layer();
+    if (s.is_first()) {
+        s.from = turned(middle(desk.layers()[index].region), desk.editor().rotation());
+        desk.begin_drag({.index = index, .grip = Grip::Body}, s.from);
+    }
+    const glm::dvec3 on_way = s.from + (s.direction() - s.from) * s.part_done();
+    desk.drag_to(glm::length(on_way) > 1e-6 ? on_way : s.direction());
+    if (s.is_last())
+        desk.end_drag();
+}
+
+/// The radius or the width; null for a lasso, which has neither.
+double* size_of(cubemap::Region& region) {
+    if (auto* disc = std::get_if<cubemap::Disc>(&region))
+        return &disc->radius_degrees;
+    if (auto* stroke = std::get_if<cubemap::Stroke>(&region))
+        return &stroke->radius_degrees;
+    auto* box = std::get_if<cubemap::Rectangle>(&region);
+    return box != nullptr ? &box->width_degrees : nullptr;
+}
+
+void resize_layer(Step& s) {
+    const std::size_t index = s.layer();
+    cubemap::LightLayer layer = s.state.desk.layers()[index];
+    if (double* size = size_of(layer.region)) {
+        if (s.is_first())
+            s.from.x = *size;
+        const double degrees = s.from.x + (s.number(0) - s.from.x) * s.part_done();
+        if (auto* box = std::get_if<cubemap::Rectangle>(&layer.region))
+            box->height_degrees *= degrees / box->width_degrees;
+        *size = degrees;
+    }
+    s.state.desk.change(index, layer);
+    if (s.is_last())
+        s.state.desk.finish();
+}
+
+void set_gain(Step& s) {
+    const std::size_t index = s.layer();
+    cubemap::LightLayer layer = s.state.desk.layers()[index];
+    layer.gain_ev = s.number(0);
+    s.state.desk.change(index, layer);
+    s.state.desk.finish();
+}
+
+void rotate(Step& s) {
+    s.state.desk.set_rotation(s.number(0));
+    s.state.desk.finish();
+}
+
+/// Opens or saves a file.
+template<bool (*Use)(ViewState&, const std::filesystem::path&)>
+void use_file(Step& s) {
+    if (!Use(s.state, s.command.text))
+        fail(s.command, s.state.message);
+}
+
+constexpr std::size_t None = std::numeric_limits<std::size_t>::max();
+
+/// A command: its word and its arguments, what it does in a frame, and how many frames it takes.
+struct Verb {
+    /// NAME and FILE are a word or "words in quotes", X,Y,Z is a direction, all others are numbers;
+    /// those in brackets may be left out.
+    std::string_view usage;
+    void (*play)(Step&);
+    std::size_t frames = 1;
+    /// The number that says how many frames, if it is there.
+    std::size_t frames_at = None;
+
+    [[nodiscard]] std::string_view name() const { return usage.substr(0, usage.find(' ')); }
+};
+
+constexpr std::array Verbs = {
+    Verb{"wait FRAMES", [](Step&) {}, 1, 0},
+    Verb{"add_disc NAME X,Y,Z RADIUS", add_disc},
+    Verb{"add_rectangle NAME X,Y,Z WIDTH HEIGHT", add_rectangle},
+    Verb{"add_gain NAME X,Y,Z RADIUS FACTOR", add_gain},
+    Verb{"drag_layer NAME X,Y,Z [EVENTS]", drag_layer, DragEvents, 3},
+    Verb{"resize_layer NAME DEGREES [EVENTS]", resize_layer, DragEvents, 1},
+    Verb{"set_gain NAME EV", set_gain},
+    Verb{"drag_env X0 Y0 X1 Y1", drag_to_move, DragFrames},
+    Verb{"paint_env X0 Y0 X1 Y1", paint, DragFrames},
+    Verb{"lasso_env X0 Y0 X1 Y1", draw_lasso, DragFrames},
+    Verb{"drag_mesh X0 Y0 X1 Y1", drag_to_move, DragFrames},
+    Verb{"click X Y", click, 3},
+    Verb{"click_mesh X Y", click, 3},
+    Verb{"rotate DEGREES", rotate},
+    Verb{"undo",
+         [](Step& s) {
+             s.state.desk.undo();
+         }},
+    Verb{"redo",
+         [](Step& s) {
+             s.state.desk.redo();
+         }},
+    Verb{"exposure EV",
+         [](Step& s) {
+             s.state.scene_look.exposure_ev = static_cast<float>(s.number(0));
+         }},
+    Verb{"env_exposure EV",
+         [](Step& s) {
+             s.state.environment_look.exposure_ev = static_cast<float>(s.number(0));
+         }},
+    Verb{"wireframe 0|1",
+         [](Step& s) {
+             s.state.scene_look.wireframe = s.number(0) != 0.0;
+         }},
+    Verb{"quadtree 0|1",
+         [](Step& s) {
+             s.state.environment_look.quadtree = s.number(0) != 0.0;
+         }},
+    Verb{"open FILE", use_file<open>},
+    Verb{"add_image FILE", use_file<add_image>},
+    Verb{"drop FILE", use_file<drop>},
+    Verb{"save_layers FILE", use_file<save_layers>},
+    Verb{"save_env FILE", use_file<save_environment>},
+    Verb{"screenshot FILE",
+         [](Step& s) {
+             s.wishes.screenshot = s.command.text;
+         }},
+    Verb{"quit",
+         [](Step&) {
+         }},
 };
 
 /// Returns the words of a line, up to a #; nothing for quotes without an end.
@@ -79,83 +263,58 @@ std::optional<std::vector<std::string>> words_of(std::string_view line) {
     }
 }
 
-std::optional<double> number(std::string_view text) {
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    const bool whole = error == std::errc() && end == text.data() + text.size();
-    return whole && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
-
-bool append_vector(std::string_view text, std::vector<double>& numbers) {
-    for (int i = 0; i < 3; ++i) {
-        const std::size_t comma = i < 2 ? text.find(',') : text.size();
-        const std::optional<double> value =
-            comma == std::string_view::npos ? std::nullopt : number(text.substr(0, comma));
-        if (!value)
+/// Appends the numbers of a word, with commas between them. Returns false for other words.
+bool append_numbers(std::string_view word, std::size_t count, std::vector<double>& numbers) {
+    for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t end = i + 1 < count ? word.find(',') : word.size();
+        if (end == std::string_view::npos)
             return false;
-        numbers.push_back(*value);
-        text.remove_prefix(std::min(comma + 1, text.size()));
+        double value = 0.0;
+        const auto [last, error] = std::from_chars(word.data(), word.data() + end, value);
+        if (error != std::errc() || last != word.data() + end || !std::isfinite(value))
+            return false;
+        numbers.push_back(value);
+        word.remove_prefix(std::min(end + 1, word.size()));
     }
-    const std::size_t n = numbers.size();
-    return numbers[n - 3] != 0.0 || numbers[n - 2] != 0.0 || numbers[n - 1] != 0.0;
+    return true;
 }
 
-/// Reads the arguments. Returns false when the words do not fit the form.
-bool read_arguments(const Form& form, const std::vector<std::string>& words,
-                    ScriptCommand& command) {
-    std::size_t next = 1;
-    bool optional = false;
-    for (const char kind : form.arguments) {
-        if (kind == '?') {
-            optional = true;
-            continue;
-        }
-        if (next == words.size())
-            return optional;
-        const std::string& word = words[next++];
-        if (kind == 't') {
-            command.text = word;
-            if (word.empty())
+/// Reads the arguments. Returns false when the words do not fit the usage.
+bool read_arguments(const std::vector<std::string>& words, ScriptCommand& command) {
+    const std::vector<std::string> wanted = *words_of(Verbs[command.verb].usage);
+    if (words.size() > wanted.size())
+        return false;
+    for (std::size_t i = 1; i < wanted.size(); ++i) {
+        if (i == words.size())
+            return wanted[i].starts_with('[');
+        std::vector<double>& numbers = command.numbers;
+        if (wanted[i] == "NAME" || wanted[i] == "FILE") {
+            command.text = words[i];
+            if (words[i].empty())
                 return false;
-        } else if (kind == 'v') {
-            if (!append_vector(word, command.numbers))
+        } else if (wanted[i] == "X,Y,Z") {
+            if (!append_numbers(words[i], 3, numbers) ||
+                std::all_of(numbers.end() - 3, numbers.end(), [](double n) { return n == 0.0; }))
                 return false;
-        } else if (const std::optional<double> value = number(word)) {
-            command.numbers.push_back(*value);
-        } else {
+        } else if (!append_numbers(words[i], 1, numbers)) {
             return false;
         }
     }
-    return next == words.size();
+    return true;
 }
 
 } // namespace
 
-std::size_t num_frames(const ScriptCommand& command) {
-    constexpr std::size_t DragEvents = 20;
+std::string_view ScriptCommand::name() const {
+    return Verbs[verb].name();
+}
+
+std::size_t ScriptCommand::num_frames() const {
     constexpr double MaxFrames = 100'000.0;
-    const auto frames = [&](std::size_t index, std::size_t otherwise) {
-        if (index >= command.numbers.size())
-            return otherwise;
-        return static_cast<std::size_t>(std::clamp(command.numbers[index], 1.0, MaxFrames));
-    };
-    switch (command.action) {
-    case Action::Wait:
-        return frames(0, 1);
-    case Action::DragLayer:
-        return frames(3, DragEvents);
-    case Action::ResizeLayer:
-        return frames(1, DragEvents);
-    case Action::DragEnvironment:
-    case Action::PaintEnvironment:
-    case Action::LassoEnvironment:
-    case Action::DragMesh:
-        return DragEvents + 2; // the pointer arrives, and lets go
-    case Action::Click:
-        return 3;
-    default:
-        return 1;
-    }
+    const Verb& own = Verbs[verb];
+    return own.frames_at < numbers.size()
+               ? static_cast<std::size_t>(std::clamp(numbers[own.frames_at], 1.0, MaxFrames))
+               : own.frames;
 }
 
 std::vector<ScriptCommand> parse_script(std::string_view text, const std::string& source) {
@@ -166,23 +325,23 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
         const std::size_t end = std::min(text.find('\n'), text.size());
         const std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
-
+        const auto expect = [&](bool is_met, std::string_view expected, std::string_view got) {
+            if (!is_met)
+                throw std::runtime_error(
+                    fmt::format("{}:{}: expected {}, got {}", source, line_number, expected, got));
+        };
         const std::optional<std::vector<std::string>> words = words_of(line);
-        if (!words)
-            throw std::runtime_error(fmt::format(
-                "{}:{}: expected a closing quote, got the line's end", source, line_number));
+        expect(words.has_value(), "a closing quote", "the line's end");
         if (words->empty())
             continue;
-        const auto form = std::find_if(Forms.begin(), Forms.end(),
-                                       [&](const Form& f) { return f.name == words->front(); });
-        if (form == Forms.end())
-            throw std::runtime_error(
-                fmt::format("{}:{}: expected a command of docs/viewer.md, got '{}'", source,
-                            line_number, words->front()));
-        ScriptCommand command{.action = form->action, .line = line_number};
-        if (!read_arguments(*form, *words, command))
-            throw std::runtime_error(fmt::format("{}:{}: expected {}, got '{}'", source,
-                                                 line_number, form->usage, line));
+        const auto verb = std::find_if(Verbs.begin(), Verbs.end(), [&](const Verb& each) {
+            return each.name() == words->front();
+        });
+        expect(verb != Verbs.end(), "a command of docs/viewer.md",
+               fmt::format("'{}'", words->front()));
+        ScriptCommand command{.verb = static_cast<std::size_t>(verb - Verbs.begin()),
+                              .line = line_number};
+        expect(read_arguments(*words, command), verb->usage, fmt::format("'{}'", line));
         commands.push_back(std::move(command));
     }
     return commands;
@@ -190,10 +349,26 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
 
 std::vector<ScriptCommand> load_script(const std::filesystem::path& path) {
     const std::vector<std::byte> bytes = files::read(path);
-    std::string text;
-    std::transform(bytes.begin(), bytes.end(), std::back_inserter(text),
-                   [](std::byte byte) { return static_cast<char>(byte); });
-    return parse_script(text, path.string());
+    return parse_script({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, path.string());
+}
+
+ScriptPlayer::Frame ScriptPlayer::step(ViewState& state) {
+    Frame wishes;
+    if (is_done())
+        return wishes;
+    const ScriptCommand& command = commands_[next_];
+    const std::size_t count = command.num_frames();
+    Step now{command, state, wishes, frame_, count, from_};
+    try {
+        Verbs[command.verb].play(now);
+    } catch (const std::invalid_argument& error) { // values that no layer can have
+        fail(command, error.what());
+    }
+    if (++frame_ >= count) {
+        frame_ = 0;
+        next_ = command.name() == "quit" ? commands_.size() : next_ + 1;
+    }
+    return wishes;
 }
 
 } // namespace relumine::viewer

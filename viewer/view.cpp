@@ -15,7 +15,7 @@
 #include "viewer/panels.h"
 #include "viewer/refiner.h"
 #include "viewer/scene_renderer.h"
-#include "viewer/script_player.h"
+#include "viewer/script.h"
 #include "viewer/window.h"
 
 namespace relumine::viewer {

@@ -114,9 +114,9 @@ Report described(const cubemap::Convention& convention, const cubemap::Environme
             {"mean_radiance", statistics.mean_radiance}};
 }
 
-void run(const ConvertArguments& options, Session& session) {
-    const cubemap::Convention& from = *cubemap::find_convention(options.input.from);
-    const cubemap::Convention& to = *cubemap::find_convention(options.to);
+/// Refuses what cannot be written before any work is done. Returns the sun's file; none where the
+/// sun stays.
+std::unique_ptr<SunFile> checked_outputs(const ConvertArguments& options) {
     require_environment_name("--output", options.output);
     static_cast<void>(parse_size(options.size));
     std::vector<std::string> inputs;
@@ -124,12 +124,18 @@ void run(const ConvertArguments& options, Session& session) {
         inputs.push_back(path.string());
     for (const auto& path : cubemap::environment_files(options.output))
         check_output(path.string(), inputs);
-    std::optional<SunFile> sun_file;
+    std::unique_ptr<SunFile> sun_file;
     if (options.split_sun) {
         check_output(SunFile::path_beside(options.output).string(), inputs);
-        sun_file.emplace(options.output);
+        sun_file = std::make_unique<SunFile>(options.output);
     }
+    return sun_file;
+}
 
+void run(const ConvertArguments& options, Session& session) {
+    const cubemap::Convention& from = *cubemap::find_convention(options.input.from);
+    const cubemap::Convention& to = *cubemap::find_convention(options.to);
+    const std::unique_ptr<SunFile> sun_file = checked_outputs(options);
     Stopwatch watch;
     cubemap::EnvironmentImage image = load_image(options.input, session);
     const double seconds_load = watch.lap();

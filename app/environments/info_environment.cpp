@@ -148,12 +148,13 @@ Report report(const cubemap::EnvironmentImage& image, const Findings& found) {
     if (found.search.sun) {
         const cubemap::Sun& sun = *found.search.sun;
         Report described = direction_json(sun.direction);
-        described.update({{"irradiance", sun.irradiance},
-                          {"solid_angle", sun.solid_angle},
-                          {"diameter_degrees", cubemap::disc_diameter_degrees(sun.solid_angle)},
-                          {"share_of_power", sun.share_of_power},
-                          {"peak_luminance", sun.peak_luminance},
-                          {"sky_luminance", sun.sky_luminance}});
+        files::update(described,
+                      {{"irradiance", sun.irradiance},
+                       {"solid_angle", sun.solid_angle},
+                       {"diameter_degrees", cubemap::disc_diameter_degrees(sun.solid_angle)},
+                       {"share_of_power", sun.share_of_power},
+                       {"peak_luminance", sun.peak_luminance},
+                       {"sky_luminance", sun.sky_luminance}});
         result.set("sun", described);
     } else {
         result.set("why_no_sun", found.search.why_none);

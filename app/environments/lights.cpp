@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "app/commands.h"
-#include "app/environments/light_comparison.h"
 #include "app/options/environment_options.h"
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
@@ -21,6 +20,7 @@
 #include "lights/light_export.h"
 #include "lights/luminance.h"
 #include "lights/place_lights.h"
+#include "relight/light_fit/transfer_lights.h"
 #include "relight/pictures/picture.h"
 #include "relight/pictures/region_picture.h"
 #include "relight/reference/exact.h"
@@ -31,6 +31,9 @@ namespace relumine::app {
 
 namespace {
 
+/// The name of relight::transfer_lights() beside those of lights::AllMethods.
+constexpr const char* TransferMethod = "transfer";
+
 struct LightsArguments {
     EnvironmentOptions environment;
     std::string path;
@@ -38,14 +41,10 @@ struct LightsArguments {
     /// Empty: the output's extension decides.
     std::string format;
     std::string method = std::string(lights::name(lights::Method::VarianceCut));
-    std::vector<std::size_t> numbers = {64};
+    std::size_t number = 64;
     /// A .prt file. The error of the lights on it is printed, and the transfer method chooses for
     /// it. Empty: none.
     std::string scene;
-    /// A .prt file on which all methods are compared. Empty: none.
-    std::string compare;
-    std::string plot;
-    std::size_t num_samples = 2000;
     std::uint64_t seed = 1;
     lights::ExportOptions export_options;
 };
@@ -66,10 +65,6 @@ lights::LightFormat format_of(const LightsArguments& options) {
 
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const LightsArguments& options) {
-    if (options.numbers.size() != 1)
-        throw UsageError("--number", "expected one number of lights, or --compare");
-    if (!options.plot.empty())
-        throw UsageError("--plot", "expected --compare with it");
     if (options.path.empty() && options.picture.empty())
         throw UsageError("expected -o or --picture, got neither");
     if (!options.path.empty()) {
@@ -130,30 +125,21 @@ struct Lit {
 
 lights::Placement place(const LightsArguments& options, const cubemap::EnvironmentImage& map,
                         const Lit* lit, Session& session) {
-    const std::size_t count = options.numbers.front();
     try {
-        if (options.method == TransferMethod)
-            return {.lights = lights_for_scene(lit->scene.relighter(), count, session),
-                    .regions = {}};
-        return lights::place(*lights::method_named(options.method), map, count, options.seed);
+        if (options.method != TransferMethod)
+            return lights::place(*lights::method_named(options.method), map, options.number,
+                                 options.seed);
+        lights::Placement result{
+            .lights = relight::transfer_lights(
+                lit->scene.relighter(), options.number,
+                {.stop = session.stop(),
+                 .on_progress = session.progress(fmt::format("{} lights", options.number))}),
+            .regions = {}};
+        session.end_progress();
+        return result;
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(fmt::format("{}: {}", options.environment.path, error.what()));
     }
-}
-
-void compare(const LightsArguments& options, Session& session) {
-    if (!options.path.empty() || !options.picture.empty() || !options.scene.empty())
-        throw UsageError("--compare", "expected neither -o nor --picture nor --scene with it");
-    if (!options.plot.empty()) {
-        require_extension("--plot", options.plot, {".svg"});
-        check_output(options.plot, {options.environment.path, options.compare});
-    }
-    compare_methods({.scene = options.compare,
-                     .numbers = options.numbers,
-                     .seed = options.seed,
-                     .num_samples = options.num_samples,
-                     .plot = options.plot},
-                    options.environment, session);
 }
 
 /// The scene of --scene under the environment; none without the option.
@@ -237,13 +223,7 @@ void convert_list(const LightsArguments& options, Session& session) {
 
 void run(const LightsArguments& options, Session& session) {
     if (is_light_list(options.environment.path)) {
-        if (!options.compare.empty())
-            throw UsageError("--compare", "expected an environment, got a light list");
         convert_list(options, session);
-        return;
-    }
-    if (!options.compare.empty()) {
-        compare(options, session);
         return;
     }
     check_outputs(options);
@@ -286,36 +266,18 @@ void add_output_options(Command& command, LightsArguments& options) {
         .add_option("--picture", options.picture,
                     "the environment with regions and lights drawn: .png or .exr")
         .file();
-    command
-        .add_option("-n,--number", options.numbers,
-                    "how many lights; with --compare several, 16,64,256")
-        .separated_by(',')
+    command.add_option("-n,--number", options.number, "how many lights")
         .between(1, 1e9)
         .show_default();
 }
 
-/// --scene, --compare and what belongs to them.
-void add_scene_options(Command& command, LightsArguments& options) {
+/// --scene, --method and --seed.
+void add_method_options(Command& command, LightsArguments& options) {
     command
         .add_option(
             "--scene", options.scene,
             "scene file: says how well the lights light it; --method transfer chooses for it")
         .file();
-    command
-        .add_option("--compare", options.compare,
-                    "scene file: a table of all methods' errors on it against exact integration")
-        .file();
-    command
-        .add_option("--samples", options.num_samples,
-                    "--compare: receivers chosen at random, 0 for all")
-        .between(0, 1e9)
-        .show_default();
-    command.add_option("--plot", options.plot, "--compare: error against number of lights, .svg")
-        .file();
-}
-
-/// --method and --seed.
-void add_method_options(Command& command, LightsArguments& options) {
     std::vector<std::string> methods;
     methods.reserve(lights::AllMethods.size());
     for (const lights::Method method : lights::AllMethods)
@@ -366,7 +328,6 @@ void add_lights(Command& program, Session& session) {
         "environment: .exr or .hdr; {face} in the name for six files px nx py ny pz nz; or a light "
         "list (.json), which -o writes in another format");
     add_output_options(command, *options);
-    add_scene_options(command, *options);
     add_method_options(command, *options);
     add_format_options(command, *options);
     session.add_common_options(command);

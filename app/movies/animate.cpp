@@ -359,7 +359,7 @@ private:
                          {"seconds_trace", totals_.seconds_trace},
                          {"seconds_write", totals_.seconds_write},
                          {"seconds_frames", seconds_frames_}};
-        result.update(extra_report_);
+        files::update(result, extra_report_);
         session_.report(result);
     }
 

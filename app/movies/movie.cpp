@@ -16,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "files/descriptor.h"
 #include "files/output_file.h"
 #include "prt/precompute.h"
 
@@ -25,16 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A descriptor that closes itself.
-struct Descriptor {
-    int fd = -1;
-    void close() {
-        if (fd >= 0)
-            ::close(std::exchange(fd, -1));
-    }
-    ~Descriptor() { close(); }
-};
-
 /// ffmpeg with a pipe to its input; its complaints go to a file beside the movie.
 class Encoder {
 public:
@@ -43,34 +34,9 @@ public:
         std::array<int, 2> ends{};
         if (::pipe2(ends.data(), O_CLOEXEC) != 0)
             throw std::runtime_error(fmt::format("cannot start ffmpeg: {}", std::strerror(errno)));
-        const Descriptor read_end{ends[0]};
-        input_.fd = ends[1];
-        // Players want even sides and 4:2:0.
-        std::vector<std::string> words = {ffmpeg.string(),
-                                          "-y",
-                                          "-loglevel",
-                                          "error",
-                                          "-f",
-                                          "image2pipe",
-                                          "-c:v",
-                                          "png",
-                                          "-framerate",
-                                          fmt::format("{}", fps),
-                                          "-i",
-                                          "-",
-                                          "-vf",
-                                          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                          "-c:v",
-                                          "libx264",
-                                          "-crf",
-                                          "17",
-                                          "-pix_fmt",
-                                          "yuv420p",
-                                          "-movflags",
-                                          "+faststart",
-                                          "-f",
-                                          "mp4",
-                                          output.string()};
+        const files::Descriptor read_end(ends[0]);
+        input_ = files::Descriptor(ends[1]);
+        std::vector<std::string> words = words_of(ffmpeg, output, fps);
         std::vector<char*> arguments;
         arguments.reserve(words.size() + 1);
         for (std::string& word : words)
@@ -78,7 +44,7 @@ public:
         arguments.push_back(nullptr);
         posix_spawn_file_actions_t actions;
         posix_spawn_file_actions_init(&actions);
-        posix_spawn_file_actions_adddup2(&actions, read_end.fd, STDIN_FILENO);
+        posix_spawn_file_actions_adddup2(&actions, read_end.get(), STDIN_FILENO);
         posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
         posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, complaints.c_str(),
                                          O_WRONLY | O_CREAT | O_TRUNC, 0600);
@@ -112,7 +78,7 @@ public:
     /// False when ffmpeg does not listen any more.
     [[nodiscard]] bool write(std::span<const std::byte> bytes) const {
         while (!bytes.empty()) {
-            const ssize_t written = ::write(input_.fd, bytes.data(), bytes.size());
+            const ssize_t written = ::write(input_.get(), bytes.data(), bytes.size());
             if (written < 0 && errno == EINTR)
                 continue;
             if (written <= 0)
@@ -124,7 +90,7 @@ public:
 
     /// Whether ffmpeg ended well.
     [[nodiscard]] bool wait() {
-        input_.close();
+        input_ = files::Descriptor();
         int status = 0;
         while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
         }
@@ -133,7 +99,22 @@ public:
     }
 
 private:
-    Descriptor input_;
+    static std::vector<std::string> words_of(const fs::path& ffmpeg, const fs::path& output,
+                                             double fps) {
+        std::vector<std::string> words = {ffmpeg.string()};
+        // Players want even sides and 4:2:0.
+        std::istringstream options(
+            fmt::format("-y -loglevel error -f image2pipe -c:v png -framerate {} -i - "
+                        "-vf pad=ceil(iw/2)*2:ceil(ih/2)*2 -c:v libx264 -crf 17 -pix_fmt yuv420p "
+                        "-movflags +faststart -f mp4",
+                        fps));
+        for (std::string word; options >> word;)
+            words.push_back(word);
+        words.push_back(output.string());
+        return words;
+    }
+
+    files::Descriptor input_;
     pid_t pid_ = -1;
 };
 

@@ -291,13 +291,6 @@ std::optional<double> parse_exposure(const std::string& text) {
     return stops;
 }
 
-std::string extension_of(const std::string& path) {
-    std::string extension = std::filesystem::path(path).extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 void require_extension(const std::string& option, const std::string& path,
                        const std::vector<std::string>& extensions) {
     const std::string extension = extension_of(path);

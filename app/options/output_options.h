@@ -9,6 +9,7 @@
 #include "app/command_line/command_line.h"
 #include "app/options/lit_scene.h"
 #include "cubemap/image/frame_pattern.h"
+#include "files/extension.h"
 #include "relumine/output.h"
 
 namespace relumine::app {
@@ -74,8 +75,7 @@ void add_exposure_options(Command& command, std::string& exposure, std::string& 
 /// Stops of --exposure; empty for auto. Throws UsageError.
 [[nodiscard]] std::optional<double> parse_exposure(const std::string& text);
 
-/// A path's extension in small letters, with the dot.
-[[nodiscard]] std::string extension_of(const std::string& path);
+using files::extension_of;
 
 /// Throws UsageError unless an option's path has one of these extensions (capital letters are
 /// allowed).

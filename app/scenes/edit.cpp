@@ -238,9 +238,9 @@ private:
                 const double seconds_output = output.total();
                 // The file system's clock may be a tick behind.
                 const double seconds_reaction = std::max(0.0, since_saved - seconds_load);
-                edits_[index].update({{"seconds_load", seconds_load},
-                                      {"seconds_reaction", seconds_reaction},
-                                      {"seconds_output", seconds_output}});
+                files::update(edits_[index], {{"seconds_load", seconds_load},
+                                              {"seconds_reaction", seconds_reaction},
+                                              {"seconds_output", seconds_output}});
                 session_.say(
                     fmt::format("lit {:.1f} ms after it was saved, and {:.1f} ms to load it; "
                                 "{:.1f} ms to write {}",

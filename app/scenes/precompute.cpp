@@ -176,10 +176,10 @@ Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts
                      {"seconds_checkpoints", clusters.seconds_checkpoints},
                      {"peak_bytes", peak_bytes()},
                      {"file_bytes", facts.file_bytes}};
-    if (const Report layout = layout_json(scene); !layout.empty())
+    if (const Report layout = layout_json(scene); layout.size() != 0)
         report.set("layout", layout);
     if (facts.atlas)
-        report.update(atlas_json(*facts.atlas, std::get<prt::TexelLayout>(scene.layout)));
+        files::update(report, atlas_json(*facts.atlas, std::get<prt::TexelLayout>(scene.layout)));
     if (facts.memory) {
         report.set("memory_estimate", facts.memory->peak_bytes);
         report.set("clusters_estimate", facts.memory->num_clusters);
@@ -193,7 +193,7 @@ Report report_of(const PrecomputeOptions& options, const PrecomputeReport& facts
 
 /// How evenly the processes worked, and how long they waited for each other.
 Report process_report(const std::vector<ProcessFigures>& processes, const Session& session) {
-    Report report = Report::array();
+    Report report = Report::Array{};
     double rays = 0.0, most_rays = 0.0, most_waiting = 0.0;
     for (const ProcessFigures& process : processes) {
         rays += static_cast<double>(process.num_rays);

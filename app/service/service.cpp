@@ -24,7 +24,7 @@
 #include "app/session.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/layers/layer_list.h"
-#include "files/json_value.h"
+#include "files/json_reader.h"
 #include "files/nearest_name.h"
 #include "files/shared_memory.h"
 #include "prt/precompute.h"
@@ -36,7 +36,6 @@ namespace relumine::app {
 namespace {
 
 using files::JsonReader;
-using files::JsonValue;
 
 /// How a member of a request is written as an argument of the command line.
 struct Argument {
@@ -68,14 +67,14 @@ std::string number_text(double number) {
 }
 
 /// The text of a value as the command line has it: numbers of a list with commas between them.
-std::string value_text(const JsonReader& json, const JsonValue& value, const std::string& name) {
-    if (const auto* text = std::get_if<std::string>(&value.value))
-        return *text;
-    if (const auto* number = std::get_if<double>(&value.value))
-        return number_text(*number);
-    if (const auto* list = std::get_if<JsonValue::Array>(&value.value)) {
+std::string value_text(const JsonReader& json, const Report& value, const std::string& name) {
+    if (value.type() == Report::Type::String)
+        return value.string();
+    if (value.type() == Report::Type::Number)
+        return number_text(value.number());
+    if (value.type() == Report::Type::Array) {
         std::string text;
-        for (const JsonValue& each : *list)
+        for (const Report& each : value.values())
             text += (text.empty() ? "" : ",") + number_text(json.number(each, "a list's value"));
         return text;
     }
@@ -90,7 +89,7 @@ Report id_of(double number) {
                : Report(number);
 }
 
-Argument argument_of(const JsonReader& json, const OptionTable& option, const JsonValue& value) {
+Argument argument_of(const JsonReader& json, const OptionTable& option, const Report& value) {
     const std::string name = member_of(option);
     if (option.value == OptionTable::Value::None)
         return {.option = json.boolean(value, fmt::format("\"{}\"", name)) ? "--" + name : "",
@@ -140,7 +139,7 @@ struct Service::Impl {
         return *scene;
     }
 
-    void perform(const JsonReader& json, const JsonValue& root);
+    void perform(const JsonReader& json, const Report& root);
 
     Session& session;
     std::string scene_path;
@@ -159,7 +158,7 @@ struct Service::Impl {
     Report report;
     std::string arguments;
     const JsonReader* json = nullptr;
-    const JsonValue* layers = nullptr;
+    const Report* layers = nullptr;
 };
 
 const std::vector<Service::Impl::Request>& Service::Impl::requests() {
@@ -253,7 +252,7 @@ void Service::Impl::set_layers(const std::string& path) {
 
 void Service::Impl::bounce() {
     if (const auto done = bounces.bounce(lit(), {}, scene_path))
-        report.update({{"bounces", done->num_bounces}, {"seconds_bounces", done->seconds}});
+        files::update(report, {{"bounces", done->num_bounces}, {"seconds_bounces", done->seconds}});
 }
 
 void Service::Impl::declare_picture(Command& command) {
@@ -317,9 +316,9 @@ void Service::Impl::declare_help(Command& command) {
 }
 
 /// Makes a command line of the request's members and runs it: so they are checked as there.
-void Service::Impl::perform(const JsonReader& reader, const JsonValue& root) {
-    const JsonValue::Object& members = reader.object(root, "a request");
-    const std::string& name = reader.string(reader.required(root, members, "do"), "\"do\"");
+void Service::Impl::perform(const JsonReader& reader, const Report& root) {
+    const Report::Object& members = reader.object(root, "a request");
+    const std::string& name = reader.string(reader.required(root, "do"), "\"do\"");
     std::vector<std::string_view> names;
     for (const Request& each : requests())
         names.emplace_back(each.name);
@@ -352,7 +351,7 @@ void Service::Impl::perform(const JsonReader& reader, const JsonValue& root) {
         const OptionTable& option =
             *std::find_if(options.begin(), options.end(),
                           [&](const OptionTable& each) { return member_of(each) == member; });
-        if (member == "layers" && std::holds_alternative<JsonValue::Array>(value.value)) {
+        if (member == "layers" && value.type() == Report::Type::Array) {
             layers = &value;
             words.emplace_back("--layers=a list");
             continue;
@@ -382,8 +381,8 @@ std::string Service::answer(std::string_view request) {
     bool has_id = false;
     const auto answered = [&](bool is_ok, const Report& fields) {
         Report answer = {{"ok", is_ok}};
-        answer.update(fields);
-        answer.update(impl_->session.take_notes());
+        files::update(answer, fields);
+        files::update(answer, impl_->session.take_notes());
         if (has_id)
             answer.set("id", id);
         return answer.text();
@@ -394,15 +393,12 @@ std::string Service::answer(std::string_view request) {
     const Stopwatch watch;
     impl_->report = Report();
     try {
-        const JsonValue root = reader.parse(std::as_bytes(std::span(request)));
-        if (const auto* members = std::get_if<JsonValue::Object>(&root.value))
-            if (const JsonValue* given = JsonReader::find(*members, "id")) {
-                if (const auto* number = std::get_if<double>(&given->value))
-                    id = id_of(*number);
-                else
-                    id = Report(reader.string(*given, "\"id\""));
-                has_id = true;
-            }
+        const Report root = reader.parse(std::as_bytes(std::span(request)));
+        if (const Report* given = root.find("id")) {
+            id = given->type() == Report::Type::Number ? id_of(given->number())
+                                                       : Report(reader.string(*given, "\"id\""));
+            has_id = true;
+        }
         impl_->perform(reader, root);
         impl_->report.set("seconds", watch.total());
         return answered(true, impl_->report);

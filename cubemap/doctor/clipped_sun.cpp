@@ -43,12 +43,11 @@ struct BrightPixel {
 /// them: texels at a cube's corners are half as wide as a lat-long's pixels.
 Plateau largest_plateau(const EnvironmentImage& image, float maximum, std::uint32_t resolution) {
     std::vector<BrightPixel> pixels;
-    for_each_pixel({image.layout, image.sampling, image.width, image.height},
-                   [&](std::size_t index, const PixelPlace& place) {
-                       const glm::vec3& value = image.pixels[index];
-                       if (std::max(std::max(value.x, value.y), value.z) >= AtMaximum * maximum)
-                           pixels.push_back({texel_index(place.direction, resolution), place});
-                   });
+    for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
+        const glm::vec3& value = image.pixels[index];
+        if (std::max(std::max(value.x, value.y), value.z) >= AtMaximum * maximum)
+            pixels.push_back({texel_index(place.direction, resolution), place});
+    });
     std::stable_sort(pixels.begin(), pixels.end(),
                      [](const BrightPixel& a, const BrightPixel& b) { return a.texel < b.texel; });
     Plateau largest;

@@ -68,8 +68,7 @@ class LatLongCheck {
 public:
     LatLongCheck(const EnvironmentImage& image, std::vector<SeamFault>& faults)
         : width_(image.width), height_(image.height), stops_(image),
-          rows_(detail::lat_long_rows({image.layout, image.sampling, image.width, image.height})),
-          faults_(faults) {}
+          rows_(detail::lat_long_rows(shape_of(image))), faults_(faults) {}
 
     void wrap() const {
         std::vector<double> steps = mean_steps();

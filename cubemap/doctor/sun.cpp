@@ -211,7 +211,7 @@ SunSearch search(const Pixels& image, const CubeMap& map) {
 } // namespace
 
 SunSearch find_sun(const EnvironmentImage& image) {
-    return search({{image.layout, image.sampling, image.width, image.height}, image.pixels},
+    return search({shape_of(image), image.pixels},
                   resample(image, std::min(SearchResolution, natural_resolution(image))));
 }
 

@@ -23,7 +23,7 @@ struct Convention {
     /// The mapping from direction to picture, in one line.
     std::string_view mathematics;
     /// The layout that the program reads by default.
-    Layout usual_layout;
+    Layout usual_layout = Layout::LatLong;
     /// All layouts that the program reads.
     std::span<const Layout> layouts;
     /// These matrices turn a direction in OpenEXR's axes, in which Layout describes the pictures,

@@ -1,7 +1,6 @@
 #include "cubemap/image/environment.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -13,6 +12,7 @@
 #include "cubemap/image/image_file.h"
 #include "cubemap/image/image_layout.h"
 #include "cubemap/luminance.h"
+#include "files/extension.h"
 #include "files/joined.h"
 #include "files/output_file.h"
 
@@ -35,21 +35,10 @@ std::optional<Layout> guess_layout(std::uint32_t width, std::uint32_t height) {
     return std::nullopt;
 }
 
-std::string_view proportions(Layout layout) {
-    switch (layout) {
-    case Layout::LatLong:
-        return "2:1";
-    case Layout::Cube:
-        return "1:6";
-    case Layout::VerticalCross:
-        return "3:4";
-    case Layout::HorizontalStrip:
-        return "6:1";
-    case Layout::HorizontalCross:
-        return "4:3";
-    default:
-        return "1:1";
-    }
+std::string proportions(Layout layout) {
+    if (has_faces(layout))
+        return fmt::format("{}:{}", squares_of(layout).width, squares_of(layout).height);
+    return layout == Layout::LatLong ? "2:1" : "1:1";
 }
 
 /// Decides on layout and sampling, and records the reason.
@@ -122,14 +111,13 @@ BadPixels find_bad_pixels(const EnvironmentImage& image) {
 /// Returns BadPixels::negative_share.
 double negative_share(const EnvironmentImage& image) {
     double below = 0.0, above = 0.0;
-    for_each_pixel({image.layout, image.sampling, image.width, image.height},
-                   [&](std::size_t index, const PixelPlace& place) {
-                       for (int channel = 0; channel < 3; ++channel) {
-                           const double value = image.pixels[index][channel];
-                           if (std::isfinite(value))
-                               (value < 0.0 ? below : above) += std::abs(value) * place.solid_angle;
-                       }
-                   });
+    for_each_pixel(shape_of(image), [&](std::size_t index, const PixelPlace& place) {
+        for (int channel = 0; channel < 3; ++channel) {
+            const double value = image.pixels[index][channel];
+            if (std::isfinite(value))
+                (value < 0.0 ? below : above) += std::abs(value) * place.solid_angle;
+        }
+    });
     return below == 0.0 ? 0.0 : below / above; // infinite without any light
 }
 
@@ -212,13 +200,6 @@ EnvironmentImage understood(ImageFile file, const LoadOptions& options, const st
     return image;
 }
 
-std::string extension_of(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return extension;
-}
-
 } // namespace
 
 std::vector<std::filesystem::path> environment_files(const std::filesystem::path& path) {
@@ -253,12 +234,16 @@ EnvironmentImage environment_image(Picture picture, const std::string& name,
     return understood(std::move(file), options, name);
 }
 
+std::uint32_t natural_resolution(const ImageShape& shape) {
+    if (has_faces(shape.layout))
+        return FaceSquares(shape.layout, shape.width, shape.height).resolution();
+    if (shape.layout == Layout::Octahedral)
+        return std::max(1U, static_cast<std::uint32_t>(std::lround(shape.width / OctahedralWidth)));
+    return std::max(1U, (shape.width + 2) / 4);
+}
+
 std::uint32_t natural_resolution(const EnvironmentImage& image) {
-    if (has_faces(image.layout))
-        return FaceSquares(image.layout, image.width, image.height).resolution();
-    if (image.layout == Layout::Octahedral)
-        return std::max(1U, static_cast<std::uint32_t>(std::lround(image.width / OctahedralWidth)));
-    return std::max(1U, (image.width + 2) / 4);
+    return natural_resolution(shape_of(image));
 }
 
 std::uint32_t automatic_resolution(const EnvironmentImage& image) {
@@ -288,29 +273,19 @@ std::uint32_t automatic_resolution(const EnvironmentImage& image) {
 
 ImageSize natural_size(Layout layout, std::uint32_t face_resolution) {
     const std::uint32_t r = face_resolution;
-    switch (layout) {
-    case Layout::LatLong:
+    if (has_faces(layout))
+        return {squares_of(layout).width * r, squares_of(layout).height * r};
+    if (layout == Layout::LatLong)
         return {4 * r, 2 * r};
-    case Layout::Cube:
-        return {r, 6 * r};
-    case Layout::VerticalCross:
-        return {3 * r, 4 * r};
-    case Layout::HorizontalStrip:
-        return {6 * r, r};
-    case Layout::HorizontalCross:
-        return {4 * r, 3 * r};
-    case Layout::AngularMap:
-    case Layout::MirrorBall:
-        return {4 * r, 4 * r};
-    case Layout::Octahedral:
-        break;
-    }
-    const auto width = std::max(1U, static_cast<std::uint32_t>(std::lround(OctahedralWidth * r)));
+    const std::uint32_t width =
+        layout != Layout::Octahedral
+            ? 4 * r
+            : std::max(1U, static_cast<std::uint32_t>(std::lround(OctahedralWidth * r)));
     return {width, width};
 }
 
 bool is_environment_name(const std::filesystem::path& path) {
-    const std::string extension = extension_of(path);
+    const std::string extension = files::extension_of(path);
     return extension == ".exr" || extension == ".hdr";
 }
 
@@ -318,7 +293,7 @@ void check_environment_name(const std::filesystem::path& path) {
     if (!is_environment_name(path))
         throw std::invalid_argument(
             fmt::format("{}: expected a name that ends in .exr or .hdr, got '{}'", path.string(),
-                        extension_of(path)));
+                        files::extension_of(path)));
 }
 
 void save_image(const std::filesystem::path& path, const EnvironmentImage& image) {
@@ -328,7 +303,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
         throw std::invalid_argument(fmt::format("{}: expected layout cube for six files, got {}",
                                                 path.string(), name(image.layout)));
     const auto encode = [&](const EnvironmentImage& part) {
-        return extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
+        return files::extension_of(path) == ".exr" ? encode_exr(part) : encode_hdr(part);
     };
     std::vector<std::unique_ptr<files::OutputFile>> outputs;
     outputs.reserve(paths.size());
@@ -359,7 +334,7 @@ void save_image(const std::filesystem::path& path, const EnvironmentImage& image
 Sampling default_sampling(const std::filesystem::path& path, Layout layout) {
     // The specification of the `envmap` attribute puts samples on the borders. It knows two
     // layouts; .hdr has no attribute.
-    const bool has_attribute = extension_of(path) == ".exr" &&
+    const bool has_attribute = files::extension_of(path) == ".exr" &&
                                environment_files(path).size() == 1 &&
                                (layout == Layout::LatLong || layout == Layout::Cube);
     return has_attribute ? Sampling::Borders : Sampling::TexelCentres;

@@ -18,50 +18,60 @@ namespace {
 
 constexpr double Pi = std::numbers::pi;
 
+using Squares = std::array<detail::FaceSquare, NumFaces>;
+constexpr Squares InAColumn = {{{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}}};
+constexpr Squares InARow = {{{0, 0}, {1, 0}, {2, 0}, {3, 0}, {4, 0}, {5, 0}}};
+// The cross unfolds the cube around -Z, as HDR Shop and Debevec's probes do; +Z hangs at the
+// bottom, upside down:
+//
+//          +Y
+//      -X  -Z  +X
+//          -Y
+//          +Z (turned)
+constexpr Squares Upright = {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {1, 3, true}, {1, 1}}};
+//          +Y
+//      -X  -Z  +X  +Z
+//          -Y
+constexpr Squares Lying = {{{2, 1}, {0, 1}, {1, 0}, {1, 2}, {3, 1}, {1, 1}}};
+
+/// What distinguishes the layouts, in their order.
+struct LayoutFacts {
+    Layout layout;
+    std::string_view name, option_name;
+    /// How many squares lie side by side and one below the other, and those of the faces, where the
+    /// layout is made of faces.
+    std::uint32_t columns = 0, rows = 0;
+    Squares squares = {};
+};
+constexpr std::array<LayoutFacts, AllLayouts.size()> Layouts = {{
+    {Layout::LatLong, "lat-long", "latlong"},
+    {Layout::Cube, "cube", "cube", 1, 6, InAColumn},
+    {Layout::VerticalCross, "vertical cross", "cross", 3, 4, Upright},
+    {Layout::HorizontalStrip, "horizontal strip", "strip", 6, 1, InARow},
+    {Layout::HorizontalCross, "horizontal cross", "hcross", 4, 3, Lying},
+    {Layout::AngularMap, "angular map", "angular"},
+    {Layout::MirrorBall, "mirror ball", "mirrorball"},
+    {Layout::Octahedral, "octahedral map", "octahedral"},
+}};
+
+constexpr const LayoutFacts& facts(Layout layout) {
+    return Layouts[static_cast<std::size_t>(layout)];
+}
+static_assert(std::all_of(AllLayouts.begin(), AllLayouts.end(),
+                          [](Layout layout) { return facts(layout).layout == layout; }));
+
 } // namespace
 
 std::string_view name(Layout layout) {
-    switch (layout) {
-    case Layout::LatLong:
-        return "lat-long";
-    case Layout::Cube:
-        return "cube";
-    case Layout::VerticalCross:
-        return "vertical cross";
-    case Layout::HorizontalStrip:
-        return "horizontal strip";
-    case Layout::HorizontalCross:
-        return "horizontal cross";
-    case Layout::AngularMap:
-        return "angular map";
-    case Layout::MirrorBall:
-        return "mirror ball";
-    case Layout::Octahedral:
-        break;
-    }
-    return "octahedral map";
+    return facts(layout).name;
 }
 
 std::string_view option_name(Layout layout) {
-    switch (layout) {
-    case Layout::LatLong:
-        return "latlong";
-    case Layout::Cube:
-        return "cube";
-    case Layout::VerticalCross:
-        return "cross";
-    case Layout::HorizontalStrip:
-        return "strip";
-    case Layout::HorizontalCross:
-        return "hcross";
-    case Layout::AngularMap:
-        return "angular";
-    case Layout::MirrorBall:
-        return "mirrorball";
-    case Layout::Octahedral:
-        break;
-    }
-    return "octahedral";
+    return facts(layout).option_name;
+}
+
+ImageSize squares_of(Layout layout) {
+    return {facts(layout).columns, facts(layout).rows};
 }
 
 std::optional<Layout> layout_named(std::string_view option) {
@@ -72,7 +82,7 @@ std::optional<Layout> layout_named(std::string_view option) {
 }
 
 bool has_faces(Layout layout) {
-    return layout != Layout::LatLong && projection(layout) == nullptr;
+    return facts(layout).columns != 0;
 }
 
 std::vector<double> cell_borders(std::uint32_t num_cells, Sampling sampling) {
@@ -97,23 +107,10 @@ double sample_position(std::uint32_t index, std::uint32_t num_samples, Sampling 
 bool fits(Layout layout, std::uint32_t width, std::uint32_t height) {
     if (width == 0 || height == 0)
         return false;
-    const auto has_cells = [&](std::uint32_t columns, std::uint32_t rows) {
+    const auto [columns, rows] = squares_of(layout);
+    if (columns != 0)
         return width % columns == 0 && height % rows == 0 && width / columns == height / rows;
-    };
-    switch (layout) {
-    case Layout::LatLong:
-        return true;
-    case Layout::Cube:
-        return has_cells(1, 6);
-    case Layout::VerticalCross:
-        return has_cells(3, 4);
-    case Layout::HorizontalStrip:
-        return has_cells(6, 1);
-    case Layout::HorizontalCross:
-        return has_cells(4, 3);
-    default:
-        return width == height;
-    }
+    return layout == Layout::LatLong || width == height;
 }
 
 std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& direction) {
@@ -150,37 +147,11 @@ std::optional<std::size_t> pixel_at(const ImageShape& shape, const glm::dvec3& d
 }
 
 FaceSquares::FaceSquares(Layout layout, std::uint32_t width, std::uint32_t height)
-    : width_(width), resolution_(0), squares_{} {
+    : width_(width), squares_(facts(layout).squares) {
     if (!has_faces(layout) || !fits(layout, width, height))
         throw std::invalid_argument(fmt::format(
             "expected an image of six cube faces, got a {} of {}x{}", name(layout), width, height));
-    if (layout == Layout::Cube) {
-        resolution_ = width;
-        for (std::size_t face = 0; face < NumFaces; ++face)
-            squares_[face] = {0, face, false};
-    } else if (layout == Layout::HorizontalStrip) {
-        resolution_ = height;
-        for (std::size_t face = 0; face < NumFaces; ++face)
-            squares_[face] = {face, 0, false};
-    } else if (layout == Layout::HorizontalCross) {
-        //          +Y
-        //      -X  -Z  +X  +Z
-        //          -Y
-        resolution_ = height / 3;
-        squares_ = {Square{2, 1, false}, Square{0, 1, false}, Square{1, 0, false},
-                    Square{1, 2, false}, Square{3, 1, false}, Square{1, 1, false}};
-    } else {
-        // The cross unfolds the cube around -Z, as HDR Shop and Debevec's probes do; +Z hangs at
-        // the bottom, upside down:
-        //
-        //          +Y
-        //      -X  -Z  +X
-        //          -Y
-        //          +Z (turned)
-        resolution_ = width / 3;
-        squares_ = {Square{2, 1, false}, Square{0, 1, false}, Square{1, 0, false},
-                    Square{1, 2, false}, Square{1, 3, true},  Square{1, 1, false}};
-    }
+    resolution_ = width / facts(layout).columns;
 }
 
 namespace detail {

@@ -24,6 +24,13 @@ struct ImageShape {
     bool operator==(const ImageShape&) const = default;
 };
 
+[[nodiscard]] inline ImageShape shape_of(const EnvironmentImage& image) {
+    return {image.layout, image.sampling, image.width, image.height};
+}
+
+/// As natural_resolution() of an image.
+[[nodiscard]] std::uint32_t natural_resolution(const ImageShape& shape);
+
 /// Returns the borders of n cells side by side over [0, 1]. With TexelCentres all cells are equally
 /// wide. With Borders the first and the last cell are half as wide as the others.
 ///
@@ -39,6 +46,21 @@ struct ImageShape {
 /// for VerticalCross and so on, n x n for a Projection.
 [[nodiscard]] bool fits(Layout layout, std::uint32_t width, std::uint32_t height);
 
+/// Returns how many squares lie side by side and one below the other in a layout made of faces; 0 x
+/// 0 for others.
+[[nodiscard]] ImageSize squares_of(Layout layout);
+
+namespace detail {
+
+/// Column and row of a face's square in the image. `turned`: the square is turned by 180 degrees
+/// against Face.
+struct FaceSquare {
+    std::size_t column = 0, row = 0;
+    bool turned = false;
+};
+
+} // namespace detail
+
 /// The squares of an image that hold the six faces.
 class FaceSquares {
 public:
@@ -50,22 +72,16 @@ public:
 
     /// Returns the index of the image's pixel that is texel (x, y) of a face.
     [[nodiscard]] std::size_t pixel(Face face, std::uint32_t x, std::uint32_t y) const {
-        const Square& square = squares_[static_cast<std::size_t>(face)];
+        const detail::FaceSquare& square = squares_[static_cast<std::size_t>(face)];
         const std::size_t column = square.turned ? resolution_ - 1 - x : x;
         const std::size_t row = square.turned ? resolution_ - 1 - y : y;
         return (square.row * resolution_ + row) * width_ + square.column * resolution_ + column;
     }
 
 private:
-    /// Column and row of the square in the image. `turned`: the square is turned by 180 degrees
-    /// against Face.
-    struct Square {
-        std::size_t column, row;
-        bool turned;
-    };
     std::size_t width_;
-    std::uint32_t resolution_;
-    std::array<Square, NumFaces> squares_;
+    std::uint32_t resolution_ = 0;
+    std::array<detail::FaceSquare, NumFaces> squares_;
 };
 
 /// The place of a pixel on the sphere.

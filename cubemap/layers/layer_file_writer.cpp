@@ -36,10 +36,10 @@ Json json(const LayerField& field, std::span<const double> numbers) {
     if (field.number != nullptr || field.single != nullptr)
         return numbers[0];
     if (field.points == nullptr)
-        return Json::array({numbers[0], numbers[1], numbers[2]});
-    Json points = Json::array();
+        return Json::Array{numbers[0], numbers[1], numbers[2]};
+    Json points = Json::Array{};
     for (std::size_t i = 0; i < numbers.size(); i += 3)
-        points.push_back(Json::array({numbers[i], numbers[i + 1], numbers[i + 2]}));
+        points.push_back(Json::Array{numbers[i], numbers[i + 1], numbers[i + 2]});
     return points;
 }
 
@@ -62,7 +62,7 @@ Json json(LightLayer layer) {
 }
 
 Json json(const KeyFrame& key, std::vector<LightLayer> layers) {
-    Json changes = Json::object();
+    Json changes = Json::Object{};
     for (const KeyedValue& change : key.changes) {
         const auto layer = std::find_if(layers.begin(), layers.end(), [&](const LightLayer& l) {
             return l.name == change.layer;
@@ -83,7 +83,7 @@ Json json(const KeyFrame& key, std::vector<LightLayer> layers) {
                 fmt::format("key frame {}: expected finite values of a field of \"{}\", got \"{}\"",
                             key.frame, change.layer, change.field));
         const Json* before = changes.find(change.layer);
-        Json of_layer = before != nullptr ? *before : Json::object();
+        Json of_layer = before != nullptr ? *before : Json::Object{};
         of_layer.set(change.field, json(*field, change.values));
         changes.set(change.layer, std::move(of_layer));
     }
@@ -121,12 +121,12 @@ std::string json_text(const LightLayers& layers) {
         root.set("base", layers.base->string());
     if (layers.rotate_degrees)
         root.set("rotate_degrees", *layers.rotate_degrees);
-    Json all = Json::array();
+    Json all = Json::Array{};
     for (const LightLayer& layer : layers.layers)
         all.push_back(json(layer));
     root.set("layers", std::move(all));
     if (!layers.frames.empty()) {
-        Json frames = Json::array();
+        Json frames = Json::Array{};
         for (const KeyFrame& key : layers.frames)
             frames.push_back(json(key, layers.layers));
         root.set("frames", std::move(frames));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cubemap/layers/light_layer.h"
-#include "files/json_value.h"
+#include "files/json_reader.h"
 
 namespace relumine::cubemap {
 
@@ -13,7 +13,7 @@ namespace relumine::cubemap {
 ///
 /// Throws:  std::runtime_error "NAME:LINE: expected X, got Y", as load_layers().
 [[nodiscard]] std::vector<LightLayer> read_layers(const files::JsonReader& json,
-                                                  const files::JsonValue& list,
+                                                  const files::Json& list,
                                                   const std::filesystem::path& folder);
 
 } // namespace relumine::cubemap

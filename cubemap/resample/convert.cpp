@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -34,25 +35,13 @@ EnvironmentImage empty_image(const ImageShape& shape) {
     return image;
 }
 
-ImageShape shape_of(const EnvironmentImage& image) {
-    return {image.layout, image.sampling, image.width, image.height};
-}
-
-std::uint32_t natural_resolution(const ImageShape& shape) {
-    EnvironmentImage image;
-    image.layout = shape.layout;
-    image.width = shape.width;
-    image.height = shape.height;
-    return cubemap::natural_resolution(image);
-}
-
 /// Copies pixel by pixel. Returns nothing unless every target pixel lies on a source pixel.
 std::optional<EnvironmentImage> copied(const EnvironmentImage& image, const ImageShape& target,
                                        const glm::dmat3& target_from_source) {
     if (has_faces(image.layout) != has_faces(target.layout) ||
         (!has_faces(image.layout) && image.layout != target.layout) ||
         image.sampling != target.sampling ||
-        natural_resolution(target) != natural_resolution(shape_of(image)))
+        natural_resolution(target) != natural_resolution(image))
         return std::nullopt;
     // In a lat-long with samples on the borders, the whole row at a pole is one direction.
     if (image.layout == Layout::LatLong && image.sampling == Sampling::Borders &&
@@ -161,7 +150,7 @@ EnvironmentImage interpolated(const EnvironmentImage& image, const ImageShape& t
                               const glm::dmat3& target_from_source) {
     // In the middle of a face, a lat-long's pixels are narrower than the texels of its natural
     // resolution.
-    const std::uint32_t natural = natural_resolution(shape_of(image));
+    const std::uint32_t natural = natural_resolution(image);
     const std::uint32_t coarse = has_faces(image.layout) ? natural : natural + natural / 4 + 1;
     const CubeMap source = resample(image, coarse);
     const glm::dmat3 source_from_target = glm::transpose(target_from_source);
@@ -187,6 +176,49 @@ void for_each_chunk(std::size_t size, const Work& work) {
     });
 }
 
+/// Pixels of zero become the means: a product never leaves zero, and the interpolation may have
+/// missed a part of a wide pixel.
+void fill_zeros(Pixels& grown, const std::function<Pixels()>& means_of_image) {
+    const auto has_zero = [](const glm::vec3& pixel) {
+        return pixel.x <= 0.0f || pixel.y <= 0.0f || pixel.z <= 0.0f;
+    };
+    if (std::none_of(grown.begin(), grown.end(), has_zero))
+        return;
+    const Pixels means = means_of_image();
+    for (std::size_t i = 0; i < grown.size(); ++i)
+        for (int channel = 0; channel < 3; ++channel)
+            if (grown[i][channel] <= 0.0f)
+                grown[i][channel] = means[i][channel];
+}
+
+struct Sums {
+    /// Of |have - want|, and of `want`.
+    double difference = 0.0, all = 0.0;
+};
+
+/// Turns what there is into its ratio to what should be; 1 where there is nothing.
+Sums take_ratio(Pixels& ratio, const Pixels& image) {
+    // Chunks are summed in parallel, and their sums in order.
+    std::vector<Sums> chunks((ratio.size() + ChunkSize - 1) / ChunkSize);
+    for_each_chunk(ratio.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+        Sums& sums = chunks[chunk];
+        for (std::size_t i = begin; i < end; ++i) {
+            for (int channel = 0; channel < 3; ++channel) {
+                const float have = ratio[i][channel], want = image[i][channel];
+                sums.difference += std::abs(static_cast<double>(have) - want);
+                sums.all += want;
+                ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
+            }
+        }
+    });
+    Sums result;
+    for (const Sums& sums : chunks) {
+        result.difference += sums.difference;
+        result.all += sums.all;
+    }
+    return result;
+}
+
 /// Multiplies `grown` by the ratio of the image to `back(grown)`, spread over the footprints by
 /// `forth` (Richardson 1972, Lucy 1974). Every round keeps the image's total power exactly, makes
 /// nothing negative, and leaves a constant as it is.
@@ -197,20 +229,7 @@ void for_each_chunk(std::size_t size, const Work& work) {
 template<typename Forth, typename Back>
 void correct(const Pixels& image, const Forth& forth, const Back& back, int num_rounds,
              Pixels& grown) {
-    // A product never leaves zero, and the interpolation may have missed a part of a wide pixel. So
-    // pixels of zero start from the mean.
-    const auto has_zero = [](const glm::vec3& pixel) {
-        return pixel.x <= 0.0f || pixel.y <= 0.0f || pixel.z <= 0.0f;
-    };
-    if (std::any_of(grown.begin(), grown.end(), has_zero)) {
-        const Pixels means = forth(image);
-        for (std::size_t i = 0; i < grown.size(); ++i) {
-            for (int channel = 0; channel < 3; ++channel) {
-                if (grown[i][channel] <= 0.0f)
-                    grown[i][channel] = means[i][channel];
-            }
-        }
-    }
+    fill_zeros(grown, [&] { return forth(image); });
     Pixels start = grown;
     double last_difference = std::numeric_limits<double>::infinity(),
            earlier_difference = last_difference;
@@ -218,27 +237,7 @@ void correct(const Pixels& image, const Forth& forth, const Back& back, int num_
     int run = 0;
     for (int round = 0; round < num_rounds; ++round) {
         Pixels ratio = back(start);
-        // Chunks are summed in parallel, and their sums in order.
-        struct Sums {
-            double difference = 0.0, all = 0.0;
-        };
-        std::vector<Sums> chunks((ratio.size() + ChunkSize - 1) / ChunkSize);
-        for_each_chunk(ratio.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
-            Sums& sums = chunks[chunk];
-            for (std::size_t i = begin; i < end; ++i) {
-                for (int channel = 0; channel < 3; ++channel) {
-                    const float have = ratio[i][channel], want = image[i][channel];
-                    sums.difference += std::abs(static_cast<double>(have) - want);
-                    sums.all += want;
-                    ratio[i][channel] = have > 0.0f ? want / have : 1.0f;
-                }
-            }
-        });
-        double difference = 0.0, sum = 0.0;
-        for (const Sums& sums : chunks) {
-            difference += sums.difference;
-            sum += sums.all;
-        }
+        const auto [difference, sum] = take_ratio(ratio, image);
         const Pixels factor = forth(ratio);
         // The difference rose, so the step was too long: restart.
         run = difference > last_difference ? 0 : run + 1;
@@ -314,7 +313,7 @@ EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target
     if (auto copy = copied(image, target, target_from_source))
         return std::move(*copy);
     // At about the same size there is nothing to smooth and hardly any room for corrections.
-    const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(shape_of(image));
+    const bool grows = 5 * natural_resolution(target) > 6 * natural_resolution(image);
     EnvironmentImage result = grows
                                   ? grown(image, target, target_from_source)
                                   : Path(shape_of(image), target, target_from_source).forth(image);
@@ -323,7 +322,7 @@ EnvironmentImage convert(const EnvironmentImage& image, const ImageShape& target
 }
 
 ImageSize conversion_size(const EnvironmentImage& image, Layout target) {
-    const std::uint32_t natural = natural_resolution(shape_of(image));
+    const std::uint32_t natural = natural_resolution(image);
     if (target == image.layout)
         return {image.width, image.height};
     if (has_faces(target) && has_faces(image.layout))

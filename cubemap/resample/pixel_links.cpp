@@ -103,7 +103,11 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
         starts_.push_back(sources_.size());
     }
 
-    // The same links in the order of their source pixels.
+    sort_by_source();
+}
+
+/// Makes the same links in the order of their source pixels.
+void PixelLinks::sort_by_source() {
     source_starts_.assign(num_source_pixels_ + 1, 0);
     for (const std::uint32_t source_pixel : sources_)
         ++source_starts_[source_pixel + 1];
@@ -111,7 +115,7 @@ PixelLinks::PixelLinks(const ImageShape& source, const ImageShape& target,
         source_starts_[i] += source_starts_[i - 1];
     back_.resize(sources_.size());
     std::vector<std::size_t> next(source_starts_.begin(), source_starts_.end() - 1);
-    for (std::size_t i = 0; i < num_pixels; ++i) {
+    for (std::size_t i = 0; i + 1 < starts_.size(); ++i) {
         for (std::size_t link = starts_[i]; link < starts_[i + 1]; ++link)
             back_[next[sources_[link]]++] = {static_cast<std::uint32_t>(i),
                                              static_cast<std::uint32_t>(link)};

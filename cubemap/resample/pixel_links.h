@@ -30,6 +30,8 @@ public:
     [[nodiscard]] std::vector<glm::vec3> to_source(const std::vector<glm::vec3>& pixels) const;
 
 private:
+    void sort_by_source();
+
     std::size_t num_source_pixels_;
     // The links of target pixel i are [starts_[i], starts_[i + 1]).
     std::vector<std::size_t> starts_;

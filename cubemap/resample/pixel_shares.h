@@ -199,7 +199,7 @@ void for_each_row_of_shares(const ImageShape& shape, const glm::dmat3& turn,
 /// Fills an image whose shape is set: every pixel is the mean of the texels under its footprint.
 /// Pixels that show nothing are black.
 inline void fill_from_shares(const CubeMap& map, EnvironmentImage& image) {
-    const ImageShape shape{image.layout, image.sampling, image.width, image.height};
+    const ImageShape shape = shape_of(image);
     const std::vector<PixelSymmetry> symmetries =
         pixel_symmetries(shape, glm::dmat3(1.0), map.resolution);
     std::fill(image.pixels.begin(), image.pixels.end(), glm::vec3(0.0f));

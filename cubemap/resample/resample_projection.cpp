@@ -30,10 +30,6 @@ private:
     std::vector<double> weights_;
 };
 
-ImageShape shape_of(const EnvironmentImage& image) {
-    return {image.layout, image.sampling, image.width, image.height};
-}
-
 } // namespace
 
 CubeMap cube_from_projection(const EnvironmentImage& image, std::uint32_t resolution) {

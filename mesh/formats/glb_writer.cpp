@@ -140,16 +140,16 @@ std::string file_of(const Arrays& arrays, files::Json materials, files::Json pri
                     const char* extension) {
     using files::Json;
     Json document = {{"asset", {{"generator", "Relumine"}, {"version", "2.0"}}},
-                     {"buffers", Json::array({{{"byteLength", arrays.bytes.size()}}})},
+                     {"buffers", Json::Array{{{"byteLength", arrays.bytes.size()}}}},
                      {"bufferViews", arrays.views},
                      {"accessors", arrays.accessors},
                      {"materials", std::move(materials)},
-                     {"meshes", Json::array({{{"primitives", std::move(primitives)}}})},
-                     {"nodes", Json::array({{{"mesh", 0}}})},
-                     {"scenes", Json::array({{{"nodes", Json::array({0})}}})},
+                     {"meshes", Json::Array{{{"primitives", std::move(primitives)}}}},
+                     {"nodes", Json::Array{{{"mesh", 0}}}},
+                     {"scenes", Json::Array{{{"nodes", Json::Array{0}}}}},
                      {"scene", 0}};
     if (extension != nullptr)
-        document.set("extensionsUsed", Json::array({extension}));
+        document.set("extensionsUsed", Json::Array{extension});
     return container(document.text(), arrays.bytes);
 }
 
@@ -164,8 +164,8 @@ files::Json material_of(const Material& material) {
     return {{"name", material.name},
             {"pbrMetallicRoughness",
              {{"baseColorFactor",
-               Json::array({double{material.base_color.r}, double{material.base_color.g},
-                            double{material.base_color.b}, 1.0})},
+               Json::Array{double{material.base_color.r}, double{material.base_color.g},
+                           double{material.base_color.b}, 1.0}},
               {"metallicFactor", is_phong ? 0.0 : double{material.metallic}},
               {"roughnessFactor", roughness}}}};
 }
@@ -180,10 +180,10 @@ std::string glb(const TriangleMesh& mesh, std::span<const glm::vec3> colors) {
     using files::Json;
     const std::size_t indices = append_indices(arrays, mesh.triangles);
     return file_of(arrays,
-                   Json::array({{{"name", "radiance"},
-                                 {"doubleSided", true},
-                                 {"extensions", {{"KHR_materials_unlit", Json::object()}}}}}),
-                   Json::array({primitive(attributes, indices, 0)}), "KHR_materials_unlit");
+                   Json::Array{{{"name", "radiance"},
+                                {"doubleSided", true},
+                                {"extensions", {{"KHR_materials_unlit", Json::Object{}}}}}},
+                   Json::Array{primitive(attributes, indices, 0)}, "KHR_materials_unlit");
 }
 
 std::string glb(const TriangleMesh& mesh) {

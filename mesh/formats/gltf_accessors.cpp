@@ -51,10 +51,10 @@ std::uint32_t num_components_of(const std::string& type) {
 
 Elements elements_of(Document& document, std::uint64_t index, std::uint32_t num_components) {
     const Json& accessor = document.element("accessors", index);
-    if (accessor.contains("sparse") || !accessor.contains("bufferView"))
+    if (accessor.find("sparse") || !accessor.find("bufferView"))
         throw std::runtime_error(
             fmt::format("expected accessor {} in a buffer view of its own, got a {} one", index,
-                        accessor.contains("sparse") ? "sparse" : "zero"));
+                        accessor.find("sparse") ? "sparse" : "zero"));
     Elements elements;
     elements.component_type = whole(accessor, "componentType");
     elements.normalized = flag(accessor, "normalized");

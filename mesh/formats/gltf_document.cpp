@@ -22,10 +22,14 @@ namespace {
     throw std::runtime_error(fmt::format("expected {}, got {}", expected, got));
 }
 
+bool is_structured(const Json& value) {
+    return value.type() == Json::Type::Array || value.type() == Json::Type::Object;
+}
+
 /// Describes a value for an error message. Arrays and objects are not written out: they may nest as
 /// deep as the file is long.
 std::string described(const Json& value) {
-    return value.is_structured() ? std::string(value.type_name()) : excerpt(value.text());
+    return is_structured(value) ? std::string(name(value.type())) : excerpt(value.text());
 }
 
 [[noreturn]] void fail(const char* key, std::string_view expected, const Json& got) {
@@ -34,8 +38,8 @@ std::string described(const Json& value) {
 
 /// Returns null if the object does not have the key.
 const Json* find(const Json& object, const char* key) {
-    if (!object.is_object())
-        fail(fmt::format("an object with \"{}\"", key), object.type_name());
+    if (object.type() != Json::Type::Object)
+        fail(fmt::format("an object with \"{}\"", key), name(object.type()));
     return object.find(key);
 }
 
@@ -193,7 +197,7 @@ std::string_view lost_without(std::string_view extension) {
 std::uint64_t whole_value(const Json& value, const char* name) {
     // Sums and products of two such numbers stay far from 2^64.
     constexpr double Max = 1e12;
-    if (!value.is_number() || !(value.number() >= 0.0 && value.number() <= Max) ||
+    if (value.type() != Json::Type::Number || !(value.number() >= 0.0 && value.number() <= Max) ||
         value.number() != std::floor(value.number()))
         fail(name, "a whole number", value);
     return static_cast<std::uint64_t>(value.number());
@@ -208,7 +212,7 @@ double number(const Json& object, const char* key, std::optional<double> fallbac
     const Json* value = fallback ? find(object, key) : &require(object, key);
     if (value == nullptr)
         return *fallback;
-    if (!value->is_number() || !std::isfinite(value->number()))
+    if (value->type() != Json::Type::Number || !std::isfinite(value->number()))
         fail(key, "a number", *value);
     return value->number();
 }
@@ -222,7 +226,7 @@ float fraction(const Json& object, const char* key, float fallback) {
 
 bool flag(const Json& object, const char* key) {
     const Json* value = find(object, key);
-    if (value != nullptr && !value->is_boolean())
+    if (value != nullptr && value->type() != Json::Type::Boolean)
         fail(key, "true or false", *value);
     return value != nullptr && value->boolean();
 }
@@ -231,7 +235,7 @@ std::string text(const Json& object, const char* key, const std::string& fallbac
     const Json* value = find(object, key);
     if (value == nullptr)
         return fallback;
-    if (!value->is_string())
+    if (value->type() != Json::Type::String)
         fail(key, "text", *value);
     return value->string();
 }
@@ -240,9 +244,9 @@ std::vector<double> numbers(const Json& object, const char* key, std::vector<dou
     const Json* value = find(object, key);
     if (value == nullptr)
         return fallback;
-    if (!value->is_array() || value->size() != fallback.size() ||
+    if (value->type() != Json::Type::Array || value->size() != fallback.size() ||
         !std::all_of(value->values().begin(), value->values().end(), [](const Json& item) {
-            return item.is_number() && std::isfinite(item.number());
+            return item.type() == Json::Type::Number && std::isfinite(item.number());
         }))
         fail(key, fmt::format("{} numbers", fallback.size()), *value);
     std::vector<double> result;
@@ -252,11 +256,11 @@ std::vector<double> numbers(const Json& object, const char* key, std::vector<dou
 }
 
 const Json& child(const Json& object, const char* key) {
-    static const Json none = Json::object();
+    static const Json none = Json::Object{};
     const Json* value = find(object, key);
     if (value == nullptr)
         return none;
-    if (!value->is_structured())
+    if (!is_structured(*value))
         fail(key, "an object or an array", *value);
     return *value;
 }
@@ -266,7 +270,7 @@ const Json::Array& items(const Json& object, const char* key) {
     const Json* value = find(object, key);
     if (value == nullptr)
         return none;
-    if (!value->is_array())
+    if (value->type() != Json::Type::Array)
         fail(key, "an array", *value);
     return value->values();
 }
@@ -277,10 +281,10 @@ Document::Document(std::span<const std::byte> file, std::filesystem::path folder
         split_glb(file);
     try {
         try {
-            root_ = Json::parse(json_text_);
+            root_ = files::parse_json(json_text_);
         } catch (const files::JsonError&) {
             // A name in the encoding of an old program must not make the whole file unreadable.
-            root_ = Json::parse(with_latin1(json_text_));
+            root_ = files::parse_json(with_latin1(json_text_));
         }
     } catch (const files::JsonError& error) {
         fail("glTF's JSON", error.what());
@@ -336,7 +340,7 @@ void Document::check_extensions() {
     const auto names = [this](const char* key) {
         std::set<std::string> result;
         for (const Json& name : items(root_, key)) {
-            if (!name.is_string())
+            if (name.type() != Json::Type::String)
                 fail(fmt::format("names in \"{}\"", key), described(name));
             result.insert(name.string());
         }
@@ -418,7 +422,7 @@ std::vector<std::byte> Document::unpacked(const Json& packed, std::uint64_t view
 std::span<const std::byte> Document::view(std::uint64_t index) {
     const Json& description = element("bufferViews", index);
     const Json& packed = child(child(description, "extensions"), "EXT_meshopt_compression");
-    if (packed.empty())
+    if (packed.size() == 0)
         return part(description, index);
     std::optional<std::vector<std::byte>>& view = views_[index];
     if (!view)

@@ -79,7 +79,7 @@ std::optional<std::uint32_t> MaterialReader::image(std::uint64_t index) {
 std::optional<std::uint32_t> MaterialReader::source(const Json& texture) {
     const Json& webp = child(child(texture, "extensions"), "EXT_texture_webp");
     for (const Json* holder : {&webp, &texture})
-        if (holder->contains("source"))
+        if (holder->find("source"))
             if (const auto place = image(whole(*holder, "source")))
                 return place;
     return std::nullopt;
@@ -101,20 +101,20 @@ Wrap wrap_mode(const Json& sampler, const char* key) {
 
 std::optional<TextureSlot> MaterialReader::slot(const Json& parent, const char* key, bool is_srgb) {
     const Json& info = child(parent, key);
-    if (info.empty())
+    if (info.size() == 0)
         return std::nullopt;
     const Json& texture = document_.element("textures", whole(info, "index"));
     const std::optional<std::uint32_t> index = source(texture);
     if (!index)
         return std::nullopt;
     TextureSlot slot{.texture = *index, .is_srgb = is_srgb};
-    if (texture.contains("sampler")) {
+    if (texture.find("sampler")) {
         const Json& sampler = document_.element("samplers", whole(texture, "sampler"));
         slot.wrap = {wrap_mode(sampler, "wrapS"), wrap_mode(sampler, "wrapT")};
     }
     std::uint64_t uv_set = whole(info, "texCoord", 0);
     if (const Json& transform = child(child(info, "extensions"), "KHR_texture_transform");
-        !transform.empty()) {
+        transform.size() != 0) {
         // The extension defines uv' = translation * rotation * scale * uv, with a rotation from v
         // to u.
         const std::vector<double> scale = numbers(transform, "scale", {1.0, 1.0});
@@ -180,14 +180,14 @@ Material MaterialReader::material(const Json& description, std::size_t index) {
     material.name = text(description, "name", fmt::format("material {}", index));
     material.times_vertex_color = true;
     if (const Json& specular = child(extensions, "KHR_materials_pbrSpecularGlossiness");
-        extensions.contains("KHR_materials_pbrSpecularGlossiness")) {
+        extensions.find("KHR_materials_pbrSpecularGlossiness")) {
         read_specular_glossiness(specular, material);
         return material;
     }
     const std::vector<double> base = factors(pbr, "baseColorFactor", {1.0, 1.0, 1.0, 1.0});
     material.base_color = glm::vec3(base[0], base[1], base[2]);
     material.base_color_texture = slot(pbr, "baseColorTexture", true);
-    if (extensions.contains("KHR_materials_unlit")) {
+    if (extensions.find("KHR_materials_unlit")) {
         material.times_vertex_color = false; // vertex colours of such a material are radiance
         return material;
     }

@@ -60,7 +60,7 @@ glm::dmat4 matrix_of(const Placement& placement) {
 }
 
 glm::dmat4 local_transform(const Json& node) {
-    if (node.contains("matrix")) {
+    if (node.find("matrix")) {
         const std::vector<double> m = gltf::numbers(node, "matrix", std::vector<double>(16, 0.0));
         glm::dmat4 matrix(1.0);
         for (int i = 0; i < 16; ++i)
@@ -130,7 +130,7 @@ std::vector<std::uint64_t> GltfReader::root_nodes() const {
 std::vector<Triangle> GltfReader::triangles(const Json& description, std::uint64_t mode,
                                             std::size_t num_vertices) {
     std::vector<std::uint32_t> indices;
-    if (description.contains("indices")) {
+    if (description.find("indices")) {
         indices = gltf::read_indices(document_, gltf::whole(description, "indices"));
         for (const std::uint32_t index : indices)
             if (index >= num_vertices)
@@ -185,7 +185,9 @@ class Attributes {
 public:
     Attributes(gltf::Document& document, const Json& description);
 
-    [[nodiscard]] bool contains(const std::string& name) const { return accessors_.contains(name); }
+    [[nodiscard]] bool contains(const std::string& name) const {
+        return accessors_.find(name) != nullptr;
+    }
     [[nodiscard]] gltf::Floats read(const std::string& name, std::uint32_t num_components);
     /// Empty: the primitive is not compressed.
     [[nodiscard]] std::optional<DracoMesh>& draco() { return draco_; }
@@ -202,12 +204,12 @@ Attributes::Attributes(gltf::Document& document, const Json& description)
     : document_(document), accessors_(gltf::child(description, "attributes")) {
     const Json& extension =
         gltf::child(gltf::child(description, "extensions"), "KHR_draco_mesh_compression");
-    if (extension.empty())
+    if (extension.size() == 0)
         return;
     const Json& ids = gltf::child(extension, "attributes");
     std::vector<DracoAttribute> wanted;
     const auto add = [&](const std::string& name, std::uint32_t num_components) {
-        if (!ids.contains(name) || !contains(name))
+        if (!ids.find(name) || !contains(name))
             return;
         const Json& accessor = document.element("accessors", gltf::whole(accessors_, name.c_str()));
         places_.emplace(name, wanted.size());
@@ -232,7 +234,7 @@ gltf::Floats Attributes::read(const std::string& name, std::uint32_t num_compone
 /// counts of the mesh before compression; the data govern then, as in other readers.
 void GltfReader::check_counts(const Json& description, const DracoMesh& mesh) {
     const auto declared = [&](const Json& parent, const char* key, std::uint64_t fallback) {
-        return parent.contains(key)
+        return parent.find(key)
                    ? gltf::whole(document_.element("accessors", gltf::whole(parent, key)), "count")
                    : fallback;
     };
@@ -254,7 +256,7 @@ std::optional<Primitive> GltfReader::primitive(const Json& description) {
     if (mode > 6)
         throw std::runtime_error(
             fmt::format("expected a primitive's mode of 0 to 6, got {}", mode));
-    if (mode < 4 || !gltf::child(description, "attributes").contains("POSITION"))
+    if (mode < 4 || !gltf::child(description, "attributes").find("POSITION"))
         return std::nullopt;
     Attributes attributes(document_, description);
     Primitive result;
@@ -271,7 +273,7 @@ std::optional<Primitive> GltfReader::primitive(const Json& description) {
     read("POSITION", result.positions);
     read("NORMAL", result.normals);
     read("COLOR_0", result.colors);
-    if (description.contains("material")) {
+    if (description.find("material")) {
         const std::uint64_t material = gltf::whole(description, "material");
         static_cast<void>(document_.element("materials", material)); // checks the range
         result.material = static_cast<std::uint32_t>(material);
@@ -303,7 +305,7 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
     if (!mesh) {
         mesh.emplace();
         for (const Json& item : gltf::items(description, "primitives")) {
-            has_targets_ |= !gltf::child(item, "targets").empty();
+            has_targets_ |= gltf::child(item, "targets").size() != 0;
             if (std::optional<Primitive> read = primitive(item)) {
                 count(*read);
                 mesh->push_back(std::move(*read));
@@ -317,12 +319,12 @@ const std::vector<Primitive>& GltfReader::mesh(std::uint64_t index) {
 /// of translations, rotations and scales.
 std::vector<glm::dmat4> GltfReader::instances(const Json& node) {
     const Json& extension = gltf::child(gltf::child(node, "extensions"), "EXT_mesh_gpu_instancing");
-    if (extension.empty())
+    if (extension.size() == 0)
         return {glm::dmat4(1.0)};
     const Json& attributes = gltf::child(extension, "attributes");
     std::optional<std::size_t> count;
     const auto read = [&](const char* name, std::uint32_t num_components) {
-        if (!attributes.contains(name))
+        if (!attributes.find(name))
             return std::vector<float>();
         gltf::Floats floats =
             gltf::read_floats(document_, gltf::whole(attributes, name), num_components);
@@ -438,14 +440,13 @@ PolygonSoup GltfReader::read() {
                 fmt::format("expected nodes with one parent, got node {} twice", visit.node));
         visited[visit.node] = true;
         const glm::dmat4 transform = visit.parent * local_transform(node);
-        if (node.contains("mesh")) {
+        if (node.find("mesh")) {
             const std::uint64_t index = gltf::whole(node, "mesh");
-            has_skins_ |= node.contains("skin");
+            has_skins_ |= node.find("skin") != nullptr;
             for (const glm::dmat4& instance : instances(node))
                 for (const Primitive& primitive : mesh(index)) {
                     count(primitive);
-                    append(primitive,
-                           node.contains("skin") ? glm::dmat4(1.0) : transform * instance,
+                    append(primitive, node.find("skin") ? glm::dmat4(1.0) : transform * instance,
                            group(node, index));
                 }
         }

@@ -41,12 +41,10 @@ public:
     [[nodiscard]] float length(std::uint32_t edge) const { return edges_[edge].length; }
     /// Returns the area of the triangles beside an edge. It is 0 where they are void.
     [[nodiscard]] double area_beside(std::uint32_t edge) const;
-    /// Returns the edge of a side: side k runs from corner k to the next.
-    [[nodiscard]] std::uint32_t edge_of(std::uint32_t triangle, std::uint32_t side) const {
-        return triangle_edges_[triangle][side];
+    /// Returns the edge of a triangle's longest side.
+    [[nodiscard]] std::uint32_t longest_edge(std::uint32_t triangle) const {
+        return triangle_edges_[triangle][longest_side(triangle)];
     }
-    /// Returns the longest side of a triangle.
-    [[nodiscard]] std::uint32_t longest_side(std::uint32_t triangle) const;
 
     /// A pair of vertices at the ends of an edge. At a seam an edge has several.
     struct Ends {
@@ -109,6 +107,8 @@ private:
         std::size_t num_used_ = 0;
     };
 
+    /// Side k runs from corner k to the next.
+    [[nodiscard]] std::uint32_t longest_side(std::uint32_t triangle) const;
     [[nodiscard]] std::uint32_t edge_between(std::uint32_t a, std::uint32_t b);
     void add_sides(std::uint32_t triangle);
     void remove_sides(std::uint32_t triangle);

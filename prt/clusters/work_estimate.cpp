@@ -9,8 +9,7 @@ namespace {
 
 /// What the first levels of meshes on a floor show, for levels without anything to learn from.
 constexpr double FirstShare = 0.7;
-/// Rays of a deeper level are closer together, so a cell takes this part of its
-/// parent's time.
+/// Rays of a deeper level are closer together, so a cell takes this part of its parent's time.
 constexpr double DeeperCell = 0.6;
 
 } // namespace

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "files/hash.h"
 #include "files/json.h"
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
@@ -49,7 +50,7 @@ StoredPart read_part(const std::filesystem::path& path) {
 /// The JSON of a plan has the tolerance of its bounces.
 std::optional<PlannedBounces> planned_bounces(const SectionReader& reader,
                                               const files::Json& json) {
-    if (!json.contains("bounce_tolerance"))
+    if (json.find("bounce_tolerance") == nullptr)
         return std::nullopt;
     PlannedBounces bounces;
     try {
@@ -73,7 +74,7 @@ NewSections sections_of(const std::filesystem::path& path, const Plan& plan) {
         throw std::invalid_argument(
             fmt::format("{}: expected a scene without light", path.string()));
     NewSections sections = sections_without_light(path, plan.scene);
-    files::Json json = files::Json::object();
+    files::Json json = files::Json::Object{};
     if (plan.has_clusters)
         json.set("clusters", plan.scene.transfer.num_clusters());
     if (plan.bounces) {
@@ -92,7 +93,7 @@ Plan plan_from(const std::filesystem::path& path, Sections&& sections) {
     const files::Json json = reader.json("plan");
     Plan plan{.scene = plan_of(path, std::move(sections)),
               .bounces = planned_bounces(reader, json),
-              .has_clusters = json.contains("clusters")};
+              .has_clusters = json.find("clusters") != nullptr};
     if (plan.bounces && plan.has_clusters &&
         plan.bounces->probes.size() != num_sampled_receivers(plan.scene.transfer.num_receivers()))
         reader.fail("plan_probes", "the light of a sample of the receivers");
@@ -139,7 +140,7 @@ Plan load_plan(const std::filesystem::path& path) {
     Plan plan = plan_from(path, std::move(sections));
     if (!plan.has_clusters)
         throw std::runtime_error(fmt::format("{}: expected a plan with clusters", path.string()));
-    plan.hash = file_hash(path);
+    plan.hash = files::file_hash(path);
     return plan;
 }
 
@@ -167,7 +168,7 @@ std::uint64_t save_part(const std::filesystem::path& path, const Plan& plan, con
                         static_cast<std::uint32_t>(light.counts.num_receivers)};
     sections["part"] = text_section(json_of(head, "plan"));
     // A scene's reader says what it is.
-    sections["plan"] = text_section(files::Json::object());
+    sections["plan"] = text_section(files::Json::Object{});
     add_light(sections, light);
     return write_sections(path, sections);
 }
@@ -178,7 +179,8 @@ Scene join_parts(std::span<const std::filesystem::path> paths) {
     Scene scene = plan_of(first, read_sections(first));
     std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
-        light.push_back(light_of(part->reader, part->version, part->head.num_receivers, scene.transfer));
+        light.push_back(
+            light_of(part->reader, part->version, part->head.num_receivers, scene.transfer));
         part.reset();
     }
     try {

@@ -8,7 +8,6 @@
 #include <variant>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "prt/clusters/dealt_tiles.h"
 #include "prt/parts/part_list.h"
@@ -128,8 +127,8 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
 
 std::uint64_t save_lit_part(const std::filesystem::path& path, const LitPart& part) {
     NewSections sections;
-    sections["lit"] = bytes_of(
-        json_of({part.part, part.light, part.num_receivers}, "light").text(2));
+    sections["lit"] =
+        bytes_of(json_of({part.part, part.light, part.num_receivers}, "light").text(2));
     sections["lit_receivers"] = SectionContent::view(part.receivers);
     sections["lit_radiance"] = SectionContent::view(part.radiance);
     // A scene's reader says what it is.
@@ -158,10 +157,6 @@ std::vector<glm::vec3> join_lit_parts(std::span<const std::filesystem::path> pat
         throw std::runtime_error(fmt::format("{}: expected parts with all {} receivers, got {}",
                                              paths[0].string(), num_receivers, num_known));
     return radiance;
-}
-
-std::uint64_t bytes_hash(std::span<const std::byte> bytes) {
-    return XXH64(bytes.data(), bytes.size(), 0);
 }
 
 } // namespace relumine::prt

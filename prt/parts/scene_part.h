@@ -68,7 +68,4 @@ std::uint64_t save_lit_part(const std::filesystem::path& path, const LitPart& pa
 ///          twice or missing.
 [[nodiscard]] std::vector<glm::vec3> join_lit_parts(std::span<const std::filesystem::path> paths);
 
-/// Returns a number that tells bytes apart: xxHash64.
-[[nodiscard]] std::uint64_t bytes_hash(std::span<const std::byte> bytes);
-
 } // namespace relumine::prt

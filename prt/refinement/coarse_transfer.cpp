@@ -76,52 +76,61 @@ void CoarseDirections::add_light(const cubemap::CubeMap& light,
                      [&](std::size_t a, std::size_t b) { return powers[a] > powers[b]; });
     for (std::size_t rank = 0; rank < MostBrightPatches; ++rank) {
         const std::size_t texel = by_power[rank];
-        if (!(DirectionPatch::Size * powers[texel] > all) || light.resolution < 2 * Resolution)
+        if (!(DirectionPatch::Size * powers[texel] > all) || light.resolution < 2 * Resolution ||
+            !add_bright_patch(light, angles, texel, powers[texel] / (all * DirectionPatch::Size)))
             break;
-        const cubemap::Face face = cubemap::AllFaces[texel / PerFace];
-        const auto y = static_cast<std::uint32_t>(texel % PerFace / Resolution);
-        const auto x = static_cast<std::uint32_t>(texel % Resolution);
-        struct Share {
-            double sum;
-            std::uint32_t x, y;
-        };
-        std::vector<Share> parts;
-        double sum = 0.0;
-        const auto first = [&](std::uint32_t place) {
-            return place * light.resolution / Resolution;
-        };
-        for (std::uint32_t v = first(y); v < first(y + 1); ++v)
-            for (std::uint32_t u = first(x); u < first(x + 1); ++u) {
-                sum += cubemap::luminance(light.at(face, u, v)) *
-                       angles[std::size_t{v} * light.resolution + u];
-                parts.push_back({sum, u, v});
-            }
-        if (!(sum > 0.0))
-            break;
-        DirectionPatch& patch = patches_.emplace_back();
-        const double weight = powers[texel] / (all * DirectionPatch::Size);
-        std::size_t part = 0;
-        for (std::uint32_t j = 0; j < DirectionPatch::Size; ++j) {
-            const double at = (j + 0.5) / DirectionPatch::Size * sum;
-            while (part + 1 < parts.size() && parts[part].sum < at)
-                ++part;
-            const double before = part == 0 ? 0.0 : parts[part - 1].sum;
-            const double across = (at - before) / (parts[part].sum - before);
-            // Van der Corput's sequence.
-            double along = 0.5 / DirectionPatch::Size;
-            for (std::uint32_t bit = 0; bit < 6; ++bit)
-                along += (j >> bit & 1u) / static_cast<double>(2u << bit);
-            patch.add(glm::vec3(glm::normalize(
-                cubemap::cube_point(face, (parts[part].x + across) / light.resolution,
-                                    (parts[part].y + along) / light.resolution))));
-            shares_.push_back(0.0f);
-            lights_.push_back(static_cast<float>(weight));
-        }
         powers[texel] = 0.0;
     }
     // The others shine from their centres.
     for (std::size_t j = 0; j < texels.size(); ++j)
         lights_[j] = static_cast<float>(powers[texels[j]] / all);
+}
+
+/// Adds a patch for a bright texel of the coarse map. Each of its directions gets the weight.
+/// Returns false for a texel without light.
+bool CoarseDirections::add_bright_patch(const cubemap::CubeMap& light,
+                                        std::span<const double> angles, std::size_t texel,
+                                        double weight) {
+    constexpr std::size_t PerFace = std::size_t{Resolution} * Resolution;
+    const cubemap::Face face = cubemap::AllFaces[texel / PerFace];
+    const auto y = static_cast<std::uint32_t>(texel % PerFace / Resolution);
+    const auto x = static_cast<std::uint32_t>(texel % Resolution);
+    struct Share {
+        double sum;
+        std::uint32_t x, y;
+    };
+    std::vector<Share> parts;
+    double sum = 0.0;
+    const auto first = [&](std::uint32_t place) {
+        return place * light.resolution / Resolution;
+    };
+    for (std::uint32_t v = first(y); v < first(y + 1); ++v)
+        for (std::uint32_t u = first(x); u < first(x + 1); ++u) {
+            sum += cubemap::luminance(light.at(face, u, v)) *
+                   angles[std::size_t{v} * light.resolution + u];
+            parts.push_back({sum, u, v});
+        }
+    if (!(sum > 0.0))
+        return false;
+    DirectionPatch& patch = patches_.emplace_back();
+    std::size_t part = 0;
+    for (std::uint32_t j = 0; j < DirectionPatch::Size; ++j) {
+        const double at = (j + 0.5) / DirectionPatch::Size * sum;
+        while (part + 1 < parts.size() && parts[part].sum < at)
+            ++part;
+        const double before = part == 0 ? 0.0 : parts[part - 1].sum;
+        const double across = (at - before) / (parts[part].sum - before);
+        // Van der Corput's sequence.
+        double along = 0.5 / DirectionPatch::Size;
+        for (std::uint32_t bit = 0; bit < 6; ++bit)
+            along += (j >> bit & 1u) / static_cast<double>(2u << bit);
+        patch.add(glm::vec3(
+            glm::normalize(cubemap::cube_point(face, (parts[part].x + across) / light.resolution,
+                                               (parts[part].y + along) / light.resolution))));
+        shares_.push_back(0.0f);
+        lights_.push_back(static_cast<float>(weight));
+    }
+    return true;
 }
 
 std::vector<CoarseDirections::Bits>

@@ -69,6 +69,8 @@ public:
 
 private:
     void add_light(const cubemap::CubeMap& light, std::span<const std::size_t> texels);
+    bool add_bright_patch(const cubemap::CubeMap& light, std::span<const double> angles,
+                          std::size_t texel, double weight);
 
     std::vector<DirectionPatch> patches_;
     /// By patch, then direction: the share of the sphere, and of the environment's light.

@@ -267,7 +267,7 @@ private:
         std::vector<std::uint32_t> triangles;
         Receivers receivers;
         for (const std::uint32_t triangle : split_.changed_triangles()) {
-            const std::uint32_t edge = split_.edge_of(triangle, split_.longest_side(triangle));
+            const std::uint32_t edge = split_.longest_edge(triangle);
             if (split_.length(edge) <= large_ || !may_split(edge))
                 continue;
             const auto& [a, b, c] = split_.mesh().triangles[triangle];
@@ -279,7 +279,7 @@ private:
             const auto& [a, b, c] = split_.mesh().triangles[triangles[i]];
             const std::array<CoarseDirections::Point, 3> corners = {vertex(a), vertex(b),
                                                                     vertex(c)};
-            float& error = errors_[split_.edge_of(triangles[i], split_.longest_side(triangles[i]))];
+            float& error = errors_[split_.longest_edge(triangles[i])];
             error = std::max(error, directions_.difference({receivers.normals[i], &bits[i]},
                                                            corners, 1.0f / 3.0f));
         }

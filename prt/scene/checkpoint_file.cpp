@@ -7,10 +7,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "files/append_log.h"
 #include "files/folder_lock.h"
+#include "files/hash.h"
 #include "files/json.h"
 #include "files/output_file.h"
 
@@ -74,15 +74,17 @@ void CheckpointFile::check_fingerprint() {
     const auto* text = reinterpret_cast<const char*>(bytes.data());
     files::Json json;
     try {
-        json = files::Json::parse({text, bytes.size()});
+        json = files::parse_json({text, bytes.size()});
     } catch (const files::JsonError&) {
         throw damaged(RunName);
     }
-    if (!json.is_object())
+    if (json.type() != files::Json::Type::Object)
         throw damaged(RunName);
     for (const auto& [name, value] : fingerprint_) {
         const files::Json* found = json.find(name);
-        const std::string got = found != nullptr && found->is_string() ? found->string() : "none";
+        const std::string got = found != nullptr && found->type() == files::Json::Type::String
+                                    ? found->string()
+                                    : "none";
         if (got == value)
             continue;
         throw std::runtime_error(
@@ -129,7 +131,7 @@ void CheckpointFile::claim() {
     }
     clear();
     logs_.clear();
-    files::Json json = files::Json::object();
+    files::Json json = files::Json::Object{};
     for (const auto& [name, value] : fingerprint_)
         json.set(name, value);
     files::save_text(file(RunName), json.text(2) + "\n");
@@ -163,7 +165,7 @@ Checkpoint::Saved CheckpointFile::load(const std::string& part, bool with_state)
         throw damaged(state_name);
     std::memcpy(&head, bytes.data(), sizeof head);
     if (head.mark != expected.mark || head.size != bytes.size() - sizeof head ||
-        XXH64(bytes.data() + sizeof head, head.size, head.log_size) != head.checksum)
+        files::hash_of(std::span(bytes).subspan(sizeof head), head.log_size) != head.checksum)
         throw damaged(state_name);
     saved.records = log(part).read(head.log_size);
     if (log(part).size() != head.log_size)
@@ -194,7 +196,7 @@ bool CheckpointFile::save(const std::string& part, std::span<const std::byte> re
         if (!state.empty()) {
             const StateHead head{.log_size = log(part).size(),
                                  .size = state.size(),
-                                 .checksum = XXH64(state.data(), state.size(), log(part).size())};
+                                 .checksum = files::hash_of(state, log(part).size())};
             files::OutputFile output(file(part + ".state"));
             output.expect(sizeof head + state.size());
             output.append(std::as_bytes(std::span(&head, 1)));

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
+#include "files/hash.h"
 #include "prt/receivers/surface.h"
 
 namespace relumine::prt {
@@ -19,7 +19,7 @@ class Hash {
 public:
     template<typename Number>
     Hash& add(const std::vector<Number>& numbers) {
-        hash_ = XXH64(numbers.data(), numbers.size() * sizeof(Number), hash_ + numbers.size());
+        hash_ = files::hash_of(std::as_bytes(std::span(numbers)), hash_ + numbers.size());
         return *this;
     }
     [[nodiscard]] std::string text() const { return fmt::format("{:016x}", hash_); }

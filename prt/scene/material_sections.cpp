@@ -79,15 +79,16 @@ float fraction(const Json& json) {
 }
 
 glm::vec3 color(const Json& json) {
-    return {fraction(json.at(0)), fraction(json.at(1)), fraction(json.at(2))};
+    return {fraction(json.values().at(0)), fraction(json.values().at(1)),
+            fraction(json.values().at(2))};
 }
 
 std::optional<TextureSlot> slot_of(const Json& json, std::size_t num_textures) {
-    if (json.is_null())
+    if (json.type() == Json::Type::Null)
         return std::nullopt;
-    const Json& uv = json.at("uv");
+    const Json::Array& uv = json.at("uv").values();
     const auto wrap = [&](std::size_t axis) {
-        return static_cast<mesh::Wrap>(below(json.at("wrap").at(axis), 3));
+        return static_cast<mesh::Wrap>(below(json.at("wrap").values().at(axis), 3));
     };
     return TextureSlot{.texture = below(json.at("image"), static_cast<std::uint32_t>(num_textures)),
                        .is_srgb = json.at("srgb").boolean(),
@@ -130,7 +131,7 @@ void add_material_sections(NewSections& sections, const mesh::TriangleMesh& mesh
     if (mesh.triangle_materials.empty() ||
         std::none_of(mesh.materials.begin(), mesh.materials.end(), has_texture))
         return;
-    Json textures = Json::array(), materials = Json::array();
+    Json textures = Json::Array{}, materials = Json::Array{};
     std::vector<std::byte> images;
     Stored stored;
     for (const Material& material : mesh.materials) {
@@ -169,7 +170,7 @@ void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mes
     const std::vector<char> text = reader.elements<char>("materials");
     const std::vector<std::byte>& images = reader.bytes("images");
     try {
-        const Json json = Json::parse({text.data(), text.size()});
+        const Json json = files::parse_json({text.data(), text.size()});
         std::size_t offset = 0, num_texels = 0;
         for (const Json& texture : json.at("images").values()) {
             mesh.textures.push_back(texture_of(texture, images, offset));

@@ -14,7 +14,7 @@ namespace {
 glm::vec3 vector(const files::Json& json) {
     if (json.values().size() != 3)
         throw std::out_of_range("expected three numbers");
-    return {real(json.at(0)), real(json.at(1)), real(json.at(2))};
+    return {real(json.values().at(0)), real(json.values().at(1)), real(json.values().at(2))};
 }
 
 files::Json json_of(const PixelLayout& layout) {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include "files/output_file.h"
 #include "prt/scene/bounce_sections.h"
@@ -120,20 +119,20 @@ private:
             settings.face_resolution = natural(json.at("face_resolution"));
             settings.bias = real(json.at("bias"));
             settings.floor_vertices = natural(json.at("floor_vertices"));
-            if (json.contains("floor_added"))
+            if (json.find("floor_added"))
                 settings.floor_added = natural(json.at("floor_added"));
             settings.source = json.at("source").string();
             settings.source_hash = std::stoull(json.at("source_hash").string(), nullptr, 16);
-            if (json.contains("epsilon"))
+            if (json.find("epsilon"))
                 settings.epsilon = real(json.at("epsilon"));
-            if (json.contains("glossy_tolerance"))
+            if (json.find("glossy_tolerance"))
                 settings.glossy_tolerance = real(json.at("glossy_tolerance"));
-            if (json.contains("two_sided_bounces"))
+            if (json.find("two_sided_bounces"))
                 settings.two_sided_bounces = json.at("two_sided_bounces").boolean();
-            if (json.contains("view")) {
+            if (json.find("view")) {
                 const files::Json& view = json.at("view");
                 const auto at = [&](std::size_t i) {
-                    return real(view.at(i));
+                    return real(view.values().at(i));
                 };
                 settings.view = Camera{.eye = {at(0), at(1), at(2)},
                                        .target = {at(3), at(4), at(5)},
@@ -265,11 +264,6 @@ Scene scene_of(const std::filesystem::path& path, Sections&& sections, std::uint
 
 Scene plan_of(const std::filesystem::path& path, Sections&& sections) {
     return SceneReader(path, std::move(sections), SceneFileVersion).scene(true);
-}
-
-std::uint64_t file_hash(const std::filesystem::path& path) {
-    const std::vector<std::byte> bytes = files::read(path);
-    return XXH64(bytes.data(), bytes.size(), 0);
 }
 
 } // namespace relumine::prt

@@ -73,7 +73,4 @@ std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);
 
-/// Returns the xxHash64 of a file's bytes.
-[[nodiscard]] std::uint64_t file_hash(const std::filesystem::path& path);
-
 } // namespace relumine::prt

@@ -15,6 +15,7 @@
 #include <zstd.h>
 
 #include "files/compression.h"
+#include "files/hash.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
 
@@ -71,7 +72,7 @@ std::uint64_t table_checksum(const Header& header, std::span<const SectionEntry>
     std::memcpy(bytes.data(), &header, offsetof(Header, checksum));
     if (!table.empty())
         std::memcpy(bytes.data() + offsetof(Header, checksum), table.data(), table.size_bytes());
-    return XXH64(bytes.data(), bytes.size(), 0);
+    return files::hash_of(bytes);
 }
 
 class Reader {
@@ -108,7 +109,7 @@ public:
         if (wanted_size && size != *wanted_size)
             fail(fmt::format("a section '{}' of {} bytes", wanted, *wanted_size), "another");
         const std::byte* stored = bytes_.data() + entry->offset;
-        if (XXH64(stored, entry->stored_size, 0) != entry->checksum)
+        if (files::hash_of({stored, entry->stored_size}) != entry->checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", wanted));
         const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
                                                                               ZSTD_freeDCtx);
@@ -206,7 +207,7 @@ private:
 
     std::vector<std::byte> content(const SectionEntry& entry) const {
         const std::byte* stored = bytes_.data() + entry.offset;
-        if (XXH64(stored, entry.stored_size, 0) != entry.checksum)
+        if (files::hash_of({stored, entry.stored_size}) != entry.checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
         const std::vector<Frame> frames = frames_of(entry);
         // An unlikely size is allocated as the data comes, so that a lie costs nothing.

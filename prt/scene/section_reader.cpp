@@ -37,7 +37,7 @@ files::Json SectionReader::json(const std::string& name) const {
     if (std::find(text.begin(), text.end(), '\0') != text.end())
         fail(name, "JSON text");
     try {
-        return files::Json::parse({text.data(), text.size()});
+        return files::parse_json({text.data(), text.size()});
     } catch (const files::JsonError&) {
         fail(name, "JSON text");
     }

@@ -94,16 +94,11 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
 
 } // namespace
 
-struct BeamScene::Impl {
-    TriangleTree tree;
-    const Blockers& exact;
-    std::size_t crowded_shaft;
-};
-
 BeamScene::BeamScene(const mesh::TriangleMesh& mesh, const Blockers& exact,
                      std::size_t crowded_shaft)
-    : impl_(new Impl{triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)), exact,
-                     std::min(crowded_shaft, CrowdedShaft)}) {}
+    : tree_(std::make_unique<const TriangleTree>(
+          triangle_tree(mesh.positions, mesh::with_flat_regions_merged(mesh)))),
+      exact_(&exact), crowded_shaft_(std::min(crowded_shaft, CrowdedShaft)) {}
 
 BeamScene::~BeamScene() = default;
 BeamScene::BeamScene(BeamScene&&) noexcept = default;
@@ -111,12 +106,13 @@ BeamScene& BeamScene::operator=(BeamScene&&) noexcept = default;
 
 std::uint32_t BeamScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
                                   std::uint32_t active) const {
-    return impl_->exact.occluded(origin, directions, active);
+    return exact_->occluded(origin, directions, active);
 }
 
 void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& patch,
                               std::span<std::uint64_t> rays) const {
-    const auto& [tree, exact, crowded_shaft] = *impl_;
+    const TriangleTree& tree = *tree_;
+    const Blockers& exact = *exact_;
     if (rays.empty())
         return;
     const PatchPlane plane = patch_plane(patch);
@@ -128,7 +124,7 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
     thread_local ShaftLeaves leaves;
     Shaft shaft = shaft_of(plane, group.mean_normal, origins.reach);
     const ReceiverCones cones = place_shaft(origins, rays, shaft);
-    if (!find_leaves(tree, shaft, crowded_shaft, leaves)) {
+    if (!find_leaves(tree, shaft, crowded_shaft_, leaves)) {
         if (std::max(plane.s1 - plane.s0, plane.t1 - plane.t0) > WidestCrowdedPatch)
             exact.clear_blocked(group, patch, rays);
         else

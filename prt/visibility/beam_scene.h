@@ -11,6 +11,8 @@
 
 namespace relumine::prt {
 
+struct TriangleTree;
+
 /// Answers for a group of receivers and a patch of directions together, with the answers that
 /// another tracer gives ray by ray.
 ///
@@ -59,8 +61,9 @@ public:
                        std::span<std::uint64_t> rays) const override;
 
 private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<const TriangleTree> tree_;
+    const Blockers* exact_;
+    std::size_t crowded_shaft_;
 };
 
 } // namespace relumine::prt

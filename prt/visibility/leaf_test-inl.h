@@ -122,8 +122,8 @@ struct RayVerdicts {
     std::uint64_t maybes = 0;
 };
 
-/// Edge functions of triangles as one receiver sees them: value k at s, t is
-/// moment[k] . (1, s, t), turned so that a hit's three are positive.
+/// Edge functions of triangles as one receiver sees them: value k at s, t is moment[k] . (1, s, t),
+/// turned so that a hit's three are positive.
 template<class D>
 struct TriangleView {
     using Vector = hn::Vec<D>;
@@ -209,8 +209,9 @@ HWY_INLINE Meets<D> meets(D d, const TriangleView<D>& view, bool any_edge_on, fl
     const auto e2 = view.edge_function(2, s, t);
     const auto least = hn::Min(hn::Min(e0, e1), e2);
     Meets<D> result{hn::Gt(least, view.certain), hn::Ge(least, hn::Neg(view.certain))};
-    if (any_edge_on) { // seen from near its plane, a triangle is missed for certain only where its
-                       // line is from both sides
+    // Seen from near its plane, a triangle is missed for certain only where its line is from both
+    // sides.
+    if (any_edge_on) {
         const auto most = hn::Max(hn::Max(e0, e1), e2);
         result.hit = hn::AndNot(view.edge_on, result.hit);
         result.maybe = hn::Or(result.maybe, hn::And(view.edge_on, hn::Le(most, view.certain)));

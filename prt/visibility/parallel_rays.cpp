@@ -66,6 +66,16 @@ struct Direction {
     glm::vec3 unit;
 };
 
+/// Stores what holds the triangles' corners along one axis, with what rounding may lose.
+template<class D>
+HWY_INLINE void store_range(D d, const hn::Vec<D> (&corners)[3], hn::Vec<D> lost, std::size_t lane,
+                            ProjectedLeaf::Row& low, ProjectedLeaf::Row& high) {
+    hn::Store(hn::Sub(hn::Min(hn::Min(corners[0], corners[1]), corners[2]), lost), d,
+              low.data() + lane);
+    hn::Store(hn::Add(hn::Max(hn::Max(corners[0], corners[1]), corners[2]), lost), d,
+              high.data() + lane);
+}
+
 template<class D>
 void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
              const GroupOrigins& origins, ProjectedLeaf& projected) {
@@ -108,12 +118,8 @@ void project(D d, const TriangleTree::Leaf& leaf, const Direction& direction,
               projected.certain);
         const Vector lost =
             hn::MulAdd(reach, hn::Set(d, OutlineRoundings * Rounding), hn::Set(d, Smallest));
-        store(hn::Sub(hn::Min(hn::Min(moved_s[0], moved_s[1]), moved_s[2]), lost), projected.s_low);
-        store(hn::Add(hn::Max(hn::Max(moved_s[0], moved_s[1]), moved_s[2]), lost),
-              projected.s_high);
-        store(hn::Sub(hn::Min(hn::Min(moved_t[0], moved_t[1]), moved_t[2]), lost), projected.t_low);
-        store(hn::Add(hn::Max(hn::Max(moved_t[0], moved_t[1]), moved_t[2]), lost),
-              projected.t_high);
+        store_range(d, moved_s, lost, lane, projected.s_low, projected.s_high);
+        store_range(d, moved_t, lost, lane, projected.t_low, projected.t_high);
 
         Vector height = hn::Zero(d);
         for (std::size_t a = 0; a < 3; ++a) {
@@ -191,14 +197,10 @@ void project(D d, const Direction& direction, const GroupOrigins& origins,
     }
 }
 
-/// Tests the rays of a bundle against a leaf's triangles. Bit i of `rays` is the bundle's receiver
-/// i; clears those that are blocked for certain, and returns those that are in doubt.
+/// Returns the triangles of a leaf whose outline comes near a bundle, one bit each.
 template<class D>
-std::uint32_t test_bundle(D d, const TriangleTree::Leaf& leaf, const ProjectedLeaf& projected,
-                          const Direction& direction, const GroupOrigins& origins,
-                          const ProjectedReceivers& receivers, std::size_t bundle,
-                          std::uint32_t& rays) {
-    using Vector = hn::Vec<D>;
+HWY_INLINE std::uint32_t triangles_near(D d, const ProjectedLeaf& projected,
+                                        const ProjectedReceivers& receivers, std::size_t bundle) {
     std::uint32_t near = 0;
     for (std::size_t lane = 0; lane < Width; lane += hn::Lanes(d)) {
         const auto row = [&](const ProjectedLeaf::Row& values) {
@@ -210,6 +212,18 @@ std::uint32_t test_bundle(D d, const TriangleTree::Leaf& leaf, const ProjectedLe
                                hn::Ge(row(projected.t_high), hn::Set(d, receivers.t_low[bundle])));
         near |= bits_of(d, hn::And(s, t)) << lane;
     }
+    return near;
+}
+
+/// Tests the rays of a bundle against a leaf's triangles. Bit i of `rays` is the bundle's receiver
+/// i; clears those that are blocked for certain, and returns those that are in doubt.
+template<class D>
+std::uint32_t test_bundle(D d, const TriangleTree::Leaf& leaf, const ProjectedLeaf& projected,
+                          const Direction& direction, const GroupOrigins& origins,
+                          const ProjectedReceivers& receivers, std::size_t bundle,
+                          std::uint32_t& rays) {
+    using Vector = hn::Vec<D>;
+    std::uint32_t near = triangles_near(d, projected, receivers, bundle);
     const std::size_t first = bundle * hn::Lanes(d);
     const Vector origin[3] = {hn::Load(d, receivers.origin[0] + first),
                               hn::Load(d, receivers.origin[1] + first),

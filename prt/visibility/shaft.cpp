@@ -98,9 +98,8 @@ PatchPlane patch_plane(const DirectionPatch& patch) {
     return plane;
 }
 
-/// The first four pass through the sides of the rectangle, the fifth is behind the
-/// receivers, the sixth is the receivers' own ground, turned towards the patch until all directions
-/// leave it.
+/// The first four pass through the sides of the rectangle, the fifth is behind the receivers, the
+/// sixth is the receivers' own ground, turned towards the patch until all directions leave it.
 Shaft shaft_of(const PatchRectangle& patch, const glm::vec3& mean_normal, float reach) {
     const auto vector = [&](float along, float s, float t) {
         glm::vec3 v;

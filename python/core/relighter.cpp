@@ -10,7 +10,7 @@
 #include "arrays.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/layers/layer_list.h"
-#include "files/json_value.h"
+#include "files/json_reader.h"
 #include "lights.h"
 #include "options.h"
 #include "relight/light_fit/transfer_lights.h"
@@ -128,7 +128,7 @@ py::tuple tuple_of(const RelightTimes& times) {
 /// A JSON array of layers. Pictures that they name are looked for in the present folder.
 std::vector<cubemap::LightLayer> layers_of(const std::string& json) {
     const files::JsonReader reader("layers");
-    const files::JsonValue list = reader.parse(std::as_bytes(std::span(json)));
+    const files::Json list = reader.parse(std::as_bytes(std::span(json)));
     return cubemap::read_layers(reader, list, {});
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "files/parallel.h"
@@ -33,46 +35,25 @@ constexpr std::size_t RowsPerTask = prt::RowsPerRun;
 /// gaps is found late. The light that is left is then at least as large as the last step.
 constexpr double LeastRatio = 0.5;
 
-/// Solves the normal equations of up to AndersonDepth unknowns by Cholesky's method; a column that
-/// depends on those before gets the factor 0.
-std::array<double, AndersonDepth>
-least_squares(std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix,
-              std::array<double, AndersonDepth> right, std::size_t size) {
+using AndersonMatrix = Eigen::Matrix<double, AndersonDepth, AndersonDepth>;
+using AndersonVector = Eigen::Matrix<double, AndersonDepth, 1>;
+
+/// Solves normal equations. An unknown whose column depends on those before is 0.
+AndersonVector least_squares(AndersonMatrix matrix, AndersonVector right) {
+    static_assert(AndersonDepth == 2);
     constexpr double SmallestPivot = 1e-12;
-    std::array<double, AndersonDepth> largest{};
-    std::array<bool, AndersonDepth> used{};
-    for (std::size_t i = 0; i < size; ++i)
-        largest[i] = matrix[i][i];
-    for (std::size_t i = 0; i < size; ++i) {
-        for (std::size_t k = 0; k < i; ++k)
-            if (used[k])
-                matrix[i][i] -= matrix[i][k] * matrix[i][k];
-        used[i] = matrix[i][i] > SmallestPivot * largest[i];
-        if (!used[i])
-            continue;
-        matrix[i][i] = std::sqrt(matrix[i][i]);
-        for (std::size_t j = i + 1; j < size; ++j) {
-            for (std::size_t k = 0; k < i; ++k)
-                if (used[k])
-                    matrix[j][i] -= matrix[j][k] * matrix[i][k];
-            matrix[j][i] /= matrix[i][i];
-        }
-        for (std::size_t k = 0; k < i; ++k)
-            if (used[k])
-                right[i] -= matrix[i][k] * right[k];
-        right[i] /= matrix[i][i];
-    }
-    std::array<double, AndersonDepth> result{};
-    for (std::size_t i = size; i-- > 0;) {
-        if (!used[i])
-            continue;
-        double value = right[i];
-        for (std::size_t j = i + 1; j < size; ++j)
-            if (used[j])
-                value -= matrix[j][i] * result[j];
-        result[i] = value / matrix[i][i];
-    }
-    return result;
+    const auto leave_out = [&](Eigen::Index i) {
+        matrix.row(i).setZero();
+        matrix.col(i).setZero();
+        matrix(i, i) = 1.0;
+        right[i] = 0.0;
+    };
+    if (!(matrix(0, 0) > 0.0))
+        leave_out(0);
+    const double pivot = matrix(1, 1) - matrix(1, 0) * matrix(1, 0) / matrix(0, 0);
+    if (!(pivot > SmallestPivot * matrix(1, 1)))
+        leave_out(1);
+    return matrix.llt().solve(right);
 }
 
 } // namespace
@@ -428,17 +409,19 @@ private:
             const auto product = [&](std::size_t a, std::size_t b) {
                 return products_[index_before(a)][index_before(b)][c];
             };
-            std::array<std::array<double, AndersonDepth>, AndersonDepth> matrix{};
-            std::array<double, AndersonDepth> vector{};
+            AndersonMatrix matrix = AndersonMatrix::Zero();
+            AndersonVector vector = AndersonVector::Zero();
             for (std::size_t a = 0; a < num_before_; ++a) {
-                vector[a] = product(0, 0) - product(0, a + 1);
+                const auto row = static_cast<Eigen::Index>(a);
+                vector[row] = product(0, 0) - product(0, a + 1);
                 for (std::size_t b = 0; b < num_before_; ++b)
-                    matrix[a][b] = product(0, 0) - product(0, a + 1) - product(0, b + 1) +
-                                   product(a + 1, b + 1);
+                    matrix(row, static_cast<Eigen::Index>(b)) = product(0, 0) - product(0, a + 1) -
+                                                                product(0, b + 1) +
+                                                                product(a + 1, b + 1);
             }
-            const auto solution = least_squares(matrix, vector, num_before_);
+            const AndersonVector solution = least_squares(matrix, vector);
             for (std::size_t a = 0; a < num_before_; ++a)
-                factors[a].rgb[c] = static_cast<float>(solution[a]);
+                factors[a].rgb[c] = static_cast<float>(solution[static_cast<Eigen::Index>(a)]);
         }
         return factors;
     }

@@ -57,6 +57,11 @@ private:
     std::vector<std::uint32_t> groups_;
 };
 
+/// Whether this process has the group that begins with a row.
+bool has_group(const SharedRows& shared, std::size_t first_row) {
+    return shared.reduction == nullptr || prt::has_row(shared.reduction->part(), first_row, 0);
+}
+
 } // namespace
 
 /// Sums the rows of the groups for which has_group(group) is true; `add_row` adds the weights of a
@@ -123,6 +128,37 @@ CoarseBounces::Level CoarseBounces::level_of(const Rows& rows, std::size_t group
     return level;
 }
 
+/// Returns the smallest size of groups that leaves a matrix small enough.
+std::size_t CoarseBounces::size_of_groups(const prt::BounceMatrix& matrix, std::size_t first,
+                                          const SharedRows& shared) {
+    static_assert(prt::RowsPerRun % LargestGroup == 0);
+    const std::size_t num_rows = matrix.num_rows() - first;
+    std::size_t group_size = SmallestGroup;
+    for (; group_size < LargestGroup; group_size *= GroupsPerGroup) {
+        const std::size_t num_groups = (num_rows + group_size - 1) / group_size;
+        const std::size_t step = std::max<std::size_t>(num_groups / NumTriedGroups, 1);
+        RowSums sums(num_groups);
+        std::array<std::int64_t, 2> entries_and_emitters{};
+        for (std::size_t group = 0; group < num_groups; group += step) {
+            if (!has_group(shared, group * group_size))
+                continue;
+            const std::size_t end = std::min((group + 1) * group_size, num_rows);
+            for (std::size_t row = group * group_size; row < end; ++row)
+                for (const std::uint32_t emitter : matrix.emitters[first + row]) {
+                    sums.add((emitter - first) / group_size, 1.0f);
+                    ++entries_and_emitters[1];
+                }
+            entries_and_emitters[0] += static_cast<std::int64_t>(sums.groups().size());
+            sums.clear();
+        }
+        if (shared.reduction != nullptr)
+            shared.reduction->sum(entries_and_emitters);
+        if (LeastSaving * entries_and_emitters[0] <= entries_and_emitters[1])
+            break;
+    }
+    return group_size;
+}
+
 CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
                              const SharedRows& shared) {
     const std::size_t num_rows = matrix.num_rows() - first;
@@ -140,42 +176,16 @@ CoarseBounces::CoarseBounces(const prt::BounceMatrix& matrix, std::size_t first,
                                                   num_emitters / num_own)
                              : 0.0f;
     };
-    // The smallest groups that leave a matrix small enough.
-    std::size_t group_size = SmallestGroup;
-    const auto has_group = [&](std::size_t group) {
-        return shared.reduction == nullptr ||
-               prt::has_row(shared.reduction->part(), group * group_size, 0);
+    const std::size_t group_size = size_of_groups(matrix, first, shared);
+    const auto has_own = [&](std::size_t group) {
+        return has_group(shared, group * group_size);
     };
-    static_assert(prt::RowsPerRun % LargestGroup == 0);
-    for (; group_size < LargestGroup; group_size *= GroupsPerGroup) {
-        const std::size_t num_groups = (num_rows + group_size - 1) / group_size;
-        const std::size_t step = std::max<std::size_t>(num_groups / NumTriedGroups, 1);
-        RowSums sums(num_groups);
-        std::array<std::int64_t, 2> entries_and_emitters{};
-        for (std::size_t group = 0; group < num_groups; group += step) {
-            if (!has_group(group))
-                continue;
-            const std::size_t end = std::min((group + 1) * group_size, num_rows);
-            for (std::size_t row = group * group_size; row < end; ++row)
-                for (const std::uint32_t emitter : matrix.emitters[first + row]) {
-                    sums.add((emitter - first) / group_size, 1.0f);
-                    ++entries_and_emitters[1];
-                }
-            entries_and_emitters[0] += static_cast<std::int64_t>(sums.groups().size());
-            sums.clear();
-        }
-        if (shared.reduction != nullptr)
-            shared.reduction->sum(entries_and_emitters);
-        if (LeastSaving * entries_and_emitters[0] <= entries_and_emitters[1])
-            break;
-    }
-    Rows rows =
-        rows_of_groups(num_rows, group_size, has_group, [&](std::size_t row, RowSums& sums) {
-            const float weight = own_weight(first + row);
-            if (weight > 0.0f)
-                for (const std::uint32_t emitter : matrix.emitters[first + row])
-                    sums.add((emitter - first) / group_size, weight);
-        });
+    Rows rows = rows_of_groups(num_rows, group_size, has_own, [&](std::size_t row, RowSums& sums) {
+        const float weight = own_weight(first + row);
+        if (weight > 0.0f)
+            for (const std::uint32_t emitter : matrix.emitters[first + row])
+                sums.add((emitter - first) / group_size, weight);
+    });
     if (shared.reduction != nullptr)
         share(rows, group_size, *shared.reduction);
     levels_.push_back(level_of(rows, group_size));

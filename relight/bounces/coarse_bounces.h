@@ -57,6 +57,8 @@ private:
         /// Writes A (given + albedo sum) to `next`.
         void multiply();
     };
+    static std::size_t size_of_groups(const prt::BounceMatrix& matrix, std::size_t first,
+                                      const SharedRows& shared);
     using Rows = std::vector<std::vector<Entry>>;
     template<typename HasGroup, typename AddRow>
     static Rows rows_of_groups(std::size_t num_rows, std::size_t group_size,

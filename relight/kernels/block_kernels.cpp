@@ -434,6 +434,13 @@ void add(const std::array<double, ClusterLights::Stride>& vector,
     sum[Last] += vector[Last];
 }
 
+/// Calls `visit` with each bit.
+template<typename Visit>
+HWY_INLINE void for_clusters(std::uint64_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1)
+        visit(bits & (~bits + 1));
+}
+
 std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,
                           BlockLight* light) {
     const prt::VisibleCounts& counts = scene.counts;
@@ -452,10 +459,6 @@ std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const Light
         const auto index_of = [&](std::uint64_t bit) {
             return change.first +
                    static_cast<std::size_t>(std::popcount(change.clusters & (bit - 1)));
-        };
-        const auto for_clusters = [&](std::uint64_t bits, const auto& visit) {
-            for (; bits != 0; bits &= bits - 1)
-                visit(bits & (~bits + 1));
         };
         for_blocks(blocks.full, [&](std::size_t block) { add(change.vector, sums[block]); });
         summed |= blocks.full;
@@ -516,6 +519,13 @@ double block_radiance(const BlockNormals& normals, const BlockLight& light,
 void light_tile(const BlockScene& scene, std::size_t tile, const ClusterLights& lights,
                 std::span<BlockLight> light, std::uint64_t blocks) {
     HWY_DYNAMIC_DISPATCH(light_tile)(scene, tile, lights, light.data(), blocks);
+}
+
+/// Calls `visit` with each bit.
+template<typename Visit>
+HWY_INLINE void for_clusters(std::uint64_t bits, const Visit& visit) {
+    for (; bits != 0; bits &= bits - 1)
+        visit(bits & (~bits + 1));
 }
 
 std::uint64_t update_tile(const BlockScene& scene, std::size_t tile, const LightChanges& changes,

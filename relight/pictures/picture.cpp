@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cubemap/image/image_file.h"
+#include "files/extension.h"
 #include "files/output_file.h"
 #include "files/parallel.h"
 #include "relight/pictures/png_file.h"
@@ -83,9 +84,7 @@ std::vector<std::byte> png_file(const Picture& picture, const Development& devel
 void save_picture(const std::filesystem::path& path, const Picture& picture,
                   const Development& development) {
     std::vector<std::byte> bytes;
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    const std::string extension = files::extension_of(path);
     try {
         if (extension == ".png") {
             bytes = png_file(picture, development);

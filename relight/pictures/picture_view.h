@@ -95,7 +95,7 @@ public:
     /// pixels around sees other lights.
     ///
     /// Throws:  std::invalid_argument where there is not one radiance, albedo or surface per
-    /// vertex.
+    ///          vertex.
     [[nodiscard]] Picture cut_out(const MeshLight& light) const;
 
     /// Draws the mesh before the backdrop. The picture is opaque and has no alpha.

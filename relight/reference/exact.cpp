@@ -182,8 +182,7 @@ constexpr std::uint32_t RimCut = 4;
 class ImageTiles {
 public:
     ImageTiles(const cubemap::EnvironmentImage& image, const glm::dmat3& turn)
-        : image_(image), turn_(turn),
-          parts_({image.layout, image.sampling, image.width, image.height}) {
+        : image_(image), turn_(turn), parts_(cubemap::shape_of(image)) {
         const std::size_t num_pixels =
             std::size_t{parts_.num_panels()} * parts_.panel_width() * parts_.panel_height();
         const double per_ray = static_cast<double>(num_pixels) / static_cast<double>(MaxDimRays);

@@ -48,9 +48,8 @@ public:
     /// Computes the radiance through each lobe, without colours, of a block of up to 16 receivers
     /// with highlights. A light is a point.
     ///
-    /// Shape:   lanes is [receivers x num_packets()], as visible() gives them; normals and sums
-    /// have
-    ///          one element per receiver.
+    /// Shape:   lanes is [receivers x num_packets()] of visible(); normals and sums have one
+    ///          element per receiver.
     void light_block(const prt::BlockSurfaces& surfaces, std::span<const glm::vec3> normals,
                      std::span<const std::uint16_t> lanes,
                      std::span<prt::Lobes<glm::dvec3>> sums) const;

@@ -40,10 +40,6 @@ inline EnvironmentImage black_image(Layout layout, Sampling sampling, std::uint3
     return black_image(layout, sampling, pixels.width, pixels.height);
 }
 
-inline ImageShape shape_of(const EnvironmentImage& image) {
-    return {image.layout, image.sampling, image.width, image.height};
-}
-
 /// Sets every pixel from the direction it stands for.
 inline void paint(EnvironmentImage& image,
                   const std::function<glm::vec3(const glm::dvec3&)>& radiance) {

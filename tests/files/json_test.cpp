@@ -54,7 +54,7 @@ TEST(Json, Lists) {
 TEST(Json, FieldsAreReplacedAndSortedInTheText) {
     Json report = {{"b", 1}, {"a", 1}};
     report.set("b", 2);
-    report.update({{"c", {{"deep", true}}}});
+    update(report, {{"c", {{"deep", true}}}});
     EXPECT_EQ(report.text(2),
               "{\n  \"a\": 1,\n  \"b\": 2,\n  \"c\": {\n    \"deep\": true\n  }\n}");
 }
@@ -67,9 +67,9 @@ TEST(Json, CopiesAreTheirOwn) {
     first = second;
     second.set("a", 3);
     EXPECT_EQ(parsed(first)["a"], 2);
-    EXPECT_TRUE(Json().empty());
-    EXPECT_EQ(Json::object().text(), "{}");
-    EXPECT_FALSE(first.empty());
+    EXPECT_EQ(Json().size(), 0u);
+    EXPECT_EQ(Json(Json::Object{}).text(), "{}");
+    EXPECT_NE(first.size(), 0u);
 }
 
 TEST(Json, BytesThatAreNoTextAreReplaced) {
@@ -77,7 +77,7 @@ TEST(Json, BytesThatAreNoTextAreReplaced) {
 }
 
 TEST(Json, KeepsOrderWhereAsked) {
-    const Json json = {{"b", Json::array({1, 0.5})}, {"a", Json::object()}};
+    const Json json = {{"b", Json::Array{1, 0.5}}, {"a", Json::Object{}}};
     EXPECT_EQ(json.text(-1, Json::Order::Set), R"({"b":[1,0.5],"a":{}})");
     EXPECT_EQ(json.text(), R"({"a":{},"b":[1,0.5]})");
     EXPECT_THROW((void)Json("\xff").text(-1, Json::Order::Set, Json::Utf8::Require), JsonError);
@@ -86,35 +86,34 @@ TEST(Json, KeepsOrderWhereAsked) {
 TEST(Json, ReadsWhatItWrites) {
     const std::string text =
         R"({"b":[true,null,-3,18446744073709551615,0.1,"\u00e4\n"],"a":{"deep":[]}})";
-    const Json json = Json::parse(text);
+    const Json json = parse_json(text);
     EXPECT_EQ(json.members()[0].first, "b");
-    EXPECT_EQ(json.at("b").at(3).whole(), std::numeric_limits<std::uint64_t>::max());
-    EXPECT_EQ(json.at("b").at(2).number(), -3.0);
-    EXPECT_EQ(json.at("b").at(4).number(), 0.1);
-    EXPECT_EQ(json.at("b").at(5).string(), "\xc3\xa4\n");
-    EXPECT_TRUE(json.at("b").at(0).boolean());
-    EXPECT_TRUE(json.at("b").at(1).is_null());
-    EXPECT_TRUE(json.at("a").at("deep").is_array());
+    EXPECT_EQ(json.at("b").values()[3].whole(), std::numeric_limits<std::uint64_t>::max());
+    EXPECT_EQ(json.at("b").values()[2].number(), -3.0);
+    EXPECT_EQ(json.at("b").values()[4].number(), 0.1);
+    EXPECT_EQ(json.at("b").values()[5].string(), "\xc3\xa4\n");
+    EXPECT_TRUE(json.at("b").values()[0].boolean());
+    EXPECT_TRUE(json.at("b").values()[1].type() == Json::Type::Null);
+    EXPECT_TRUE(json.at("a").at("deep").type() == Json::Type::Array);
     EXPECT_EQ(nlohmann::json::parse(json.text()), nlohmann::json::parse(text));
-    EXPECT_EQ(Json::parse(R"({"a":1,"a":2})").at("a").number(), 2.0);
+    EXPECT_EQ(parse_json(R"({"a":1,"a":2})").at("a").number(), 2.0);
 }
 
 TEST(Json, RefusesOtherTypesAndWhatIsNotThere) {
-    const Json json = Json::parse(R"({"real":1.0,"negative":-1,"list":[1]})");
+    const Json json = parse_json(R"({"real":1.0,"negative":-1,"list":[1]})");
     EXPECT_THROW((void)json.at("real").whole(), JsonError);
     EXPECT_THROW((void)json.at("negative").whole(), JsonError);
     EXPECT_THROW((void)json.at("real").string(), JsonError);
     EXPECT_THROW((void)json.at("list").boolean(), JsonError);
-    EXPECT_THROW((void)json.at("list").at(1), JsonError);
     EXPECT_THROW((void)json.at("none"), JsonError);
-    EXPECT_THROW((void)json.at(0), JsonError);
+    EXPECT_THROW((void)json.values(), JsonError);
     EXPECT_EQ(json.at("list").find("a"), nullptr);
 }
 
 TEST(Json, FaultsOfATextAreNamed) {
     const auto fault = [](const std::string& text) -> std::string {
         try {
-            (void)Json::parse(text);
+            (void)parse_json(text);
         } catch (const JsonError& error) {
             return error.what();
         }

@@ -91,7 +91,7 @@ const std::vector<Words>& working_lines() {
         {"animate", "scene.prt", "env.%d.hdr", "--vertices", "new.npy", "--method", "clusters"},
         {"verify", "scene.prt", "env.0.hdr", "--samples", "2", "--surface", "2"},
         {"lights", "env.0.hdr", "-o", "new.json"},
-        {"lights", "env.0.hdr", "--compare", "scene.prt", "-n", "4"},
+        {"lights", "env.0.hdr", "--scene", "scene.prt", "-n", "4", "-o", "new.json"},
         {"info", "scene.prt"},
         {"mesh", "refine", "mesh.obj", "-o", "new.ply", "--error", "0.05", "--max-vertices", "40"},
         {"mesh", "repair", "mesh.obj", "-o", "new.obj", "--weld"},

@@ -92,12 +92,11 @@ TEST(ImportanceSampling, OtherSeedsOtherDirectionsWithTheRightMean) {
     const LatLongGrid grid(image);
     const glm::dvec3 normal = glm::normalize(glm::dvec3(1.0, 2.0, -0.5));
     double exact = 0.0;
-    cubemap::for_each_pixel({image.layout, image.sampling, image.width, image.height},
-                            [&](std::size_t pixel, const cubemap::PixelPlace& place) {
-                                exact += static_cast<double>(image.pixels[pixel].g) *
-                                         place.solid_angle *
-                                         std::max(glm::dot(place.direction, normal), 0.0);
-                            });
+    cubemap::for_each_pixel(
+        cubemap::shape_of(image), [&](std::size_t pixel, const cubemap::PixelPlace& place) {
+            exact += static_cast<double>(image.pixels[pixel].g) * place.solid_angle *
+                     std::max(glm::dot(place.direction, normal), 0.0);
+        });
     double mean = 0.0;
     constexpr int NumSeeds = 2000;
     for (std::uint64_t seed = 1; seed <= NumSeeds; ++seed)

@@ -17,7 +17,7 @@ namespace {
 class NaiveMedianCut {
 public:
     explicit NaiveMedianCut(const cubemap::EnvironmentImage& image) : image_(image) {
-        cubemap::for_each_pixel({image.layout, image.sampling, image.width, image.height},
+        cubemap::for_each_pixel(cubemap::shape_of(image),
                                 [&](std::size_t pixel, const cubemap::PixelPlace& place) {
                                     const glm::vec3& rgb = image.pixels[pixel];
                                     energy_.push_back((0.2125 * static_cast<double>(rgb.r) +

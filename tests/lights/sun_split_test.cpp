@@ -35,7 +35,7 @@ glm::dvec3 irradiance_of(const cubemap::CubeMap& map, const glm::dvec3& normal) 
 
 glm::dvec3 irradiance_of(const cubemap::EnvironmentImage& image, const glm::dvec3& normal) {
     glm::dvec3 sum(0.0);
-    cubemap::for_each_pixel({image.layout, image.sampling, image.width, image.height},
+    cubemap::for_each_pixel(cubemap::shape_of(image),
                             [&](std::size_t index, const cubemap::PixelPlace& place) {
                                 sum += glm::dvec3(image.pixels[index]) * place.solid_angle *
                                        std::max(0.0, glm::dot(normal, place.direction));

@@ -47,7 +47,7 @@ inline cubemap::EnvironmentImage wild(std::uint32_t width, std::uint32_t height,
 /// The power of a map, added without any help of the library under test.
 inline glm::dvec3 power(const cubemap::EnvironmentImage& image) {
     glm::dvec3 sum(0.0);
-    cubemap::for_each_pixel({image.layout, image.sampling, image.width, image.height},
+    cubemap::for_each_pixel(cubemap::shape_of(image),
                             [&](std::size_t pixel, const cubemap::PixelPlace& place) {
                                 sum += glm::dvec3(image.pixels[pixel]) * place.solid_angle;
                             });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "files/hash.h"
 #include "mesh/floor.h"
 #include "mesh/save.h"
 #include "prt/scene/scene_file.h"
@@ -20,7 +21,7 @@ TEST_F(MeshFile, KnowsItsOriginAndItsFloor) {
     const Mesh plain = load_mesh(file("squares.ply"));
     EXPECT_EQ(plain.geometry.positions, squares.positions);
     EXPECT_EQ(plain.source, file("squares.ply").string());
-    EXPECT_EQ(plain.source_hash, prt::file_hash(file("squares.ply")));
+    EXPECT_EQ(plain.source_hash, files::file_hash(file("squares.ply")));
     EXPECT_EQ(plain.floor_vertices, 0u);
 
     const Mesh standing =

@@ -18,15 +18,15 @@ TEST(Script, ReadsCommandsCommentsAndQuotedNames) {
                      "screenshot out.png\r\nquit",
                      "s");
     ASSERT_EQ(commands.size(), 4u);
-    EXPECT_EQ(commands[0].action, Action::Wait);
-    EXPECT_EQ(num_frames(commands[0]), 3u);
-    EXPECT_EQ(commands[1].action, Action::DragLayer);
+    EXPECT_EQ(commands[0].name(), "wait");
+    EXPECT_EQ(commands[0].num_frames(), 3u);
+    EXPECT_EQ(commands[1].name(), "drag_layer");
     EXPECT_EQ(commands[1].text, "Key light");
     EXPECT_THAT(commands[1].numbers, ElementsAre(1.0, 0.5, -2.0, 7.0));
-    EXPECT_EQ(num_frames(commands[1]), 7u);
+    EXPECT_EQ(commands[1].num_frames(), 7u);
     EXPECT_EQ(commands[1].line, 4u);
     EXPECT_EQ(commands[2].text, "out.png");
-    EXPECT_EQ(commands[3].action, Action::Quit);
+    EXPECT_EQ(commands[3].name(), "quit");
 }
 
 TEST(Script, RefusesWhatItDoesNotKnowWithTheLine) {

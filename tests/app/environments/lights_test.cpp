@@ -144,26 +144,7 @@ TEST_F(Lights, ChosenForASceneAndItsErrorSaid) {
     EXPECT_THAT(said.out, HasSubstr("% relative L2 on this asset"));
     misuse({"lights", "lamp.hdr", "--method", "transfer", "-o", "lights.json"},
            "expected --scene SCENE.prt with transfer");
-}
-
-TEST_F(Lights, ComparesAllMethodsOnAScene) {
-    write("mesh.obj", octahedron_obj());
-    succeed({"precompute", "mesh.obj", "-o", "scene.prt", "--face-resolution", "16", "-q"});
-    const auto report = succeed({"lights", "lamp.hdr", "--compare", "scene.prt", "-n", "1,8",
-                                 "--samples", "0", "--plot", "plot.svg", "--json"})
-                            .json();
-    ASSERT_EQ(report["rows"].size(), 8u); // four methods, two numbers
-    for (const auto& row : report["rows"]) {
-        EXPECT_GE(row["relative_l2"].get<double>(), 0.0);
-        EXPECT_LT(row["relative_l2"].get<double>(), 1.5) << row["method"];
-    }
-    EXPECT_THAT(read("plot.svg"), HasSubstr("median-cut"));
-    EXPECT_THAT(succeed({"lights", "lamp.hdr", "--compare", "scene.prt", "-n", "2"}).out,
-                HasSubstr("| transfer | 2 |"));
-    misuse({"lights", "lamp.hdr", "-n", "1,2", "-o", "a.json"}, "expected one number of lights");
-    misuse({"lights", "lamp.hdr", "--compare", "scene.prt", "-o", "a.json"}, "expected neither -o");
-    misuse({"lights", "lamp.hdr", "--compare", "scene.prt", "--plot", "a.png"},
-           "--plot: expected a name that ends in .svg, got 'a.png'");
+    misuse({"lights", "lamp.hdr", "-n", "1,2", "-o", "a.json"});
 }
 
 // The lamp's one light gives what the lamp gives, traced, through the clusters, and on the mesh
@@ -211,7 +192,6 @@ TEST_F(Lights, AListIsWrittenInEveryFormat) {
         EXPECT_EQ(read(file), read("direct_" + file)) << file;
     }
     misuse({"lights", "list.json", "--picture", "a.png"});
-    misuse({"lights", "list.json", "-o", "b.csv", "--compare", "scene.prt"});
 }
 
 TEST_F(Lights, FormatsWithoutASizeSayThatSoftLightsAreLost) {

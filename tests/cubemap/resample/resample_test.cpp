@@ -328,8 +328,7 @@ CubeMap from_polygons(const EnvironmentImage& image, std::uint32_t resolution) {
     std::vector<glm::dvec3> sums(map.texels.size(), glm::dvec3(0.0));
     std::vector<double> weights(sums.size(), 0.0);
     detail::for_each_row_of_shares(
-        {image.layout, image.sampling, image.width, image.height}, glm::dmat3(1.0), resolution,
-        [&](std::span<const detail::PixelShare> row) {
+        shape_of(image), glm::dmat3(1.0), resolution, [&](std::span<const detail::PixelShare> row) {
             for (const detail::PixelShare& share : row) {
                 sums[share.texel] += glm::dvec3(image.pixels[share.pixel]) * share.solid_angle;
                 weights[share.texel] += share.solid_angle;

@@ -508,12 +508,5 @@ TEST_F(SceneFileTest, NothingToLoad) {
     scenes::expect_refused(folder_, "cannot read", [&] { static_cast<void>(load_scene(folder_)); });
 }
 
-TEST_F(SceneFileTest, FileHashIsXxHash64OfTheBytes) {
-    std::ofstream(file_) << "abc";
-    EXPECT_EQ(file_hash(file_),
-              0x44bc2cf5ad770999u); // published test value of XXH64("abc", seed 0)
-    EXPECT_THROW(static_cast<void>(file_hash(folder_ / "nothing")), std::runtime_error);
-}
-
 } // namespace
 } // namespace relumine::prt
