@@ -23,6 +23,7 @@
 #include "relumine/output_options.h"
 #include "relumine/precompute.h"
 #include "relumine/precompute_options.h"
+#include "relumine/precompute_table.h"
 #include "relumine/questions.h"
 #include "relumine/scene.h"
 #include "relumine/shared_radiance.h"
