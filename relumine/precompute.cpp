@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 #include <glm/common.hpp>
 
+#include "prt/glossy/lobe_list.h"
 #include "prt/parts/part_file.h"
 #include "prt/parts/team_checkpoint.h"
 #include "prt/receivers/pixel_receivers.h"

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "files/json.h"
+#include "prt/scene/json_members.h"
 #include "prt/scene/section_reader.h"
 #include "prt/team.h"
 
