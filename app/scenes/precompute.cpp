@@ -318,7 +318,7 @@ void write_report(const PrecomputeArguments& options, const PrecomputeOptions& w
                   const PrecomputeReport& facts, const Scene& scene, double seconds,
                   Session& session) {
     Report report = report_of(work, facts, scene, session);
-    const std::string others = std::holds_alternative<prt::VertexLayout>(scene.layout)
+    const std::string others = prt::on_vertices(scene.layout)
                                    ? ""
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));

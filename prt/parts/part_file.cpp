@@ -17,8 +17,9 @@
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
-#include "prt/scene/scene_sections.h"
+#include "prt/scene/json_members.h"
 #include "prt/scene/section_file.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
@@ -32,14 +33,11 @@ std::vector<std::byte> text_section(const files::Json& json) {
 /// A part as its file has it.
 struct StoredPart {
     SectionReader reader;
-    std::uint32_t version = 0;
     PartHead head = {};
 };
 
 StoredPart read_part(const std::filesystem::path& path) {
-    std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version);
-    StoredPart stored{.reader = SectionReader(path, std::move(sections)), .version = version};
+    StoredPart stored{.reader = SectionReader(path, read_sections(path))};
     if (!stored.reader.has("part"))
         throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
                                              stored.reader.has("plan") ? "a plan" : "a scene"));
@@ -108,13 +106,12 @@ void add_light(NewSections& sections, const PartLight& light) {
         add_bounce_samples(sections, *light.bounces);
 }
 
-PartLight light_of(const SectionReader& reader, std::uint32_t version, std::size_t num_own,
-                   const Transfer& transfer) {
+PartLight light_of(const SectionReader& reader, std::size_t num_own, const Transfer& transfer) {
     PartLight light;
     VisibleCounts& counts = light.counts;
     counts.num_receivers = num_own;
     counts.num_leaves = transfer.num_clusters();
-    read_counts(reader, version, counts);
+    read_counts(reader, counts);
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
     light.bounces = read_bounce_samples(reader, num_own, transfer.num_receivers());
@@ -179,8 +176,7 @@ Scene join_parts(std::span<const std::filesystem::path> paths) {
     Scene scene = plan_of(first, read_sections(first));
     std::vector<PartLight> light;
     for (std::optional<StoredPart>& part : parts) {
-        light.push_back(
-            light_of(part->reader, part->version, part->head.num_receivers, scene.transfer));
+        light.push_back(light_of(part->reader, part->head.num_receivers, scene.transfer));
         part.reset();
     }
     try {
@@ -207,8 +203,7 @@ std::vector<PartLight> gather_light(Team& team, const Scene& scene, PartLight&& 
         const std::vector<std::byte> bytes = std::move(of_all[i]);
         const SectionReader reader("part", unpacked_sections(bytes));
         const Part part{i, team.part().count};
-        lights.push_back(light_of(reader, SceneFileVersion,
-                                  places_of(part, scene.transfer.num_receivers()).size(),
+        lights.push_back(light_of(reader, places_of(part, scene.transfer.num_receivers()).size(),
                                   scene.transfer));
     }
     return lights;
