@@ -1,6 +1,7 @@
 #include "relumine/questions.h"
 
 #include <cmath>
+#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <variant>
@@ -10,7 +11,6 @@
 #include "cubemap/layers/layer_composite.h"
 #include "relight/contribution.h"
 #include "relight/reference/path_tracer.h"
-#include "relumine/shared_slices.h"
 
 namespace relumine {
 
@@ -19,6 +19,30 @@ namespace {
 void require_environment(const LitScene& lit) {
     if (!has_environment(lit))
         throw std::logic_error("expected a scene lit by an environment");
+}
+
+/// Returns compute(indices): a value for each index. Where processes share the work, each computes
+/// a slice of neighbours, and all get all values. Null: this process does it all.
+template<typename Value, typename Compute>
+std::vector<Value> in_slices(prt::Team* team, std::span<const std::uint32_t> indices,
+                             const Compute& compute) {
+    if (team == nullptr)
+        return compute(indices);
+    const auto begin_of = [&](std::size_t process) {
+        return indices.size() * process / team->part().count;
+    };
+    const std::size_t begin = begin_of(team->part().index);
+    const std::vector<Value> own =
+        compute(indices.subspan(begin, begin_of(team->part().index + 1) - begin));
+    std::vector<std::byte> bytes;
+    for (const std::vector<std::byte>& slice : team->all_gather(prt::to_send(std::span(own))))
+        bytes.insert(bytes.end(), slice.begin(), slice.end());
+    std::vector<Value> values(indices.size());
+    if (bytes.size() != values.size() * sizeof(Value))
+        throw std::runtime_error("expected a value of each index");
+    if (!bytes.empty())
+        std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
 }
 
 /// What the environment was made from, while nothing has changed it; null otherwise.
