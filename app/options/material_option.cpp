@@ -1,38 +1,23 @@
 #include "app/options/material_option.h"
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cstdint>
 #include <map>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "app/command_line/command_line.h"
 #include "files/joined.h"
+#include "prt/glossy/lobe_list.h"
 
 namespace relumine::app {
 
 namespace {
-
-/// A model, and the names of its values on the command line.
-struct Model {
-    std::string_view name;
-    prt::Highlight highlight;
-    std::string_view albedo;
-    /// Empty: none
-    std::string_view specular;
-    /// Empty: none
-    std::string_view width;
-    float max_width;
-};
-constexpr std::array<Model, 3> Models = {{
-    {"ggx", prt::Highlight::Ggx, "albedo", "f0", "roughness", 1.0f},
-    {"blinn", prt::Highlight::BlinnPhong, "kd", "ks", "exponent", 1e6f},
-    {"lambert", prt::Highlight::None, "albedo", "", "", 0.0f},
-}};
 
 class Parser {
 public:
@@ -43,8 +28,8 @@ private:
     [[noreturn]] void fail(const std::string& expected, std::string_view got) const {
         throw UsageError(option_, fmt::format("expected {}, got '{}'", expected, got));
     }
-    const Model& take_model(std::string_view& rest, SurfaceMaterial& result) const;
-    void read_values(std::string_view rest, const Model& model);
+    const prt::LobeFacts& take_model(std::string_view& rest, SurfaceMaterial& result) const;
+    void read_values(std::string_view rest, const prt::LobeFacts& model);
     [[nodiscard]] std::vector<float> numbers(std::string_view key, float max) const;
     [[nodiscard]] std::optional<glm::vec3> color(std::string_view key) const;
 
@@ -55,29 +40,39 @@ private:
 
 /// Group names may have any letters: the model is looked for behind the last = that a model's name
 /// follows.
-const Model& Parser::take_model(std::string_view& rest, SurfaceMaterial& result) const {
+const prt::LobeFacts& Parser::take_model(std::string_view& rest, SurfaceMaterial& result) const {
     const std::string_view text = text_;
     for (std::size_t start = text.size() + 1; start-- > 0;) {
         if (start > 0 && text[start - 1] != '=')
             continue;
-        for (const Model& model : Models) {
+        for (std::size_t i = 0; i < prt::NumHighlights; ++i) {
+            const auto highlight = static_cast<prt::Highlight>(i);
+            const prt::LobeFacts& model = prt::facts_of(highlight);
             const std::string_view tail = text.substr(start);
             if (tail != model.name && !tail.starts_with(fmt::format("{}:", model.name)))
                 continue;
             if (start == 1)
                 fail("a group's name before =", text);
             result.group = start > 0 ? text.substr(0, start - 1) : "";
+            result.highlight = highlight;
             rest = tail.substr(std::min(model.name.size() + 1, tail.size()));
             return model;
         }
     }
-    fail("[GROUP=]ggx:..., [GROUP=]blinn:... or [GROUP=]lambert:...", text);
+    std::vector<std::string> forms;
+    for (std::size_t i = 1; i <= prt::NumHighlights; ++i) // lambert last
+        forms.push_back(
+            fmt::format("[GROUP=]{}:...",
+                        prt::facts_of(static_cast<prt::Highlight>(i % prt::NumHighlights)).name));
+    const std::string last = std::exchange(forms.back(), "");
+    forms.pop_back();
+    fail(files::joined(forms, ", ") + " or " + last, text);
 }
 
 /// key=number,number,number,key=number: words without = belong to the key before them.
-void Parser::read_values(std::string_view rest, const Model& model) {
+void Parser::read_values(std::string_view rest, const prt::LobeFacts& model) {
     std::vector<std::string_view> keys = {model.albedo};
-    for (const std::string_view key : {model.specular, model.width})
+    for (const std::string_view key : {model.specular, model.shape})
         if (!key.empty())
             keys.push_back(key);
     std::vector<std::string_view>* current = nullptr;
@@ -136,24 +131,23 @@ std::optional<glm::vec3> Parser::color(std::string_view key) const {
 SurfaceMaterial Parser::parse() {
     SurfaceMaterial result;
     std::string_view rest;
-    const Model& model = take_model(rest, result);
+    const prt::LobeFacts& model = take_model(rest, result);
     read_values(rest, model);
-    result.highlight = model.highlight;
     result.albedo = color(model.albedo);
     if (!model.specular.empty())
         result.specular = color(model.specular);
-    if (!model.width.empty()) {
-        const std::vector<float> width = numbers(model.width, model.max_width);
-        if (width.size() != 1)
-            fail(fmt::format("one number of {} of {}", model.width, model.name), text_);
-        result.roughness_or_exponent = width[0];
+    if (!model.shape.empty()) {
+        const std::vector<float> shape = numbers(model.shape, model.largest_shape);
+        if (shape.size() != 1)
+            fail(fmt::format("one number of {} of {}", model.shape, model.name), text_);
+        result.roughness_or_exponent = shape[0];
     }
-    if (model.highlight == prt::Highlight::BlinnPhong) {
+    if (model.needs_specular) {
         if (!result.specular)
-            fail("ks of blinn", text_);
+            fail(fmt::format("{} of {}", model.specular, model.name), text_);
         const glm::vec3 sum = result.albedo.value_or(glm::vec3(0.0f)) + *result.specular;
         if (std::max({sum.r, sum.g, sum.b}) > 1.0f + 1e-6f)
-            fail("kd + ks of 1 or less", text_);
+            fail(fmt::format("{} + {} of 1 or less", model.albedo, model.specular), text_);
     }
     return result;
 }

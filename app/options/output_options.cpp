@@ -206,7 +206,7 @@ void OutputOptions::check(const std::vector<std::string>& inputs) const {
 }
 
 void OutputOptions::check_fits(const Scene& scene) const {
-    if (std::holds_alternative<prt::VertexLayout>(scene.layout))
+    if (prt::on_vertices(scene.layout))
         return;
     const std::string extension = extension_of(path);
     if (extension == ".ply" || extension == ".glb")
@@ -223,7 +223,7 @@ void OutputOptions::check_fits(const Scene& scene) const {
                                              what, prt::description(scene.layout)));
     };
     refuse(camera_options_, "camera");
-    if (std::holds_alternative<prt::TexelLayout>(scene.layout))
+    if (!prt::kind_of(scene.layout).are_seen)
         refuse(background_options_, "background");
 }
 
@@ -241,7 +241,7 @@ relumine::OutputOptions OutputOptions::for_scene(const Scene& scene) const {
     if (std::holds_alternative<MeshColors>(result.albedo) && scene.mesh.colors.empty())
         throw UsageError("--albedo",
                          "expected a mesh with vertex colours for `mesh`, got one without");
-    if (std::holds_alternative<prt::VertexLayout>(scene.layout)) {
+    if (prt::on_vertices(scene.layout)) {
         const relight::PictureOptions picture = picture_size(size);
         result.width = picture.width;
         result.height = picture.height;

@@ -278,7 +278,7 @@ OutputOptions output_options(const Options& given, const Scene& scene) {
         result.background = EnvironmentBehind{.blur_degrees = *blur};
     }
     given.take("gutter", result.gutter);
-    if (std::holds_alternative<prt::VertexLayout>(scene.layout))
+    if (prt::on_vertices(scene.layout))
         result.camera = camera_of(
             given, scene, static_cast<float>(result.width) / static_cast<float>(result.height));
     return result;

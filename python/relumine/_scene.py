@@ -4,7 +4,19 @@ from __future__ import annotations
 
 import os
 import re
-from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from collections import namedtuple
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Callable,
+    Dict,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 from numpy.typing import ArrayLike
 
@@ -18,50 +30,50 @@ Color = Union[float, Sequence[float]]
 Progress = Callable[[float], object]
 
 
-class Ggx(NamedTuple):
-    """A metallic-roughness surface, as in glTF. Colours that are None stay the mesh's."""
-
-    roughness: float
-    albedo: Optional[Color] = None
-    f0: Optional[Color] = None
-
-
-class Blinn(NamedTuple):
-    """A normalised Blinn-Phong surface."""
-
-    exponent: float
-    ks: Color
-    kd: Optional[Color] = None
-
-
-class Lambert(NamedTuple):
-    """A matt surface."""
-
-    albedo: Optional[Color] = None
+def _lobes() -> List[Any]:
+    """The classes of materials by their numbers: Lambert, Ggx, Blinn. None: the mesh's colours."""
+    result: List[Any] = []
+    for name, about, albedo, specular, shape, largest, needs_specular in _core.lobes():
+        required = [shape] * bool(shape) + [specular] * needs_specular
+        optional = [albedo] + [specular] * bool(specular and not needs_specular)
+        lobe: Any = namedtuple(  # type: ignore[misc]
+            name.capitalize(), required + optional, defaults=[None] * len(optional)
+        )
+        lobe.__doc__ = about
+        lobe._facts = (albedo, specular, shape, largest)
+        result.append(lobe)
+    return result
 
 
-Material = Union[Ggx, Blinn, Lambert]
+LOBES = {lobe.__name__: lobe for lobe in _lobes()}
+globals().update(LOBES)
+if TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any: ...
+
+
+Material = Any
 
 
 def _materials(material: Union[Material, Mapping[str, Material], None]) -> List[Tuple[Any, ...]]:
     if material is None:
         return []
-    if isinstance(material, (Ggx, Blinn, Lambert)):
+    lobes = list(LOBES.values())
+    if isinstance(material, tuple(lobes)):
         material = {"": material}
     result: List[Tuple[Any, ...]] = []
     for group, surface in material.items():
-        if isinstance(surface, Ggx):
-            if not 0.0 <= surface.roughness <= 1.0:
-                raise ValueError(f"material: expected a roughness of 0 to 1, got {surface}")
-            result.append((group, 1, surface.roughness, surface.albedo, surface.f0))
-        elif isinstance(surface, Blinn):
-            if not 0.0 <= surface.exponent <= 1e6:
-                raise ValueError(f"material: expected an exponent of 0 to 1e6, got {surface}")
-            result.append((group, 2, surface.exponent, surface.kd, surface.ks))
-        elif isinstance(surface, Lambert):
-            result.append((group, 0, 0.0, surface.albedo, None))
-        else:
-            raise ValueError(f"material: expected Ggx, Blinn or Lambert, got {surface!r}")
+        if not isinstance(surface, tuple(lobes)):
+            *names, last = [*list(LOBES)[1:], list(LOBES)[0]]
+            raise ValueError(f"material: expected {', '.join(names)} or {last}, got {surface!r}")
+        albedo, specular, shape, largest = surface._facts
+        width = getattr(surface, shape) if shape else 0.0
+        if not 0.0 <= width <= largest:
+            article = "an" if shape[0] in "aeiou" else "a"
+            most = f"{largest:g}".replace("e+0", "e")
+            raise ValueError(f"material: expected {article} {shape} of 0 to {most}, got {surface}")
+        colors = [getattr(surface, name) if name else None for name in (albedo, specular)]
+        result.append((group, lobes.index(type(surface)), width, *colors))
     return result
 
 
