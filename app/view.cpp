@@ -15,7 +15,6 @@
 #include "app/options/lit_scene.h"
 #include "app/options/output_options.h"
 #include "app/options/receiver_options.h"
-#include "app/options/size_text.h"
 
 #ifndef RELUMINE_VIEWER_MISSING
 #include "viewer/view.h"
@@ -32,9 +31,8 @@ struct Options {
     std::string layers;
     std::string script;
     std::string screenshot;
-    std::string size = "1440x860";
-    std::string exposure = "auto";
-    std::string tone_map = "neutral";
+    /// The window's size, the exposure and the tone curve of pictures count.
+    relumine::OutputOptions picture = {.width = 1440, .height = 860};
 };
 
 #ifdef RELUMINE_VIEWER_MISSING
@@ -45,17 +43,6 @@ void run(const Options& /*options*/, Session& /*session*/) {
 }
 
 #else
-
-void set_size(const std::string& text, viewer::ViewOptions& view) {
-    const std::optional<SizeText> size = parse_size_text(text);
-    const auto fits = [](std::uint32_t side) {
-        return side >= 320 && side <= 16384;
-    };
-    if (!size || !fits(size->width) || !fits(size->height))
-        throw UsageError("--size", fmt::format("expected WxH, 320 to 16384 each, got '{}'", text));
-    view.width = static_cast<int>(size->width);
-    view.height = static_cast<int>(size->height);
-}
 
 /// Without an environment: an even grey, in which layers show.
 cubemap::CubeMap plain_grey() {
@@ -102,8 +89,9 @@ void report(const viewer::ViewReport& result, const LitScene& lit, const Session
 
 void run(const Options& options, Session& session) {
     viewer::ViewOptions view{.screenshot = options.screenshot, .stop = session.stop()};
-    set_size(options.size, view);
-    const std::optional<double> exposure_ev = parse_exposure(options.exposure);
+    view.width = static_cast<int>(options.picture.width);
+    view.height = static_cast<int>(options.picture.height);
+    const std::optional<double> exposure_ev = options.picture.exposure_ev;
     if (!options.screenshot.empty())
         check_output(options.screenshot,
                      {options.scene.path, options.environment.path, options.script});
@@ -138,7 +126,7 @@ void run(const Options& options, Session& session) {
     state.scene_look.exposure_ev = static_cast<float>(
         exposure_ev ? *exposure_ev : Painter(lit, {}).choose_exposure_ev(lit.lighting()));
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
-    state.scene_look.tone = relight::tone_curve(options.tone_map).value_or(ToneCurve::Neutral);
+    state.scene_look.tone = options.picture.tone;
     state.environment_look.tone = state.scene_look.tone;
     report(viewer::view(state, view), lit, session);
     session.poll();
@@ -154,17 +142,19 @@ void add_view(Command& program, Session& session) {
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
     options->bounces.add_to(command);
-    command.add_option("--layers", options->layers, "light layers to begin with, .json").file();
-    add_exposure_options(command, options->exposure, options->tone_map);
-    command.add_option("--size", options->size, "the window's size").show_default();
-    command
-        .add_option("--script", options->script,
-                    "play a script instead of waiting for a person (docs/viewer.md)")
-        .file();
-    command
-        .add_option("--screenshot", options->screenshot,
-                    "write the last frame of the script, or the first there is, as .png or .exr")
-        .file();
+    command.add(
+        row("--layers", options->layers, "light layers to begin with, .json", {.file = true}));
+    for (OptionRow& each : options_of(options->picture))
+        if (each.name == "--exposure" || each.name == "--tone-map")
+            command.add(std::move(each));
+    command.add(size_row(options->picture.width, options->picture.height, "the window's size",
+                         {.min = 320}));
+    command.add(row("--script", options->script,
+                    "play a script instead of waiting for a person (docs/viewer.md)",
+                    {.file = true}));
+    command.add(row("--screenshot", options->screenshot,
+                    "write the last frame of the script, or the first there is, as .png or .exr",
+                    {.file = true}));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -144,9 +144,7 @@ struct Painter::Impl {
                 .height = options.height,
                 .samples_per_axis = options.samples_per_axis};
     }
-    [[nodiscard]] Camera camera() const {
-        return options.camera ? *options.camera : camera_of(scene, size().aspect());
-    }
+    [[nodiscard]] Camera camera() const { return camera_of(scene, options); }
 
     const std::vector<glm::vec3>& shown_factors() {
         if (shown.empty())

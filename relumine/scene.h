@@ -12,6 +12,7 @@
 #include "prt/transfer/transfer.h"
 #include "relight/pictures/framing.h"
 #include "relumine/mesh.h"
+#include "relumine/option_table.h"
 
 namespace relumine {
 
@@ -53,6 +54,8 @@ struct SurfaceColors {
     /// F0, or Ks of Blinn-Phong
     std::optional<glm::vec3> specular = {};
 };
+
+[[nodiscard]] OptionTable options_of(SurfaceColors& colors);
 
 /// Colours are no part of the transfer, so they may change without a new precompute.
 ///

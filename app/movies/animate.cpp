@@ -191,7 +191,7 @@ private:
     /// A frame's image as it lights the scene: turned and of the resolution that was asked for.
     [[nodiscard]] cubemap::EnvironmentImage image_of(std::size_t frame) const {
         cubemap::EnvironmentImage image = sequence_.read(frame);
-        if (options_.environment.world_from_image(image.layout) == glm::dmat3(1.0) &&
+        if (world_from_image(image.layout, options_.environment) == glm::dmat3(1.0) &&
             options_.environment.face_resolution == 0)
             return image;
         return lights::lat_long_of(cube_map_of(image, options_.environment));

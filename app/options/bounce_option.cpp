@@ -7,9 +7,8 @@
 namespace relumine::app {
 
 void BounceOption::add_to(Command& command) {
-    command
-        .add_option(
-            "--bounces",
+    command.add(
+        row("--bounces",
             [this](const std::string& text) {
                 is_given_ = true;
                 if (text == "all") {
@@ -24,8 +23,8 @@ void BounceOption::add_to(Command& command) {
                 limits_.num_bounces = *count;
             },
             "how often light goes on from surface to surface: N, 0 for direct light "
-            "alone, or all [all where the scene was made with --bounces, otherwise 0]")
-        .type_name("N");
+            "alone, or all [all where the scene was made with --bounces, otherwise 0]",
+            {.type = "N"}));
 }
 
 bool BounceOption::applies_to(const Scene& scene, const std::string& path) const {

@@ -11,20 +11,13 @@
 namespace relumine::app {
 
 void SceneOptions::add_to(Command& command) {
-    command
-        .add_option("SCENE", path,
+    command.add(row("SCENE", path,
                     mesh_too ? "scene file from `relumine precompute`; with --lights a mesh, too"
-                             : "scene file from `relumine precompute`")
-        .file()
-        .required();
-    command.add_flag("--clusters-only", clusters_only,
-                     "light the sun through its cluster too, without shadow rays of its own");
-    command.add_option("--surface-albedo", albedo,
-                       "scenes with materials: albedo of all surfaces in place of the "
-                       "precompute's, a number or R,G,B");
-    command.add_option(
-        "--surface-specular", specular,
-        "scenes with highlights: their F0 (Ks) in place of the precompute's, a number or R,G,B");
+                             : "scene file from `relumine precompute`",
+                    {.file = true, .required = true}));
+    command.add(row("--clusters-only", clusters_only,
+                    "light the sun through its cluster too, without shadow rays of its own"));
+    command.add_all(options_of(colors));
 }
 
 namespace {
@@ -39,11 +32,7 @@ Scene load(const SceneOptions& options) {
 }
 
 void recolour(Scene& scene, const SceneOptions& options) {
-    SurfaceColors colors;
-    if (!options.albedo.empty())
-        colors.albedo = parse_color("--surface-albedo", options.albedo);
-    if (!options.specular.empty())
-        colors.specular = parse_color("--surface-specular", options.specular);
+    const SurfaceColors& colors = options.colors;
     if (!colors.albedo && !colors.specular)
         return;
     if (scene.receivers.surfaces.empty())

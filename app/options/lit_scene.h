@@ -14,10 +14,8 @@ struct SceneOptions {
     bool clusters_only = false;
     /// The argument may also be a mesh, which is lit without clusters.
     bool mesh_too = false;
-    /// Albedo of all surfaces. Empty: the albedo of the precompute.
-    std::string albedo = {};
-    /// F0 (Ks) of all highlights. Empty: the values of the precompute.
-    std::string specular = {};
+    /// Of all surfaces, in place of those of the precompute
+    SurfaceColors colors = {};
 
     void add_to(Command& command);
 };

@@ -33,13 +33,13 @@ struct EditArguments {
     std::string layers;
     OutputOptions output;
     BounceOption bounces;
-    /// Direction of the quick edit, X,Y,Z. Empty: LAYERS are given.
-    std::string disc;
+    /// Direction of the quick edit. Empty: LAYERS are given.
+    std::optional<glm::vec3> disc;
     double radius_degrees = 10.0;
-    std::string gain = "2";
+    glm::vec3 gain{2.0f};
     std::string saved_environment;
-    /// --who: a position X,Y,Z. Empty: not asked for.
-    std::string who;
+    /// --who: a position. Empty: not asked for.
+    std::optional<glm::vec3> who;
     /// --lit-by: a layer's name, or a disc X,Y,Z,RADIUS. Empty: not asked for.
     std::string lit_by;
     bool watch = false;
@@ -56,18 +56,19 @@ void check_saved_environment(const EditArguments& options) {
 
 /// The quick edit without a layer file: one gain layer.
 cubemap::LightLayer disc_layer(const EditArguments& options) {
-    const glm::vec3 direction = parse_vec3("--disc", options.disc);
-    if (!(glm::length(direction) > 0.0f))
-        throw UsageError("--disc", fmt::format("expected a direction, got '{}'", options.disc));
+    if (!(glm::length(*options.disc) > 0.0f))
+        throw UsageError("--disc", fmt::format("expected a direction, got '{}'",
+                                               PointText::show(*options.disc)));
     cubemap::LightLayer layer;
     layer.name = "disc";
-    layer.region = cubemap::Disc{.direction = direction, .radius_degrees = options.radius_degrees};
-    layer.effect = cubemap::Gain{.tint = parse_color("--gain", options.gain)};
+    layer.region =
+        cubemap::Disc{.direction = *options.disc, .radius_degrees = options.radius_degrees};
+    layer.effect = cubemap::Gain{.tint = options.gain};
     return layer;
 }
 
 cubemap::LightLayers layers_of(const EditArguments& options) {
-    if (options.layers.empty() == options.disc.empty())
+    if (options.layers.empty() == !options.disc)
         throw UsageError("edit", "expected either LAYERS or --disc");
     if (!options.layers.empty())
         return cubemap::load_layers(options.layers);
@@ -79,11 +80,10 @@ cubemap::LightLayers layers_of(const EditArguments& options) {
 /// Refuses what cannot be written before any work is done.
 void check_outputs(const EditArguments& options, const cubemap::LightLayers& layers) {
     OutputOptions output = options.output;
-    if (options.who.empty() && options.lit_by.empty() && !layers.frames.empty())
+    if (!options.who && options.lit_by.empty() && !layers.frames.empty())
         output.path = frame_names(output.path).name(0);
-    if (!options.who.empty()) {
+    if (options.who) {
         require_extension("--output", output.path, {".exr", ".png"});
-        static_cast<void>(parse_vec3("--who", options.who));
     }
     if (!options.lit_by.empty())
         static_cast<void>(lit_by_region(options.lit_by, layers.layers));
@@ -129,7 +129,7 @@ public:
 private:
     void check_receivers() {
         static_cast<void>(options_.bounces.applies_to(lit_.scene(), options_.scene.path));
-        if (!options_.who.empty()) // a map, whatever the receivers are
+        if (options_.who) // a map, whatever the receivers are
             return;
         painter_.emplace(lit_, options_.output.for_scene(lit_.scene()));
         OutputOptions output = options_.output;
@@ -139,7 +139,7 @@ private:
     }
 
     void write_output() {
-        if (!options_.who.empty())
+        if (options_.who)
             save_who();
         else if (!options_.lit_by.empty())
             save_lit_by();
@@ -197,11 +197,10 @@ private:
 
     /// The environment weighted by what it gives to the receiver nearest to the position.
     void save_who() const {
-        const glm::vec3 position = parse_vec3("--who", options_.who);
-        const std::uint32_t receiver = nearest_receiver(lit_.scene(), position);
+        const std::uint32_t receiver = nearest_receiver(lit_.scene(), *options_.who);
         const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
         const cubemap::CubeMap map = contribution_map(lit_, {&receiver, 1});
-        save_map(options_.output.path, map, options_.output.exposure_ev().value_or(0.0));
+        save_map(options_.output.path, map, options_.output.picture.exposure_ev.value_or(0.0));
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
                                  prt::kind_of(lit_.scene().layout).one, receiver, nearest.x,
                                  nearest.y, nearest.z));
@@ -279,33 +278,30 @@ void add_edit(Command& program, Session& session) {
     auto options = std::make_shared<EditArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add_option("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)")
-        .file();
+    command.add(row("LAYERS", options->layers, "light layers, .json (docs/light-layers.md)",
+                    {.file = true}));
     options->output.add_to(command);
     options->bounces.add_to(command);
-    command.add_option("--disc", options->disc,
+    command.add(
+        row<PointText>("--disc", options->disc,
                        "instead of LAYERS: multiply a disc around the direction X,Y,Z from the "
-                       "scene to the light");
-    command.add_option("--radius", options->radius_degrees, "angular radius of the disc in degrees")
-        .between(1e-6, 180.0)
-        .show_default();
-    command.add_option("--gain", options->gain, "factor on the disc's radiance: a number or R,G,B")
-        .show_default();
-    command
-        .add_option("--save-env", options->saved_environment,
-                    "write the edited environment: cube .exr or .hdr")
-        .file();
-    command.add_option(
+                       "scene to the light"));
+    command.add(row("--radius", options->radius_degrees, "angular radius of the disc in degrees",
+                    {.min = 1e-6, .max = 180.0}));
+    command.add(row<ColorText>("--gain", options->gain,
+                               "factor on the disc's radiance: a number or R,G,B"));
+    command.add(row("--save-env", options->saved_environment,
+                    "write the edited environment: cube .exr or .hdr", {.file = true}));
+    command.add(row<PointText>(
         "--who", options->who,
-        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png");
-    command
-        .add_option(
-            "--lit-by", options->lit_by,
+        "write what lights the receiver nearest to X,Y,Z instead: a lat-long .exr or .png"));
+    command.add(
+        row("--lit-by", options->lit_by,
             "write the scene as lit by a region of the environment alone: a layer's name, or "
-            "X,Y,Z,RADIUS for a disc")
-        .excludes("--who");
-    command.add_flag("--watch", options->watch,
-                     "go on: when another program saves ENV, update and write OUT again");
+            "X,Y,Z,RADIUS for a disc",
+            {.excludes = "--who"}));
+    command.add(row("--watch", options->watch,
+                    "go on: when another program saves ENV, update and write OUT again"));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

@@ -212,22 +212,20 @@ void add_relight(Command& program, Session& session) {
     auto options = std::make_shared<RelightArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command).required(false);
-    command
-        .add_option(
-            "--lights", options->lights,
+    command.add(
+        row("--lights", options->lights,
             "a light list (.json, from `relumine lights` or `env convert --split-sun`), a shadow "
-            "ray for each light; with ENV, both light together")
-        .file();
+            "ray for each light; with ENV, both light together",
+            {.file = true}));
     options->output.add_to(command);
-    command
-        .add_option(
-            "--part", [options](const std::string& text) { options->part = parse_part(text); },
-            "light part I of N of the receivers, from 1/N to N/N; -o names the part, and "
-            "`relumine join` makes the numbers (.npy) of all parts")
-        .type_name("I/N");
+    command.add(row("--part",
+                    [options](const std::string& text) { options->part = parse_part(text); },
+                    "light part I of N of the receivers, from 1/N to N/N; -o names the part, and "
+                    "`relumine join` makes the numbers (.npy) of all parts",
+                    {.type = "I/N"}));
     options->bounces.add_to(command);
-    command.add_flag("--only-bounces", options->only_bounces,
-                     "what surfaces add to the direct light, alone");
+    command.add(row("--only-bounces", options->only_bounces,
+                    "what surfaces add to the direct light, alone"));
     session.add_common_options(command);
     command.on_run([options, command, &session] { run(*options, command, session); });
 }

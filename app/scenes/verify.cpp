@@ -107,22 +107,17 @@ void add_verify(Command& program, Session& session) {
     auto options = std::make_shared<VerifyArguments>();
     options->scene.add_to(command);
     options->environment.add_to(command);
-    command.add_option("--samples", options->num_samples, "receivers chosen at random, 0 for all")
-        .show_default();
-    command
-        .add_option("--surface", options->num_surface_points,
+    command.add(row("--samples", options->num_samples, "receivers chosen at random, 0 for all"));
+    command.add(row("--surface", options->num_surface_points,
                     "points of the surface chosen at random, where exact light is compared with "
-                    "what the vertices interpolate; 0 for none")
-        .type_name("N")
-        .show_default();
-    command.add_option("--seed", options->seed, "seed of the choice").show_default();
+                    "what the vertices interpolate; 0 for none",
+                    {.type = "N"}));
+    command.add(row("--seed", options->seed, "seed of the choice"));
     options->bounces.add_to(command);
-    command.add_option("--albedo", options->albedo, "of all surfaces, for bounces")
-        .between(0.0, 1.0)
-        .show_default();
-    command.add_option("--paths", options->num_paths, "paths per receiver that bounces are held to")
-        .between(1, 1u << 24)
-        .show_default();
+    command.add(
+        row("--albedo", options->albedo, "of all surfaces, for bounces", {.min = 0.0, .max = 1.0}));
+    command.add(row("--paths", options->num_paths, "paths per receiver that bounces are held to",
+                    {.min = 1, .max = 1u << 24}));
     session.add_common_options(command);
     command.on_run([options, &session] { run(*options, session); });
 }

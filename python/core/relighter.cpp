@@ -271,7 +271,7 @@ void bind_questions(py::class_<Lit, LitPointer>& type) {
 
 /// Returns [height, width, 3 or 4] and the exposure that suits it.
 py::tuple draw(const LitPointer& own, const py::dict& given) {
-    const OutputOptions options = output_options(Options(given), own->scene());
+    const OutputOptions options = options_from<OutputOptions>(given);
     auto [picture, exposure] = slowly(own, py::none(), [options](LitScene& lit, const Reins&) {
         Painter painter(lit, options);
         const Lighting lighting = lit.lighting();
@@ -291,8 +291,7 @@ py::tuple draw(const LitPointer& own, const py::dict& given) {
 
 void save_lit(const LitPointer& own, const Path& path, const py::dict& given) {
     slowly(own, py::none(),
-           [path, options = output_options(Options(given), own->scene())](LitScene& lit,
-                                                                          const Reins&) {
+           [path, options = options_from<OutputOptions>(given)](LitScene& lit, const Reins&) {
                save(lit, path, options);
                return true;
            });
@@ -313,10 +312,9 @@ relight::Picture picture_of(const py::buffer& pixels, std::uint32_t width, std::
 }
 
 relight::Development development(double exposure, const std::string& tone) {
-    const auto curve = relight::tone_curve(tone);
-    if (!curve)
-        Options::refuse("tone_map", "neutral, agx, aces or none", py::str(tone));
-    return {.exposure_ev = exposure, .tone = *curve};
+    relight::Development result{.exposure_ev = exposure};
+    row("--tone-map", result.tone, "").set(tone);
+    return result;
 }
 
 void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
@@ -344,7 +342,7 @@ void bind_pictures(py::module_& module, py::class_<Lit, LitPointer>& type) {
 }
 
 py::tuple bounce(Lit& own, const std::optional<std::uint32_t>& bounces, const py::dict& given) {
-    const OutputOptions options = output_options(Options(given), own.scene());
+    const OutputOptions options = options_from<OutputOptions>(given);
     const BounceReport report = change(own, [&](LitScene& lit) {
         const std::vector<glm::vec3> albedo = bounce_albedo(lit.scene(), options);
         return lit.bounce({.albedo = albedo, .limits = {.num_bounces = bounces}});

@@ -15,6 +15,7 @@
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
+#include "tests/prt/all_bounces.h"
 
 using namespace relumine;
 
@@ -39,7 +40,7 @@ void run(const Settings& settings, const bench::Inputs& inputs) {
     prt::BounceStatistics found;
     const prt::BounceMatrix matrix = prt::precompute_bounces(
         scene.mesh, scene.receivers, scene.transfer, probes, lit.rays().of_mesh(),
-        {.tolerance = settings.tolerance, .bias = scene.settings.bias}, &found);
+        {.tolerance = settings.tolerance, .bias = scene.settings.bias}, {}, &found);
     fmt::print(
         "{} vertices: probe lights {:.2f} s, bounces {:.2f} s, {:.2f} M rays, {:.2f} M hits, "
         "{:.2f} M emitters ({:.1f} a vertex, shared by {:.1f}), closure {:.3f}, standard error "

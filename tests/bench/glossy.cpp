@@ -93,7 +93,7 @@ Scene shiny_scene(const Mesh& mesh, const Settings& settings, float roughness,
                               .glossy_tolerance = settings.glossy_tolerance};
     if (settings.pixels)
         options.receivers = Pixels{.width = 512, .height = 512};
-    return precompute(mesh, options, &report);
+    return precompute(mesh, options, {}, &report);
 }
 
 void print_row(float roughness, const Settings& settings, const Mesh& mesh,

@@ -128,7 +128,7 @@ nlohmann::json measure(const PaperRow& paper, const Settings& settings,
     const Mesh mesh = inputs.mesh(paper.mesh);
     PrecomputeReport report;
     fmt::print(stderr, "{}: precompute at R = 1024\n", paper.name);
-    LitScene lit(precompute(mesh, {.epsilon = epsilon(inputs)}, &report));
+    LitScene lit(precompute(mesh, {.epsilon = epsilon(inputs)}, {}, &report));
     const std::uint64_t file_bytes = saved_bytes(lit.scene(), paper.name);
 
     const UnderCrosses verified = under_crosses(lit, settings, inputs);
@@ -177,7 +177,7 @@ nlohmann::json measure_buddha(const Settings& settings, const bench::Inputs& inp
                                                      .specular = glm::vec3(0.5f),
                                                      .highlight = prt::Highlight::Ggx,
                                                      .roughness_or_exponent = Roughness})},
-                             &report);
+                             {}, &report);
     const double seconds = watch.seconds();
     const std::uint64_t file_bytes = saved_bytes(scene, PaperBuddha.name);
 

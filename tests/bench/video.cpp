@@ -24,6 +24,7 @@
 #include "relumine/relumine.h"
 #include "tests/bench/inputs.h"
 #include "tests/bench/times.h"
+#include "tests/lights/importance_lights.h"
 
 namespace fs = std::filesystem;
 using namespace relumine;

@@ -76,10 +76,8 @@ TEST_F(SharedWork, ProcessesFindTheBouncesOfOne) {
         for (const std::uint32_t count : Counts) {
             prt::ThreadTeam::run(count, [&](prt::Team& team, std::uint32_t index) {
                 if (index != 0)
-                    return assist(team);
-                PrecomputeOptions work = options(receivers, file("shared.prt"));
-                work.team = &team;
-                (void)precompute(mesh(), work);
+                    return assist({.team = team});
+                (void)precompute(mesh(), options(receivers, file("shared.prt")), {.team = team});
             });
             EXPECT_EQ(read("whole.prt"), read("shared.prt")) << count << " processes";
         }
