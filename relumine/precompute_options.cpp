@@ -199,10 +199,10 @@ std::uint64_t MemoryText::read(const std::string& text) {
             ? std::string_view::npos
             : Units.find(static_cast<char>(std::toupper(static_cast<unsigned char>(unit.front()))));
     const bool is_unit =
-        unit.size() == 1 || (power != 0 && (unit.substr(1) == "B" || unit.substr(1) == "iB"));
-    const double bytes = number && power != std::string_view::npos && is_unit
-                             ? *number * std::exp2(10.0 * static_cast<double>(power))
-                             : 0.0;
+        power != std::string_view::npos &&
+        (unit.size() == 1 || (power != 0 && (unit.substr(1) == "B" || unit.substr(1) == "iB")));
+    const double bytes =
+        number && is_unit ? *number * std::exp2(10.0 * static_cast<double>(power)) : 0.0;
     if (!(bytes >= 1.0 && bytes < 1e18))
         refuse_text("a size like 500M or 4G", text);
     return static_cast<std::uint64_t>(bytes);
