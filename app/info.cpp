@@ -31,21 +31,15 @@ struct InfoArguments {
 
 /// One line more where they are not the vertices.
 void say_receivers(const prt::Scene& scene, const Session& session) {
-    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout)) {
-        const prt::Camera& camera = pixels->camera;
-        session.say(fmt::format("receivers           {} of {}, {:.1f} % of its samples",
-                                scene.receivers.num_own(), prt::description(scene.layout),
-                                100.0 * static_cast<double>(scene.receivers.num_own()) /
-                                    static_cast<double>(pixels->num_samples())));
+    if (prt::on_vertices(scene.layout))
+        return;
+    session.say(fmt::format("receivers           {} of {}, {:.1f} % of {}",
+                            scene.receivers.num_own(), prt::description(scene.layout),
+                            100.0 * coverage_of(scene), prt::kind_of(scene.layout).whole));
+    if (const prt::Camera* camera = prt::own_camera(scene.layout))
         session.say(fmt::format("view                from ({}, {}, {}) to ({}, {}, {}), {} degrees",
-                                camera.eye.x, camera.eye.y, camera.eye.z, camera.target.x,
-                                camera.target.y, camera.target.z, camera.fov_degrees));
-    } else if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout)) {
-        session.say(fmt::format("receivers           {} of {}, {:.1f} % of the atlas",
-                                scene.receivers.num_own(), prt::description(scene.layout),
-                                100.0 * static_cast<double>(scene.receivers.num_own()) /
-                                    static_cast<double>(texels->num_texels())));
-    }
+                                camera->eye.x, camera->eye.y, camera->eye.z, camera->target.x,
+                                camera->target.y, camera->target.z, camera->fov_degrees));
 }
 
 void describe_scene(const InfoArguments& options, const Session& session) {

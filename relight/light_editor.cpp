@@ -10,7 +10,7 @@
 #include <utility>
 #include <variant>
 
-#include "cubemap/layers/region_turn.h"
+#include "cubemap/layers/shapes/sphere_lines.h"
 #include "files/parallel.h"
 
 namespace relumine::relight {

@@ -422,8 +422,7 @@ Verification LitScene::verify(const VerifyOptions& options) const {
     if (!bounced().empty())
         result.noise = impl_->add_traced(result.receivers, options, exact);
     result.error = relight::compare(result.receivers, exact, radiance());
-    if (options.num_surface_points != 0 &&
-        std::holds_alternative<prt::VertexLayout>(impl_->scene.layout))
+    if (options.num_surface_points != 0 && prt::on_vertices(impl_->scene.layout))
         result.surface = impl_->verify_surface(options);
     return result;
 }

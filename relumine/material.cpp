@@ -1,5 +1,4 @@
 #include "relumine/material.h"
-#include "files/joined.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -10,16 +9,19 @@
 
 #include <fmt/format.h>
 
+#include "files/joined.h"
+#include "prt/glossy/lobe_list.h"
+
 namespace relumine {
 
 prt::Surface SurfaceMaterial::applied_to(const prt::Surface& surface) const {
     glm::vec3 specular_color(0.0f);
     if (specular)
         specular_color = *specular;
-    else if (highlight == prt::Highlight::Ggx)
-        specular_color = surface.highlight == prt::Highlight::Ggx
+    else if (prt::facts_of(highlight).has_fresnel)
+        specular_color = prt::facts_of(surface.highlight).has_fresnel
                              ? surface.specular
-                             : glm::vec3(0.04f); // glass, plastic
+                             : glm::vec3(prt::DielectricF0);
     return {.albedo = albedo.value_or(surface.albedo),
             .specular = specular_color,
             .highlight = highlight,

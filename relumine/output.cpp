@@ -54,9 +54,8 @@ std::vector<glm::vec3> factors(const Scene& scene, const Albedo& albedo) {
 
 /// The same with what the options leave open.
 std::vector<glm::vec3> factors(const Scene& scene, const OutputOptions& options, Purpose purpose) {
-    const bool is_shown =
-        purpose == Purpose::Bounce ||
-        (purpose == Purpose::Show && !std::holds_alternative<prt::TexelLayout>(scene.layout));
+    const bool is_shown = purpose == Purpose::Bounce ||
+                          (purpose == Purpose::Show && prt::kind_of(scene.layout).are_seen);
     Albedo albedo = options.albedo;
     if (std::holds_alternative<AutomaticAlbedo>(albedo)) {
         if (!is_shown || !scene.receivers.surfaces.empty())
@@ -145,9 +144,7 @@ struct Painter::Impl {
             textures = {scene.mesh, scene.receivers.surfaces};
     }
 
-    [[nodiscard]] bool is_on_vertices() const {
-        return std::holds_alternative<prt::VertexLayout>(scene.layout);
-    }
+    [[nodiscard]] bool is_on_vertices() const { return prt::on_vertices(scene.layout); }
 
     /// The part of values of all receivers that pixels or texels show.
     [[nodiscard]] std::span<const glm::vec3> own(std::span<const glm::vec3> values) const {
@@ -209,6 +206,23 @@ struct Painter::Impl {
         return result;
     }
 
+    // How each kind of receivers becomes a picture. Vertices are drawn().
+    [[nodiscard]] Picture composed(const prt::VertexLayout&, std::span<const glm::vec3>,
+                                   const Lighting&) const {
+        throw std::logic_error("expected receivers with a place in a picture");
+    }
+    [[nodiscard]] Picture composed(const prt::PixelLayout& pixels,
+                                   std::span<const glm::vec3> colors,
+                                   const Lighting& lighting) const {
+        if (std::holds_alternative<NothingBehind>(options.background))
+            return relight::compose_cut_out(pixels, colors, opacity());
+        return relight::compose(pixels, colors, backdrop(lighting), opacity());
+    }
+    [[nodiscard]] Picture composed(const prt::TexelLayout& texels,
+                                   std::span<const glm::vec3> colors, const Lighting&) const {
+        return relight::compose(texels, colors, options.gutter);
+    }
+
     Picture draw(const Lighting& lighting) {
         require_fit(scene, lighting.radiance);
         const bool is_transparent = std::holds_alternative<NothingBehind>(options.background);
@@ -225,11 +239,8 @@ struct Painter::Impl {
             return drawn(used, lighting, is_transparent ? nullptr : &behind);
         }
         const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
-        if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
-            return relight::compose(*texels, colors, options.gutter);
-        const auto& pixels = std::get<prt::PixelLayout>(scene.layout);
-        return is_transparent ? relight::compose_cut_out(pixels, colors, opacity())
-                              : relight::compose(pixels, colors, backdrop(lighting), opacity());
+        return std::visit([&](const auto& layout) { return composed(layout, colors, lighting); },
+                          scene.layout);
     }
 
     /// Adds what is seen to the light meter.
@@ -239,7 +250,7 @@ struct Painter::Impl {
             const std::vector<glm::vec3> colors = product(own(lighting.radiance), shown_factors());
             metered_colors.insert(metered_colors.end(), colors.begin(), colors.end());
             std::vector<float> weights(colors.size(), 1.0f);
-            if (std::holds_alternative<prt::PixelLayout>(scene.layout))
+            if (prt::kind_of(scene.layout).are_seen)
                 if (std::vector<float> seen = opacity(); !seen.empty())
                     weights = std::move(seen);
             metered_weights.insert(metered_weights.end(), weights.begin(), weights.end());
@@ -325,12 +336,11 @@ void Painter::save(const std::filesystem::path& path, const Lighting& lighting) 
     const Scene& scene = impl_->scene;
     const std::string extension = files::extension_of(path);
     if (!is_output_of(path, scene))
-        throw std::invalid_argument(fmt::format(
-            "{}: expected .png, .exr{} or .npy for a scene whose receivers are {}, got "
-            "'{}'",
-            path.string(),
-            std::holds_alternative<prt::VertexLayout>(scene.layout) ? ", .ply, .glb" : "",
-            prt::description(scene.layout), extension));
+        throw std::invalid_argument(
+            fmt::format("{}: expected .png, .exr{} or .npy for a scene whose receivers are {}, got "
+                        "'{}'",
+                        path.string(), prt::on_vertices(scene.layout) ? ", .ply, .glb" : "",
+                        prt::description(scene.layout), extension));
     if (is_picture(extension)) {
         const Picture picture = draw(lighting);
         relight::Development development{.exposure_ev = impl_->options.exposure_ev.value_or(0.0),
@@ -382,8 +392,7 @@ bool is_output_of(const std::filesystem::path& path, const Scene& scene) {
     const std::string extension = files::extension_of(path);
     if (is_picture(extension) || extension == ".npy")
         return true;
-    return std::holds_alternative<prt::VertexLayout>(scene.layout) &&
-           (extension == ".ply" || extension == ".glb");
+    return prt::on_vertices(scene.layout) && (extension == ".ply" || extension == ".glb");
 }
 
 void save_map(const std::filesystem::path& path, const cubemap::CubeMap& map, double exposure_ev) {

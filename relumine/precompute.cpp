@@ -445,7 +445,7 @@ private:
         const std::vector<prt::Surface>& surfaces = scene_.receivers.surfaces;
         report_.num_too_smooth = static_cast<std::size_t>(
             std::count_if(surfaces.begin(), surfaces.end(), [&](const prt::Surface& surface) {
-                return surface.highlight == prt::Highlight::Ggx &&
+                return prt::facts_of(surface.highlight).is_roughness &&
                        surface.roughness_or_exponent < narrowest;
             }));
         if (report_.num_too_smooth != 0)

@@ -10,32 +10,17 @@
 #include <fmt/ranges.h>
 
 #include "files/joined.h"
+#include "prt/glossy/lobe_list.h"
 
 namespace relumine {
 
 namespace {
 
-/// A model, and the names of its values on the command line.
-struct Model {
-    std::string_view name;
-    prt::Highlight highlight;
-    std::string_view albedo;
-    /// Empty: none
-    std::string_view specular;
-    /// Empty: none
-    std::string_view width;
-    float max_width;
-};
-constexpr std::array<Model, 3> Models = {{
-    {"ggx", prt::Highlight::Ggx, "albedo", "f0", "roughness", 1.0f},
-    {"blinn", prt::Highlight::BlinnPhong, "kd", "ks", "exponent", 1e6f},
-    {"lambert", prt::Highlight::None, "albedo", "", "", 0.0f},
-}};
-
 /// A material as text. Values are read as they are met.
 struct Parser {
     const std::string& text;
-    const Model* model = nullptr;
+    prt::Highlight highlight = prt::Highlight::None;
+    const prt::LobeFacts* model = nullptr;
     std::size_t start_of_model = 0;
     std::map<std::string_view, std::vector<float>> values = {};
 
@@ -43,23 +28,29 @@ struct Parser {
     /// name follows.
     void find_model() {
         for (std::size_t start = text.size() + 1; start-- > 0;) {
-            const std::string tail = text.substr(std::min(start, text.size()));
-            for (const Model& each : Models)
-                if ((start == 0 || text[start - 1] == '=') &&
-                    split(tail, ':').front() == each.name) {
-                    model = &each;
-                    start_of_model = start;
+            if (start > 0 && text[start - 1] != '=')
+                continue;
+            const std::string name = split(text.substr(std::min(start, text.size())), ':').front();
+            for (std::size_t i = 0; i < prt::NumHighlights; ++i) {
+                highlight = static_cast<prt::Highlight>(i);
+                model = &prt::facts_of(highlight);
+                start_of_model = start;
+                if (model->name == name)
                     return;
-                }
+            }
         }
-        refuse_text("[GROUP=]ggx:..., [GROUP=]blinn:... or [GROUP=]lambert:...", text);
+        std::vector<std::string> forms;
+        for (std::size_t i = 1; i <= prt::NumHighlights; ++i) // lambert last
+            forms.push_back(fmt::format(
+                "[GROUP=]{}:...",
+                prt::facts_of(static_cast<prt::Highlight>(i % prt::NumHighlights)).name));
+        refuse_text(one_of_text(forms), text);
     }
 
     /// key=number,number,number,key=number: words without = belong to the key before them.
     void read_values(const std::string& list) {
-        const std::array<std::string_view, 3> all = {model->albedo, model->specular, model->width};
-        const auto keys = std::span(all).first(
-            static_cast<std::size_t>(std::find(all.begin(), all.end(), "") - all.begin()));
+        std::vector<std::string_view> keys = {model->albedo, model->specular, model->shape};
+        std::erase(keys, "");
         auto current = values.end();
         for (const std::string& word : split(list, ',')) {
             const std::size_t equals = word.find('=');
@@ -74,7 +65,7 @@ struct Parser {
             }
             if (current == values.end() || word.empty())
                 refuse_text(fmt::format("{}:NAME=VALUE,...", model->name), text);
-            const float max = current->first == model->width ? model->max_width : 1.0f;
+            const float max = current->first == model->shape ? model->largest_shape : 1.0f;
             const std::string number = word.substr(equals + 1); // npos + 1 is 0
             const auto value = parse_number(number);
             if (!value || !(*value >= 0.0 && *value <= double{max}))
@@ -103,20 +94,21 @@ struct Parser {
         if (end < text.size())
             read_values(text.substr(end));
         SurfaceMaterial result{.group = text.substr(0, start_of_model > 0 ? start_of_model - 1 : 0),
-                               .highlight = model->highlight,
+                               .highlight = highlight,
                                .albedo = color(model->albedo),
                                .specular = color(model->specular)};
-        if (!model->width.empty()) {
-            if (values[model->width].size() != 1)
-                refuse_text(fmt::format("one number of {} of {}", model->width, model->name), text);
-            result.roughness_or_exponent = values[model->width].front();
+        if (!model->shape.empty()) {
+            if (values[model->shape].size() != 1)
+                refuse_text(fmt::format("one number of {} of {}", model->shape, model->name), text);
+            result.roughness_or_exponent = values[model->shape].front();
         }
-        if (model->highlight == prt::Highlight::BlinnPhong) {
+        if (model->needs_specular) {
             if (!result.specular)
-                refuse_text("ks of blinn", text);
+                refuse_text(fmt::format("{} of {}", model->specular, model->name), text);
             const glm::vec3 sum = result.albedo.value_or(glm::vec3(0.0f)) + *result.specular;
             if (std::max({sum.r, sum.g, sum.b}) > 1.0f + 1e-6f)
-                refuse_text("kd + ks of 1 or less", text);
+                refuse_text(fmt::format("{} + {} of 1 or less", model->albedo, model->specular),
+                            text);
         }
         return result;
     }
@@ -213,18 +205,15 @@ SurfaceMaterial MaterialText::read(const std::string& text) {
 }
 
 std::string MaterialText::show(const SurfaceMaterial& material) {
-    const auto model = std::find_if(Models.begin(), Models.end(), [&](const Model& each) {
-        return each.highlight == material.highlight;
-    });
+    const prt::LobeFacts& model = prt::facts_of(material.highlight);
     std::vector<std::string> values;
     if (material.albedo)
-        values.push_back(fmt::format("{}={}", model->albedo, ColorText::show(*material.albedo)));
+        values.push_back(fmt::format("{}={}", model.albedo, ColorText::show(*material.albedo)));
     if (material.specular)
-        values.push_back(
-            fmt::format("{}={}", model->specular, ColorText::show(*material.specular)));
-    if (!model->width.empty())
-        values.push_back(fmt::format("{}={}", model->width, material.roughness_or_exponent));
-    return fmt::format("{}{}{}{}{}", material.group, material.group.empty() ? "" : "=", model->name,
+        values.push_back(fmt::format("{}={}", model.specular, ColorText::show(*material.specular)));
+    if (!model.shape.empty())
+        values.push_back(fmt::format("{}={}", model.shape, material.roughness_or_exponent));
+    return fmt::format("{}{}{}{}{}", material.group, material.group.empty() ? "" : "=", model.name,
                        values.empty() ? "" : ":", files::joined(values, ","));
 }
 

@@ -1,23 +1,25 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <exception>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "cubemap/resample/save_environment.h"
+#include "files/one_of_each.h"
 #include "viewer/panels.h"
 
 namespace relumine::viewer {
 
 namespace {
-
-constexpr const char* Degrees = "%.1f\xc2\xb0";
 
 /// Returns a new layer where the environment's view looks, as bright as the scene's exposure asks
 /// for.
@@ -25,18 +27,30 @@ cubemap::LightLayer new_layer(const ViewState& state, std::string name, cubemap:
                               cubemap::Effect effect) {
     const glm::dvec3 direction =
         turned(direction_at(state.lat_long.center), -state.desk.editor().rotation());
-    if (auto* disc = std::get_if<cubemap::Disc>(&region))
-        disc->direction = direction;
-    else if (auto* box = std::get_if<cubemap::Rectangle>(&region))
-        box->direction = direction;
+    for (const cubemap::LayerField& field : fields(region))
+        if (field.direction != nullptr)
+            *field.direction = direction;
     if (auto* emit = std::get_if<cubemap::Emit>(&effect))
         emit->radiance = glm::vec3(4.0f * std::exp2(-state.scene_look.exposure_ev));
     return {.name = std::move(name), .region = std::move(region), .effect = std::move(effect)};
 }
 
-void hint(const char* text) {
+void hint(std::string_view text) {
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("%s", text);
+        ImGui::SetTooltip("%.*s", static_cast<int>(text.size()), text.data());
+}
+
+std::string capitalised(std::string_view text) {
+    std::string result(text);
+    result[0] = static_cast<char>(result[0] - 'a' + 'A');
+    return result;
+}
+
+/// Whether a shape can be placed; others are drawn.
+bool has_direction(cubemap::Region shape) {
+    const std::vector<cubemap::LayerField> all = fields(shape);
+    return std::any_of(all.begin(), all.end(),
+                       [](const auto& field) { return field.direction != nullptr; });
 }
 
 /// Stays on the same line if a button with this label fits there.
@@ -50,19 +64,14 @@ void next(const char* label) {
 
 void add_buttons(ViewState& state) {
     std::function<void()> later;
-    if (ImGui::Button("+ Disc"))
-        state.desk.add(new_layer(state, "Disc",
-                                 cubemap::Disc{.radius_degrees = 10.0, .softness = 0.3},
-                                 cubemap::Emit{}));
-    hint("a round light");
-    next("+ Soft box");
-    if (ImGui::Button("+ Soft box"))
-        state.desk.add(new_layer(
-            state, "Soft box",
-            cubemap::Rectangle{.width_degrees = 40.0, .height_degrees = 25.0, .softness = 0.2},
-            cubemap::Emit{}));
-    hint("a rectangle that gives light");
-    next("+ Gain");
+    for (const cubemap::Region& shape : files::one_of_each<cubemap::Region>())
+        if (has_direction(shape)) {
+            const std::string name = capitalised(words(shape).label);
+            if (ImGui::Button(("+ " + name).c_str()))
+                state.desk.add(new_layer(state, name, as_added(shape), cubemap::Emit{}));
+            hint(words(shape).hint);
+            next("+ Soft box");
+        }
     if (ImGui::Button("+ Gain"))
         state.desk.add(new_layer(state, "Gain",
                                  cubemap::Disc{.radius_degrees = 20.0, .softness = 0.5},
@@ -71,11 +80,11 @@ void add_buttons(ViewState& state) {
     next("+ Lasso");
     if (ImGui::Button("+ Lasso"))
         state.tool = Tool::Lasso;
-    hint("dims or brightens what you draw an outline around: drag in the environment");
+    hint(cubemap::Lasso::Words.hint);
     next("+ Stroke");
     if (ImGui::Button("+ Stroke"))
         state.tool = Tool::Paint;
-    hint("paint light: drag in the environment");
+    hint(cubemap::Stroke::Words.hint);
     next("+ Image");
     if (ImGui::Button("+ Image"))
         add_image(state, state.path);
@@ -100,13 +109,14 @@ void add_buttons(ViewState& state) {
     }
 }
 
-const char* kind(const cubemap::LightLayer& layer) {
+/// Returns "disc", "gain disc", ... or "image".
+std::string kind(const cubemap::LightLayer& layer) {
     if (std::holds_alternative<cubemap::ImagePatch>(layer.effect))
         return "image";
-    constexpr const char* Lights[] = {"disc", "soft box", "lasso", "stroke"};
-    constexpr const char* Gains[] = {"gain disc", "gain box", "gain lasso", "gain stroke"};
-    return std::holds_alternative<cubemap::Gain>(layer.effect) ? Gains[layer.region.index()]
-                                                               : Lights[layer.region.index()];
+    const std::string label(words(layer.region).label);
+    if (std::holds_alternative<cubemap::Gain>(layer.effect))
+        return "gain " + label.substr(label.rfind(' ') + 1);
+    return label;
 }
 
 /// Edits a layer while an item is held. Letting go makes a step of undo.
@@ -120,20 +130,13 @@ public:
 
     [[nodiscard]] cubemap::LightLayer& layer() { return layer_; }
 
-    void number(const char* label, double& value, double min, double max, const char* format,
-                ImGuiSliderFlags flags = 0) {
-        auto shown = static_cast<float>(value);
-        const bool changed = ImGui::SliderFloat(label, &shown, static_cast<float>(min),
-                                                static_cast<float>(max), format, flags);
-        if (changed)
-            value = std::clamp(static_cast<double>(shown), min, max);
-        note(changed);
-    }
-    void color(const char* label, glm::vec3& value) {
-        const bool changed =
-            ImGui::ColorEdit3(label, &value.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
-        value = glm::max(value, glm::vec3(0.0f));
-        note(changed);
+    /// Shows what has_row() says: a slider or a colour. Label and unit follow from the name.
+    void row(const cubemap::LayerField& field) {
+        const std::string label = capitalised(field.name.substr(0, field.name.find('_')));
+        if (field.colour != nullptr)
+            color(label.c_str(), *field.colour);
+        else
+            number(label.c_str(), field);
     }
     void note(bool changed) {
         changed_ = changed_ || changed;
@@ -149,6 +152,27 @@ public:
     }
 
 private:
+    void number(const char* label, const cubemap::LayerField& field) {
+        const auto [from, to] = field.slider.value_or(field.range);
+        const char* format = field.name.ends_with("_degrees") ? "%.1f\xc2\xb0"
+                             : field.name.ends_with("_ev")    ? "%+.2f EV"
+                             : field.single != nullptr        ? "%.3f"
+                                                              : "%.2f";
+        auto shown = static_cast<float>(values(field)[0]);
+        const bool changed = ImGui::SliderFloat(
+            label, &shown, static_cast<float>(from), static_cast<float>(to), format,
+            field.logarithmic_slider ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None);
+        if (changed)
+            set_values(field, std::array{std::clamp(static_cast<double>(shown), from, to)});
+        note(changed);
+    }
+    void color(const char* label, glm::vec3& value) {
+        const bool changed =
+            ImGui::ColorEdit3(label, &value.x, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+        value = glm::max(value, glm::vec3(0.0f));
+        note(changed);
+    }
+
     ViewState& state_;
     std::size_t index_;
     cubemap::LightLayer layer_;
@@ -177,7 +201,7 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
     if (ImGui::Selectable(layer.name.c_str(), state.desk.selected() == index, 0, {width, 0.0f}))
         state.desk.select(index);
     ImGui::SameLine(right - 212.0f);
-    ImGui::TextDisabled("%s", kind(layer));
+    ImGui::TextDisabled("%s", kind(layer).c_str());
     ImGui::SameLine(right - 130.0f);
     ImGui::TextDisabled("%+.1f", layer.gain_ev);
     hint("gain in stops");
@@ -201,22 +225,9 @@ std::function<void()> layer_row(ViewState& state, std::size_t index) {
     return later;
 }
 
-void region_fields(Form& form) {
-    constexpr ImGuiSliderFlags Log = ImGuiSliderFlags_Logarithmic;
-    if (auto* disc = std::get_if<cubemap::Disc>(&form.layer().region)) {
-        form.number("Radius", disc->radius_degrees, 0.05, 180.0, Degrees, Log);
-        form.number("Softness", disc->softness, 0.0, 1.0, "%.2f");
-    } else if (auto* box = std::get_if<cubemap::Rectangle>(&form.layer().region)) {
-        form.number("Width", box->width_degrees, 0.1, 170.0, Degrees);
-        form.number("Height", box->height_degrees, 0.1, 170.0, Degrees);
-        form.number("Roll", box->roll_degrees, -180.0, 180.0, Degrees);
-        form.number("Softness", box->softness, 0.0, 1.0, "%.2f");
-    } else if (auto* stroke = std::get_if<cubemap::Stroke>(&form.layer().region)) {
-        form.number("Radius", stroke->radius_degrees, 0.05, 90.0, Degrees, Log);
-        form.number("Softness", stroke->softness, 0.0, 1.0, "%.2f");
-    } else if (auto* lasso = std::get_if<cubemap::Lasso>(&form.layer().region)) {
-        form.number("Softness", lasso->softness_degrees, 0.0, 90.0, Degrees);
-    }
+/// Directions and points are dragged in the environment.
+bool has_row(const cubemap::LayerField& field) {
+    return field.number != nullptr || field.single != nullptr || field.colour != nullptr;
 }
 
 /// Offers the effects: any region may give light or change the light below; a picture is laid over
@@ -251,17 +262,14 @@ void layer_fields(ViewState& state, std::size_t index) {
     if (renamed && !name.empty() && (!other || *other == index))
         form.layer().name = name;
     form.note(renamed);
-    form.number("Gain", form.layer().gain_ev, -12.0, 12.0, "%+.2f EV");
+    for (const cubemap::LayerField& field : own_fields(form.layer()))
+        if (has_row(field))
+            form.row(field);
     effect_choice(form);
-    if (auto* emit = std::get_if<cubemap::Emit>(&form.layer().effect)) {
-        form.color("Radiance", emit->radiance);
-    } else if (auto* gain = std::get_if<cubemap::Gain>(&form.layer().effect)) {
-        double factor = gain->factor;
-        form.number("Factor", factor, 0.0, 16.0, "%.3f", ImGuiSliderFlags_Logarithmic);
-        gain->factor = static_cast<float>(factor);
-        form.color("Tint", gain->tint);
-    }
-    region_fields(form);
+    for (const auto& part : {fields(form.layer().effect), fields(form.layer().region)})
+        for (const cubemap::LayerField& field : part)
+            if (has_row(field))
+                form.row(field);
     ImGui::PopItemWidth();
     form.apply();
 }
@@ -270,12 +278,9 @@ void layer_fields(ViewState& state, std::size_t index) {
 int num_field_rows(const ViewState& state) {
     if (!state.desk.selected())
         return 0;
-    const cubemap::LightLayer& layer = state.desk.layers()[*state.desk.selected()];
-    const int effect_rows = std::holds_alternative<cubemap::Emit>(layer.effect)   ? 1
-                            : std::holds_alternative<cubemap::Gain>(layer.effect) ? 2
-                                                                                  : 0;
-    constexpr int RegionRows[] = {2, 4, 1, 2}; // disc, rectangle, lasso, stroke
-    return 3 + effect_rows + RegionRows[layer.region.index()];
+    cubemap::LightLayer layer = state.desk.layers()[*state.desk.selected()];
+    const std::vector<cubemap::LayerField> all = fields(layer);
+    return 2 + static_cast<int>(std::count_if(all.begin(), all.end(), has_row));
 }
 
 void files(ViewState& state) {

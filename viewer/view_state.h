@@ -48,10 +48,9 @@ struct ViewState {
     EnvironmentLook environment_look = {};
 
     Tool tool = Tool::Move;
-    cubemap::LightLayer brush{.name = "Stroke",
-                              .region = cubemap::Stroke{.points = {}, .radius_degrees = 4.0}};
+    cubemap::LightLayer brush{.name = "Stroke", .region = cubemap::Stroke::as_added()};
     cubemap::LightLayer lasso{.name = "Lasso",
-                              .region = cubemap::Lasso{.points = {}, .softness_degrees = 3.0},
+                              .region = cubemap::Lasso::as_added(),
                               .effect = cubemap::Gain{.factor = 0.25f}};
 
     /// The vertex that was clicked.

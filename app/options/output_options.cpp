@@ -32,16 +32,15 @@ void OutputOptions::check(const std::vector<std::string>& inputs) const {
 
 void OutputOptions::check_fits(const Scene& scene) const {
     const std::string extension = extension_of(path);
-    const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
+    const bool on_vertices = prt::on_vertices(scene.layout);
     if (!on_vertices && (extension == ".ply" || extension == ".glb"))
         throw OptionError(
             "--output",
             fmt::format("expected .png, .exr or .npy for a scene whose receivers are {}, got '{}'",
                         prt::description(scene.layout), path));
-    const unsigned receivers = on_vertices ? OptionRow::OnVertices
-                               : std::holds_alternative<prt::TexelLayout>(scene.layout)
-                                   ? OptionRow::OnTexels
-                                   : OptionRow::OnPixels;
+    const unsigned receivers = on_vertices                           ? OptionRow::OnVertices
+                               : prt::kind_of(scene.layout).are_seen ? OptionRow::OnPixels
+                                                                     : OptionRow::OnTexels;
     for (const Option& option : options_)
         if (option.is_given() && (option.row().receivers & receivers) == 0)
             throw OptionError(option.name(),

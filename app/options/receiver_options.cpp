@@ -8,22 +8,26 @@
 namespace relumine::app {
 
 Report layout_json(const prt::Scene& scene) {
-    const auto num_receivers = static_cast<double>(scene.receivers.num_own());
-    if (const auto* pixels = std::get_if<prt::PixelLayout>(&scene.layout))
-        return {{"kind", "pixels"},
-                {"width", pixels->width},
-                {"height", pixels->height},
-                {"samples_per_axis", pixels->samples_per_axis},
-                {"eye", pixels->camera.eye},
-                {"target", pixels->camera.target},
-                {"fov", pixels->camera.fov_degrees},
-                {"coverage", num_receivers / static_cast<double>(pixels->num_samples())}};
-    if (const auto* texels = std::get_if<prt::TexelLayout>(&scene.layout))
-        return {{"kind", "texels"},
-                {"width", texels->width},
-                {"height", texels->height},
-                {"coverage", num_receivers / static_cast<double>(texels->num_texels())}};
-    return {};
+    if (prt::on_vertices(scene.layout))
+        return {};
+    Report report;
+    report.set("kind", prt::kind_of(scene.layout).name);
+    prt::ReceiverLayout layout = scene.layout;
+    std::visit(
+        [&](auto& own) {
+            auto member = [&](std::string_view name, const auto& value) {
+                report.set(name == "fov_degrees" ? "fov" : name, value);
+            };
+            own.members(member);
+        },
+        layout);
+    report.set("coverage", coverage_of(scene));
+    return report;
+}
+
+double coverage_of(const prt::Scene& scene) {
+    return static_cast<double>(scene.receivers.num_own()) /
+           static_cast<double>(prt::num_places(scene.layout));
 }
 
 Report atlas_json(const prt::AtlasReport& atlas, const prt::TexelLayout& texels) {
@@ -38,7 +42,7 @@ Report atlas_json(const prt::AtlasReport& atlas, const prt::TexelLayout& texels)
 }
 
 void require_vertices(const prt::Scene& scene, const std::string& path) {
-    if (!std::holds_alternative<prt::VertexLayout>(scene.layout))
+    if (!prt::on_vertices(scene.layout))
         throw std::runtime_error(
             fmt::format("{}: expected a scene whose receivers are vertices, got {}", path,
                         prt::description(scene.layout)));

@@ -12,6 +12,9 @@ namespace relumine::app {
 /// The layout for people and for --json: size, camera, coverage. Empty for vertices.
 [[nodiscard]] Report layout_json(const prt::Scene& scene);
 
+/// The part of the places of a layout that have a receiver. Not for vertices.
+[[nodiscard]] double coverage_of(const prt::Scene& scene);
+
 /// How a mesh's uvs fit the lightmap, for --json.
 [[nodiscard]] Report atlas_json(const prt::AtlasReport& atlas, const prt::TexelLayout& texels);
 

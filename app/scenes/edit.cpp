@@ -203,7 +203,7 @@ private:
         const cubemap::CubeMap map = lit_.contribution_map({&receiver, 1});
         save_map(options_.output.path, map, options_.output.picture.exposure_ev.value_or(0.0));
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
-                                 prt::receiver_name(lit_.scene().layout), receiver, nearest.x,
+                                 prt::kind_of(lit_.scene().layout).one, receiver, nearest.x,
                                  nearest.y, nearest.z));
     }
 

@@ -311,8 +311,7 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
     session.end_progress();
 
     Report report = report_of(work, facts, scene, session);
-    const bool on_vertices = std::holds_alternative<prt::VertexLayout>(scene.layout);
-    const std::string others = on_vertices
+    const std::string others = prt::on_vertices(scene.layout)
                                    ? ""
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));

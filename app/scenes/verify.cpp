@@ -66,7 +66,7 @@ void run(const VerifyArguments& options, Session& session) {
     const double seconds = watch.lap();
 
     const glm::vec3& worst = lit.scene().receivers.positions[error.worst_receiver];
-    const std::string name = prt::receiver_name(lit.scene().layout);
+    const std::string name(prt::kind_of(lit.scene().layout).one);
     session.say(
         fmt::format("{} receivers, R = {}, exact integration of the file's pixels in {:.1f} s",
                     check.receivers.size(), lit.environment().resolution, seconds));

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "cubemap/layers/layer_fields.h"
 #include "cubemap/layers/layer_file.h"
 
 namespace relumine::cubemap {

@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/layers/layer_fields.h"
 #include "cubemap/layers/layer_list.h"
 #include "files/joined.h"
 #include "files/json_reader.h"
 #include "files/nearest_name.h"
+#include "files/one_of_each.h"
 #include "files/output_file.h"
 
 namespace relumine::cubemap {
@@ -75,14 +75,13 @@ private:
         return result;
     }
 
-    /// Returns the kind with a name. Kinds have the order of the names.
-    template<typename Variant, std::size_t N>
+    /// Returns the kind with a name.
+    template<typename Variant>
     Variant kind(const files::Json& value, std::string_view what,
-                 const std::array<Variant, N>& kinds,
                  std::string_view (*name)(const Variant&)) const {
         const std::string& text = json_.string(value, what);
         std::vector<std::string_view> names;
-        for (const Variant& candidate : kinds) {
+        for (const Variant& candidate : files::one_of_each<Variant>()) {
             if (name(candidate) == text)
                 return candidate;
             names.push_back(name(candidate));
@@ -118,12 +117,8 @@ private:
                         [&](const LightLayer& other) { return other.name == result.name; }))
             json_.refuse(name, "layers of different names",
                          fmt::format("a second \"{}\"", result.name));
-        result.region =
-            kind<Region>(json_.required(value, "type"), "\"type\"",
-                         std::array<Region, 4>{Disc{}, Rectangle{}, Lasso{}, Stroke{}}, type_name);
-        result.effect =
-            kind<Effect>(json_.required(value, "effect"), "\"effect\"",
-                         std::array<Effect, 3>{Emit{}, Gain{}, ImagePatch{}}, effect_name);
+        result.region = kind<Region>(json_.required(value, "type"), "\"type\"", type_name);
+        result.effect = kind<Effect>(json_.required(value, "effect"), "\"effect\"", effect_name);
         std::vector<std::string_view> names = {"name", "type", "effect"};
         for (const LayerField& field : fields(result)) {
             names.push_back(field.name);

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "cubemap/layers/layer_fields.h"
 #include "cubemap/layers/layer_file.h"
 #include "files/json.h"
 #include "files/output_file.h"

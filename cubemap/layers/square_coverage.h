@@ -1,6 +1,6 @@
 // Mean coverage of a region over a square of a cube face, weighted by solid angle.
 //
-// A square on the region's edge is quartered until the ramps of region_shape.h are nearly linear
+// A square on the region's edge is quartered until the ramps of layer_shape.h are nearly linear
 // over it. The smoothstep of a linear function over a square has a closed form for every width of
 // the edge. So a straight hard edge needs no quartering, and a round edge is quartered only until
 // it looks straight.
@@ -16,7 +16,7 @@
 #include <glm/vec3.hpp>
 
 #include "cubemap/face.h"
-#include "cubemap/layers/region_shape.h"
+#include "cubemap/layers/region.h"
 
 namespace relumine::cubemap {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cubemap/layers/region_shape.h"
+#include "cubemap/layers/region.h"
 #include "cubemap/layers/square_coverage.h"
 #include "cubemap/texel_rectangle.h"
 

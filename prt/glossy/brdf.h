@@ -13,7 +13,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/receivers/surface.h"
+#include "prt/glossy/lobe_list.h"
 
 namespace relumine::prt {
 
@@ -32,18 +32,6 @@ struct Lobes {
     /// Sc: the part of S that Fresnel makes white.
     Value specular_grazing{};
 };
-
-/// Returns the Trowbridge-Reitz alpha of glTF's roughness: its square, but at least 1e-3 (roughness
-/// 0.032). Below 1e-3 half a degree of sun is wider than the lobe, and float runs out of digits.
-[[nodiscard]] float ggx_alpha(float roughness);
-
-/// Returns the Blinn-Phong exponent that is evaluated, in 0..1e6. 0 is Lambert; 1e6 is as sharp as
-/// the smallest ggx_alpha().
-[[nodiscard]] float blinn_phong_exponent(float exponent);
-
-/// Returns the factor of (n.h)^exponent in normalised Blinn-Phong. The lobe then reflects all light
-/// that comes along the normal, and less of any other light.
-[[nodiscard]] float blinn_phong_norm(float exponent);
 
 /// Returns the lobes for unit vectors n (normal), to_eye and w (to the light). Always finite.
 ///

@@ -99,20 +99,6 @@ LobeCuts joined(std::vector<BlockEntries>&& blocks) {
     return cuts;
 }
 
-/// Returns the angle over which a highlight changes, as seen from the light: twice the angle of the
-/// half vector.
-float narrowness_of(const Surface& surface) {
-    switch (surface.highlight) {
-    case Highlight::Ggx:
-        return 2.0f * ggx_alpha(surface.roughness_or_exponent);
-    case Highlight::BlinnPhong:
-        return 2.0f * std::sqrt(2.0f / (surface.roughness_or_exponent + 2.0f));
-    case Highlight::None:
-        break;
-    }
-    return 0.0f;
-}
-
 /// The tolerance holds for highlights of at least this width (roughness 0.3) and falls for narrower
 /// ones. A broad highlight takes in many lights, whose errors cancel; a narrow one sees one light
 /// at a time. Narrow ones still have few cells.
@@ -201,7 +187,8 @@ GlossyPrecompute::EntriesOfBlock GlossyPrecompute::refine(std::size_t block) {
         // The integral of (n.w / pi)^2 over the hemisphere is 2 / (3 pi).
         if (lobe == GlossyLobe::DiffuseGrazing)
             limits.reference_power =
-                std::popcount(to_refine.surfaces.ggx) * 2.0 / (3.0 * std::numbers::pi);
+                std::popcount(to_refine.surfaces.lanes_with(GlossyLobe::DiffuseGrazing)) * 2.0 /
+                (3.0 * std::numbers::pi);
         const LobeCut cut = refine_lobe(to_refine, lobe, transfer_, blockers_, limits);
         if (lobe == GlossyLobe::Specular)
             limits.reference_power = cut.power;

@@ -4,7 +4,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "prt/glossy/brdf.h"
+#include "prt/glossy/lobe_list.h"
 
 // Highway compiles the block below once per instruction set and picks one at run time.
 #undef HWY_TARGET_INCLUDE
@@ -42,105 +42,96 @@ Vector squared_cross(const Vector3& a, const Vector3& b) {
     return hn::MulAdd(x, x, hn::MulAdd(y, y, hn::Mul(z, z)));
 }
 
-/// The terms of one direction for some of a block's receivers.
-class DirectionTerms {
-public:
-    DirectionTerms(const BlockSurfaces& surfaces, const glm::vec3& w, std::size_t lane)
-        : surfaces_(surfaces), lane_(lane), n_w_(hn::Zero(Tag())), h_h_(hn::Zero(Tag())),
-          nxh_(hn::Zero(Tag())), c_(hn::Zero(Tag())) {
+/// The terms of one direction for some of a block's receivers, as LobeGeometry has them.
+struct LobeTerms {
+    LobeTerms(const BlockSurfaces& of, const glm::vec3& w, std::size_t first_lane)
+        : surfaces(of), lane(first_lane), n_w(hn::Zero(Tag())), sin2(hn::Zero(Tag())),
+          fresnel(hn::Zero(Tag())) {
         const Tag d;
-        const Vector3 n(surfaces.normal, lane);
-        const Vector3 v(surfaces.to_eye, lane);
+        const Vector3 n(of.normal, lane);
+        const Vector3 v(of.to_eye, lane);
         const Vector3 light(hn::Set(d, w.x), hn::Set(d, w.y), hn::Set(d, w.z));
-        n_w_ = hn::Max(dot(n, light), hn::Zero(d));
+        n_w = hn::Max(dot(n, light), hn::Zero(d));
         const Vector3 h(hn::Add(v.x, light.x), hn::Add(v.y, light.y), hn::Add(v.z, light.z));
-        h_h_ = hn::Max(dot(h, h), hn::Set(d, 1e-12f));
-        nxh_ = hn::Div(squared_cross(n, h), h_h_); // sin^2 between n and the half vector
+        const auto h_h = hn::Max(dot(h, h), hn::Set(d, 1e-12f));
+        sin2 = hn::Div(squared_cross(n, h), h_h);
         // v.h = |v + w| / 2 for unit vectors.
         const auto one_less =
-            hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), hn::Sqrt(h_h_), hn::Set(d, 1.0f)), hn::Zero(d));
+            hn::Max(hn::NegMulAdd(hn::Set(d, 0.5f), hn::Sqrt(h_h), hn::Set(d, 1.0f)), hn::Zero(d));
         const auto squared = hn::Mul(one_less, one_less);
-        c_ = hn::Mul(hn::Mul(squared, squared), one_less);
+        fresnel = hn::Mul(hn::Mul(squared, squared), one_less);
     }
 
-    [[nodiscard]] Vector specular() const {
-        const Tag d;
-        auto result = hn::Zero(d);
-        if (surfaces_.ggx != 0)
-            result = hn::IfThenElseZero(lanes(surfaces_.ggx), ggx());
-        if (surfaces_.blinn_phong != 0)
-            result = hn::IfThenElse(lanes(surfaces_.blinn_phong), blinn_phong(), result);
-        return result;
+    [[nodiscard]] Vector n_v() const {
+        return hn::Load(Tag(), surfaces.normal_dot_eye.data() + lane);
     }
-    [[nodiscard]] Vector specular_grazing() const {
-        return hn::Mul(c_, hn::IfThenElseZero(lanes(surfaces_.ggx), ggx()));
+    /// Of a lobe's parameters().
+    [[nodiscard]] Vector parameter(std::size_t i) const {
+        return hn::Load(Tag(), surfaces.parameters[i].data() + lane);
     }
-    [[nodiscard]] Vector diffuse_grazing() const {
-        const auto diffuse = hn::Mul(n_w_, hn::Set(Tag(), std::numbers::inv_pi_v<float>));
-        return hn::Mul(c_, hn::IfThenElseZero(lanes(surfaces_.ggx), diffuse));
-    }
-
-private:
     [[nodiscard]] hn::Mask<Tag> lanes(std::uint32_t bits) const {
-        const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits >> lane_),
-                                       static_cast<std::uint8_t>(bits >> lane_ >> 8u)};
+        const std::uint8_t bytes[8] = {static_cast<std::uint8_t>(bits >> lane),
+                                       static_cast<std::uint8_t>(bits >> lane >> 8u)};
         return hn::LoadMaskBits(Tag(), bytes);
     }
-    [[nodiscard]] Vector load(const BlockSurfaces::Floats& values) const {
-        return hn::Load(Tag(), values.data() + lane_);
-    }
 
-    /// Returns D V n.w of glTF 2.0, Appendix B.
-    [[nodiscard]] Vector ggx() const {
-        const Tag d;
-        const auto one = hn::Set(d, 1.0f);
-        const auto a2 = load(surfaces_.alpha_squared);
-        const auto n_v = load(surfaces_.normal_dot_eye);
-        // cos^2 (a2 - 1) + 1 = sin^2 + cos^2 a2
-        const auto cos2 = hn::Max(hn::Sub(one, nxh_), hn::Zero(d));
-        const auto t = hn::MulAdd(cos2, a2, nxh_);
-        const auto distribution =
-            hn::Div(a2, hn::Mul(hn::Set(d, std::numbers::pi_v<float>), hn::Mul(t, t)));
-        const auto rest = hn::Sub(one, a2);
-        const auto mask_v = hn::Mul(n_w_, hn::Sqrt(hn::MulAdd(hn::Mul(n_v, n_v), rest, a2)));
-        const auto mask_w = hn::Mul(n_v, hn::Sqrt(hn::MulAdd(hn::Mul(n_w_, n_w_), rest, a2)));
-        const auto visibility = hn::Div(hn::Mul(hn::Set(d, 0.5f), n_w_), hn::Add(mask_v, mask_w));
-        return hn::Mul(distribution, visibility);
-    }
-
-    [[nodiscard]] Vector blinn_phong() const {
-        const Tag d;
-        // log1p keeps digits that 1 - sin^2 would round away.
-        const auto sin2 = hn::Min(nxh_, hn::Set(d, 1.0f - 6e-8f));
-        const auto log_cos = hn::Mul(hn::Set(d, 0.5f), hn::Log1p(d, hn::Neg(sin2)));
-        const auto power = hn::Exp(d, hn::Mul(load(surfaces_.exponent), log_cos));
-        return hn::Mul(hn::Mul(load(surfaces_.factor), power), n_w_);
-    }
-
-    const BlockSurfaces& surfaces_;
-    std::size_t lane_;
-    Vector n_w_, h_h_, nxh_, c_;
+    const BlockSurfaces& surfaces;
+    std::size_t lane;
+    /// n.w, sin^2 between n and the half vector, and Schlick's (1 - v.h)^5
+    Vector n_w, sin2, fresnel;
 };
+
+// The lobes, 16 receivers at a time: functions `specular(LOBE, LobeTerms)`.
+#include "prt/glossy/blinn_phong_lobe-inl.h"
+#include "prt/glossy/ggx_lobe-inl.h"
+
+/// Returns the highlights of all lobes that the block has.
+template<std::size_t I = 1>
+Vector all_specular(const LobeTerms& terms) {
+    if constexpr (I == NumHighlights) {
+        return hn::Zero(Tag());
+    } else {
+        const auto others = all_specular<I + 1>(terms);
+        const std::uint32_t lanes = terms.surfaces.lanes[I];
+        if (lanes == 0)
+            return others;
+        return hn::IfThenElse(terms.lanes(lanes),
+                              specular(std::tuple_element_t<I, LobeList>(), terms), others);
+    }
+}
+
+/// Returns the part of a value that Fresnel makes white, or takes away.
+Vector grazing(const LobeTerms& terms, std::uint32_t lanes, Vector value) {
+    return hn::Mul(terms.fresnel, hn::IfThenElseZero(terms.lanes(lanes), value));
+}
+
+Vector diffuse(const LobeTerms& terms) {
+    return hn::Mul(terms.n_w, hn::Set(Tag(), std::numbers::inv_pi_v<float>));
+}
 
 void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,
                    std::span<const glm::vec3> directions, std::span<BlockSurfaces::Floats> values) {
+    const std::uint32_t lanes = surfaces.lanes_with(lobe);
     for (std::size_t i = 0; i < directions.size(); ++i)
         for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
-            const DirectionTerms terms(surfaces, directions[i], lane);
-            const auto value = lobe == GlossyLobe::Specular          ? terms.specular()
-                               : lobe == GlossyLobe::SpecularGrazing ? terms.specular_grazing()
-                                                                     : terms.diffuse_grazing();
+            const LobeTerms terms(surfaces, directions[i], lane);
+            const auto value = lobe == GlossyLobe::Specular ? all_specular(terms)
+                               : lobe == GlossyLobe::SpecularGrazing
+                                   ? grazing(terms, lanes, all_specular(terms))
+                                   : grazing(terms, lanes, diffuse(terms));
             hn::StoreU(value, Tag(), values[i].data() + lane);
         }
 }
 
 void evaluate_lobes(const BlockSurfaces& surfaces, const glm::vec3& direction,
                     std::array<BlockSurfaces::Floats, NumGlossyLobes>& values) {
+    const std::uint32_t lanes = surfaces.lanes_with(GlossyLobe::SpecularGrazing);
     for (std::size_t lane = 0; lane < BlockSize; lane += hn::Lanes(Tag())) {
-        const DirectionTerms terms(surfaces, direction, lane);
-        hn::StoreU(terms.specular(), Tag(), values[0].data() + lane);
-        hn::StoreU(terms.specular_grazing(), Tag(), values[1].data() + lane);
-        hn::StoreU(terms.diffuse_grazing(), Tag(), values[2].data() + lane);
+        const LobeTerms terms(surfaces, direction, lane);
+        const auto highlight = all_specular(terms);
+        hn::StoreU(highlight, Tag(), values[0].data() + lane);
+        hn::StoreU(grazing(terms, lanes, highlight), Tag(), values[1].data() + lane);
+        hn::StoreU(grazing(terms, lanes, diffuse(terms)), Tag(), values[2].data() + lane);
     }
 }
 
@@ -160,19 +151,22 @@ void BlockSurfaces::set(std::size_t lane, const Surface& surface, const glm::vec
         to_eye[static_cast<std::size_t>(axis)][lane] = eye_of_lane[axis];
     }
     normal_dot_eye[lane] = glm::dot(normal_of_lane, eye_of_lane);
-    alpha_squared[lane] = 1.0f;
-    if (!(normal_dot_eye[lane] > 0.0f))
+    if (!(normal_dot_eye[lane] > 0.0f) || surface.highlight == Highlight::None)
         return;
-    const std::uint32_t bit = 1u << lane;
-    if (surface.highlight == Highlight::Ggx) {
-        ggx |= bit;
-        const float alpha = ggx_alpha(surface.roughness_or_exponent);
-        alpha_squared[lane] = alpha * alpha;
-    } else if (surface.highlight == Highlight::BlinnPhong) {
-        blinn_phong |= bit;
-        exponent[lane] = blinn_phong_exponent(surface.roughness_or_exponent);
-        factor[lane] = blinn_phong_norm(surface.roughness_or_exponent);
-    }
+    lanes[static_cast<std::size_t>(surface.highlight)] |= 1u << lane;
+    const std::array<float, 2> own = with_lobe(surface.highlight, [&](auto lobe) {
+        return lobe.parameters(surface.roughness_or_exponent);
+    });
+    for (std::size_t i = 0; i < own.size(); ++i)
+        parameters[i][lane] = own[i];
+}
+
+std::uint32_t BlockSurfaces::lanes_with(GlossyLobe lobe) const {
+    std::uint32_t bits = 0;
+    for (std::size_t i = 1; i < NumHighlights; ++i)
+        if (lobe == GlossyLobe::Specular || facts_of(static_cast<Highlight>(i)).has_fresnel)
+            bits |= lanes[i];
+    return bits;
 }
 
 void evaluate_lobe(const BlockSurfaces& surfaces, GlossyLobe lobe,

@@ -8,7 +8,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "prt/receivers/surface.h"
+#include "prt/glossy/lobe_list.h"
 #include "prt/transfer/glossy_transfer.h"
 
 namespace relumine::prt {
@@ -19,21 +19,16 @@ struct alignas(64) BlockSurfaces {
     std::array<Floats, 3> normal{};
     std::array<Floats, 3> to_eye{};
     Floats normal_dot_eye{};
-    /// GGX only.
-    Floats alpha_squared{};
-    /// Blinn-Phong only.
-    Floats exponent{};
-    /// Blinn-Phong only: the lobe's norm.
-    Floats factor{};
-    /// Bit i is set where receiver i has this highlight and its eye is above the horizon.
-    std::uint32_t ggx = 0;
-    std::uint32_t blinn_phong = 0;
+    /// Of each receiver's own lobe.
+    std::array<Floats, 2> parameters{};
+    /// By Highlight: bit i is set where receiver i has it and its eye is above the horizon.
+    std::array<std::uint32_t, NumHighlights> lanes{};
 
     void set(std::size_t lane, const Surface& surface, const glm::vec3& normal_of_lane,
              const glm::vec3& eye_of_lane);
-    [[nodiscard]] bool has(GlossyLobe lobe) const {
-        return lobe == GlossyLobe::Specular ? (ggx | blinn_phong) != 0 : ggx != 0;
-    }
+    /// Returns the bits of the receivers that have a lobe.
+    [[nodiscard]] std::uint32_t lanes_with(GlossyLobe lobe) const;
+    [[nodiscard]] bool has(GlossyLobe lobe) const { return lanes_with(lobe) != 0; }
 };
 
 /// Evaluates one lobe of each receiver for each direction.

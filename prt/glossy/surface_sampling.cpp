@@ -5,12 +5,12 @@
 
 #include <glm/common.hpp>
 
+#include "prt/glossy/lobe_list.h"
+#include "prt/receivers/mesh_point.h"
+
 namespace relumine::prt {
 
 namespace {
-
-/// glTF 2.0, Appendix B.
-constexpr float DielectricF0 = 0.04f;
 
 /// Interpolates an attribute of the corners at a point.
 template<class Value>
@@ -45,9 +45,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
     if (const auto& slot = material.base_color_texture)
         base *= mesh::sample(mesh.textures[slot->texture], *slot, uv);
     if (material.times_vertex_color && !mesh.colors.empty()) {
-        const mesh::Triangle& t = mesh.triangles[triangle];
-        base *= interpolate<glm::vec3>({mesh.colors[t[0]], mesh.colors[t[1]], mesh.colors[t[2]]},
-                                       barycentric);
+        base *= value_at(mesh, mesh.colors, {triangle, barycentric});
         base = glm::clamp(base, 0.0f, 1.0f);
     }
     if (material.model == mesh::MaterialModel::Phong) {
@@ -80,7 +78,7 @@ Surface surface_at(const mesh::TriangleMesh& mesh, std::uint32_t triangle,
 }
 
 Surface without_highlight(Surface surface) {
-    if (surface.highlight == Highlight::Ggx)
+    if (facts_of(surface.highlight).has_fresnel)
         surface.albedo =
             glm::min(surface.albedo + glm::max(surface.specular - DielectricF0, 0.0f), 1.0f);
     surface.highlight = Highlight::None;

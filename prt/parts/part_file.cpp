@@ -16,7 +16,8 @@
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
-#include "prt/scene/scene_sections.h"
+#include "prt/scene/json_members.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
 
@@ -31,7 +32,6 @@ std::vector<std::byte> text_section(const files::Json& json) {
 /// A part as its file has it.
 struct StoredPart {
     SectionReader reader;
-    std::uint32_t version = 0;
     Part part = {};
     /// The hash of the plan
     std::string whole = {};
@@ -39,9 +39,7 @@ struct StoredPart {
 };
 
 StoredPart read_part(const std::filesystem::path& path) {
-    std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version);
-    StoredPart stored{.reader = SectionReader(path, std::move(sections)), .version = version};
+    StoredPart stored{.reader = SectionReader(path, read_sections(path))};
     if (!stored.reader.has("part"))
         throw std::runtime_error(fmt::format("{}: expected a part, got {}", path.string(),
                                              stored.reader.has("plan") ? "a plan" : "a scene"));
@@ -85,7 +83,7 @@ PartLight light_of(const StoredPart& stored, std::size_t num_leaves, std::size_t
     VisibleCounts& counts = light.counts;
     counts.num_receivers = stored.num_receivers;
     counts.num_leaves = num_leaves;
-    read_counts(reader, stored.version, counts);
+    read_counts(reader, counts);
     if (has_glossy(reader))
         light.glossy = read_glossy(reader, counts.num_blocks());
     light.bounces = read_bounce_samples(reader, counts.num_receivers, num_receivers);

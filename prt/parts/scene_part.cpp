@@ -14,8 +14,9 @@
 #include "prt/scene/bounce_sections.h"
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
+#include "prt/scene/json_members.h"
 #include "prt/scene/scene_check.h"
-#include "prt/scene/scene_sections.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_file.h"
 #include "prt/scene/section_reader.h"
 
@@ -75,17 +76,11 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     for (const std::string& name : long_count_sections())
         streamed.push_back(name);
     streamed.push_back(EmitterSection);
-    std::uint32_t version = 0;
-    Sections sections = read_sections(path, &version, streamed);
+    Sections sections = read_sections(path, streamed);
     const auto refuse = [&](const std::string& expected, const std::string& got) {
         throw std::runtime_error(
             fmt::format("{}: expected {}, got {}", path.string(), expected, got));
     };
-    // Before that the counts have another meaning.
-    constexpr std::uint32_t FirstVersion = 3;
-    if (version < FirstVersion)
-        refuse(fmt::format(".prt version {} or later for a part of the receivers", FirstVersion),
-               fmt::format("version {}", version));
     if (sections.contains("plan") || sections.contains("part") || sections.contains("lit"))
         refuse("a scene", "a plan or a part");
     const SectionReader of_bounces(path, taken(sections, "bounce_"));
@@ -97,10 +92,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     const std::size_t num_receivers = whole.receivers.size();
     if (has_bounces(of_bounces)) {
         BounceRows rows = read_bounce_rows(of_bounces, num_receivers, part);
-        if (!std::holds_alternative<VertexLayout>(whole.layout))
-            for (const std::uint32_t place : rows.matrix.emitters.places)
-                if (whole.transfer.order[place] < whole.receivers.num_own())
-                    refuse("light that comes from vertices", "other light");
+        check_emitters(SceneCheck(path), whole, rows.matrix);
         result.scene.bounces = std::move(rows.matrix);
         result.bounces = {.first = rows.first, .num_emitters = std::move(rows.num_emitters)};
     }
@@ -120,8 +112,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
     std::vector<std::size_t> tiles;
     for (std::size_t tile = part.index; tile < shape.num_tiles(); tile += part.count)
         tiles.push_back(tile);
-    transfer.counts =
-        read_counts_of_tiles(of_counts, version, shape, tiles, result.receivers.size());
+    transfer.counts = read_counts_of_tiles(of_counts, shape, tiles, result.receivers.size());
     if (has_glossy(of_highlights)) {
         if (whole.receivers.to_eye.empty() || whole.receivers.surfaces.empty())
             refuse("directions to the eye and surfaces with highlights", "none");
@@ -130,7 +121,7 @@ ScenePart load_scene_part(const std::filesystem::path& path, const Part& part) {
         for (const std::size_t tile : tiles)
             blocks.push_back({shape.tile_begin(tile), shape.tile_begin(tile + 1)});
         transfer.glossy = read_glossy_part(of_highlights, shape.num_blocks(), blocks);
-        check_highlights(*transfer.glossy, path);
+        check_highlights(SceneCheck(path), *transfer.glossy);
         for (const std::uint32_t receiver : result.receivers)
             transfer.glossy->to_eye.push_back(whole.receivers.to_eye[receiver]);
     }

@@ -37,7 +37,7 @@ struct ScenePart {
     std::optional<SharedBounces> bounces = {};
 };
 
-/// Reads the part's tiles of a scene of version 3 or later, and checks them.
+/// Reads the part's tiles of a scene, and checks them.
 ///
 /// Memory:  the mesh, all receivers, the counts, highlights and rows of the part, the file as it is
 ///          on disk, and for a while 4 bytes for each cell of a highlight.

@@ -1,10 +1,12 @@
 // What the receivers of a scene are: vertices of its mesh, pixels of a picture or texels of a
-// lightmap.
+// lightmap. Each kind answers for itself.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -12,14 +14,45 @@
 
 namespace relumine::prt {
 
+/// What holds for all layouts of a kind.
+struct ReceiverKind {
+    /// Of its receivers, in files and options.
+    std::string_view name;
+    /// One receiver.
+    std::string_view one;
+    /// What its receivers are a part of.
+    std::string_view whole;
+    /// They are the mesh's vertices: any camera can look at them, values between them are
+    /// interpolated, and files of meshes hold them.
+    bool are_vertices = false;
+    /// A picture of them is what an eye sees: in colours, with a background.
+    bool are_seen = true;
+};
+
+/// The size of a picture or a lightmap; 0 x 0 for vertices.
+struct PlaceGrid {
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::uint32_t samples_per_axis = 1;
+};
+
 /// Receiver i is vertex i of the mesh.
 struct VertexLayout {
+    static constexpr ReceiverKind Kind{
+        .name = "vertices", .one = "vertex", .whole = "the mesh", .are_vertices = true};
     bool operator==(const VertexLayout&) const = default;
+
+    [[nodiscard]] static PlaceGrid grid() { return {}; }
+    [[nodiscard]] static std::vector<std::uint32_t>* places() { return nullptr; }
+    [[nodiscard]] static const Camera* own_camera() { return nullptr; }
+    static void members(auto&) {}
 };
 
 /// Receivers are the points where the rays of a picture first meet the mesh. The other samples see
 /// the background.
 struct PixelLayout {
+    static constexpr ReceiverKind Kind{
+        .name = "pixels", .one = "pixel sample", .whole = "its samples"};
     Camera camera = {};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
@@ -36,11 +69,25 @@ struct PixelLayout {
         return std::size_t{width} * height * samples_per_pixel();
     }
     bool operator==(const PixelLayout&) const = default;
+
+    [[nodiscard]] PlaceGrid grid() const { return {width, height, samples_per_axis}; }
+    [[nodiscard]] std::vector<std::uint32_t>* places() { return &samples; }
+    [[nodiscard]] const Camera* own_camera() const { return &camera; }
+    void members(auto& member) {
+        member("width", width);
+        member("height", height);
+        member("samples_per_axis", samples_per_axis);
+        member("eye", camera.eye);
+        member("target", camera.target);
+        member("fov_degrees", camera.fov_degrees);
+    }
 };
 
 /// Receivers are the texels of a lightmap that the mesh's uvs touch. u runs to the right, v
 /// upwards: the top row is at v = 1.
 struct TexelLayout {
+    static constexpr ReceiverKind Kind{
+        .name = "texels", .one = "texel", .whole = "the atlas", .are_seen = false};
     std::uint32_t width = 0;
     std::uint32_t height = 0;
     /// [num_receivers] ascending: the texel of each receiver, row by row from the top.
@@ -48,18 +95,42 @@ struct TexelLayout {
 
     [[nodiscard]] std::size_t num_texels() const { return std::size_t{width} * height; }
     bool operator==(const TexelLayout&) const = default;
+
+    [[nodiscard]] PlaceGrid grid() const { return {width, height}; }
+    [[nodiscard]] std::vector<std::uint32_t>* places() { return &texels; }
+    [[nodiscard]] static const Camera* own_camera() { return nullptr; }
+    void members(auto& member) {
+        member("width", width);
+        member("height", height);
+    }
 };
 
+/// The list of kinds.
 using ReceiverLayout = std::variant<VertexLayout, PixelLayout, TexelLayout>;
 
 /// The largest number of samples or texels. It bounds what is allocated. A picture of
 /// 8192 x 8192 with four samples a pixel has as many.
 inline constexpr std::size_t MaxLayoutPlaces = std::size_t{1} << 28;
 
-/// Returns the name of one receiver: "vertex", "pixel sample" or "texel".
-[[nodiscard]] std::string receiver_name(const ReceiverLayout& layout);
+[[nodiscard]] const ReceiverKind& kind_of(const ReceiverLayout& layout);
+
+/// Whether the receivers are the mesh's vertices.
+[[nodiscard]] bool on_vertices(const ReceiverLayout& layout);
 
 /// Returns "vertices", "pixels 1024 x 768, 3 x 3 samples each" or "texels 512 x 512".
 [[nodiscard]] std::string description(const ReceiverLayout& layout);
+
+/// Returns how many places for receivers there are: samples or texels. None for vertices.
+[[nodiscard]] std::size_t num_places(const ReceiverLayout& layout);
+
+/// Returns the place of each receiver, ascending. None for vertices.
+[[nodiscard]] std::span<const std::uint32_t> places(const ReceiverLayout& layout);
+
+/// Returns the camera that the receivers belong to. Null: none.
+[[nodiscard]] const Camera* own_camera(const ReceiverLayout& layout);
+
+/// Checks the size and the camera of pixels or texels, before anything is done with them.
+/// Throws:  std::invalid_argument.
+void check_size(const ReceiverLayout& layout);
 
 } // namespace relumine::prt

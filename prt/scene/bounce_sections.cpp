@@ -186,4 +186,42 @@ std::optional<BounceSamples> read_bounce_samples(const SectionReader& reader, st
     return samples;
 }
 
+namespace {
+
+void check_bounces(const SceneCheck& check, const Scene& scene) {
+    const bool is_plan = scene.transfer.counts.num_receivers == 0;
+    check.that(scene.bounces || scene.receivers.num_added == 0 || is_plan,
+               "bounces that come from the added vertices", "none");
+    if (!scene.bounces)
+        return;
+    try {
+        require_bounces(*scene.bounces, scene.transfer.num_receivers());
+    } catch (const std::invalid_argument& error) {
+        throw std::runtime_error(fmt::format("{}: {}", check.path().string(), error.what()));
+    }
+    check_emitters(check, scene, *scene.bounces);
+}
+
+} // namespace
+
+void check_emitters(const SceneCheck& check, const Scene& scene, const BounceMatrix& matrix) {
+    if (on_vertices(scene.layout))
+        return;
+    for (const std::uint32_t place : matrix.emitters.places)
+        if (scene.transfer.order[place] < scene.receivers.num_own())
+            check.fail("light that comes from vertices",
+                       fmt::format("some from {} {}", kind_of(scene.layout).one,
+                                   scene.transfer.order[place]));
+}
+
+const SectionGroup BounceSections = {
+    .add =
+        [](NewSections& sections, const Scene& scene) {
+            if (scene.bounces)
+                add_bounce_sections(sections, *scene.bounces);
+        },
+    .read = [](const SectionReader& reader,
+               Scene& scene) { scene.bounces = read_bounces(reader, scene.receivers.size()); },
+    .check = check_bounces};
+
 } // namespace relumine::prt

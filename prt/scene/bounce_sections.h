@@ -6,8 +6,7 @@
 
 #include "prt/bounces/bounce_matrix.h"
 #include "prt/bounces/bounce_samples.h"
-#include "prt/scene/section_file.h"
-#include "prt/scene/section_reader.h"
+#include "prt/scene/section_group.h"
 
 namespace relumine::prt {
 
@@ -20,6 +19,9 @@ void add_bounce_sections(NewSections& sections, const BounceMatrix& matrix);
 /// Throws:  as SectionReader.
 [[nodiscard]] std::optional<BounceMatrix> read_bounces(const SectionReader& reader,
                                                        std::size_t num_receivers);
+
+/// Checks that light comes from vertices.
+void check_emitters(const SceneCheck& check, const Scene& scene, const BounceMatrix& matrix);
 
 /// The rows of one of several processes that relight a scene.
 struct BounceRows {

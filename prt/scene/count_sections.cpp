@@ -8,7 +8,7 @@
 
 #include "files/parallel.h"
 #include "prt/clusters/lattice.h"
-#include "prt/scene/older_counts.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_picker.h"
 #include "prt/scene/small_numbers.h"
 
@@ -16,13 +16,11 @@ namespace relumine::prt {
 
 namespace {
 
-// Up to version 4, counts are bytes. Then they are codes of four bits, two in a byte. Counts are 0
-// to 16, and hardly ever 14: so the code 14 stands for 16, and a list names the entries that are 14
-// after all. The file of the Stanford bunny is 7 % smaller for it.
-const std::string Visible = "visible", Mixed = "mixed", Counts = "counts", Codes = "count_codes",
-                  Rare = "counts_14";
+// Counts are codes of four bits, two in a byte. Counts are 0 to 16, and hardly ever 14: so the code
+// 14 stands for 16, and a list names the entries that are 14 after all. Beside bytes, the file of
+// the Stanford bunny is 7 % smaller for it.
+const std::string Visible = "visible", Mixed = "mixed", Codes = "count_codes", Rare = "counts_14";
 constexpr std::uint8_t RareCount = 14;
-constexpr std::uint32_t FirstVersionWithCodes = 5;
 
 /// Entries [begin, end) of a scene's counts, even numbers.
 using EntryRange = SectionPicker::Range;
@@ -109,30 +107,21 @@ void add_counts(NewSections& sections, const VisibleCounts& counts) {
     sections[Rare] = rare_entries(counts.counts);
 }
 
-void read_counts(const SectionReader& reader, std::uint32_t version, VisibleCounts& counts) {
+void read_counts(const SectionReader& reader, VisibleCounts& counts) {
     counts.visible = reader.elements<std::uint64_t>(Visible);
     counts.mixed = reader.elements<std::uint64_t>(Mixed);
-    const bool has_codes = version >= FirstVersionWithCodes;
-    if (has_codes) {
-        const std::vector<std::byte>& codes = reader.bytes(Codes);
-        const EntryRange all{0, 2 * codes.size()};
-        counts.counts = counts_of(reader, codes, {&all, 1}, all.end);
-    } else {
-        counts.counts = reader.elements<std::uint8_t>(Counts);
-    }
+    const std::vector<std::byte>& codes = reader.bytes(Codes);
+    const EntryRange all{0, 2 * codes.size()};
+    counts.counts = counts_of(reader, codes, {&all, 1}, all.end);
     try {
-        if (version < 2)
-            move_into_tiles(counts);
-        else
-            counts.index();
+        counts.index();
     } catch (const std::invalid_argument&) {
-        reader.fail(has_codes ? Codes : Counts, "counts that fit the receivers and the tree");
+        reader.fail(Codes, "counts that fit the receivers and the tree");
     }
 }
 
-VisibleCounts read_counts_of_tiles(const SectionReader& reader, std::uint32_t version,
-                                   const VisibleCounts& whole, std::span<const std::size_t> tiles,
-                                   std::size_t num_own) {
+VisibleCounts read_counts_of_tiles(const SectionReader& reader, const VisibleCounts& whole,
+                                   std::span<const std::size_t> tiles, std::size_t num_own) {
     constexpr std::uint64_t WordBytes = sizeof(std::uint64_t);
     const auto words_before = [&](std::size_t tile) {
         return std::uint64_t{whole.tile_begin(tile)} * whole.words_per_block();
@@ -167,23 +156,16 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, std::uint32_t ve
     for (std::size_t i = 0; i < num_tiles; ++i)
         pairs[i + 1] += pairs[i];
 
-    const bool has_codes = version >= FirstVersionWithCodes;
     std::vector<EntryRange> entries;
     std::vector<SectionPicker::Range> bytes;
     for (const std::size_t own : tiles) {
         entries.push_back({pairs[own] * BlockSize, pairs[own + 1] * BlockSize});
-        bytes.push_back(entries.back());
-        if (has_codes)
-            bytes.back() = {entries.back().begin / 2, entries.back().end / 2};
+        bytes.push_back({entries.back().begin / 2, entries.back().end / 2});
     }
     const std::uint64_t num_entries = pairs[num_tiles] * BlockSize;
-    SectionPicker values(bytes);
-    stream_section(reader.path(), has_codes ? Codes : Counts,
-                   has_codes ? num_entries / 2 : num_entries,
-                   [&](auto piece) { values.take(piece); });
-    counts.counts = has_codes
-                        ? counts_of(reader, values.elements<std::byte>(), entries, num_entries)
-                        : values.elements<std::uint8_t>();
+    SectionPicker codes(bytes);
+    stream_section(reader.path(), Codes, num_entries / 2, [&](auto piece) { codes.take(piece); });
+    counts.counts = counts_of(reader, codes.elements<std::byte>(), entries, num_entries);
     try {
         counts.index();
     } catch (const std::invalid_argument&) {
@@ -195,7 +177,19 @@ VisibleCounts read_counts_of_tiles(const SectionReader& reader, std::uint32_t ve
 }
 
 std::vector<std::string> long_count_sections() {
-    return {Visible, Mixed, Counts, Codes};
+    return {Visible, Mixed, Codes};
 }
+
+const SectionGroup CountSections = {
+    .add = [](NewSections& sections,
+              const Scene& scene) { add_counts(sections, scene.transfer.counts); },
+    .read =
+        [](const SectionReader& reader, Scene& scene) {
+            VisibleCounts& counts = scene.transfer.counts;
+            counts.num_receivers = scene.receivers.size();
+            counts.num_leaves = scene.transfer.quadtree.num_leaves();
+            read_counts(reader, counts);
+        },
+    .is_light = true};
 
 } // namespace relumine::prt

@@ -16,20 +16,18 @@ namespace relumine::prt {
 /// Adds the sections of counts, which must last until they are written.
 void add_counts(NewSections& sections, const VisibleCounts& counts);
 
-/// Reads and checks the counts of `counts.num_receivers` and `counts.num_leaves` from a file of the
-/// `version`.
+/// Reads and checks the counts of `counts.num_receivers` and `counts.num_leaves`.
 ///
 /// Throws:  std::runtime_error.
-void read_counts(const SectionReader& reader, std::uint32_t version, VisibleCounts& counts);
+void read_counts(const SectionReader& reader, VisibleCounts& counts);
 
 /// Reads and checks the counts of `num_own` receivers in `tiles`, which ascend. No other counts
 /// stay in memory.
 ///
 /// reader:  has the sections of a scene but long_count_sections().
-/// version: of the file, 3 or later.
 /// whole:   num_receivers and num_leaves of the scene.
 /// Throws:  std::runtime_error.
-[[nodiscard]] VisibleCounts read_counts_of_tiles(const SectionReader& reader, std::uint32_t version,
+[[nodiscard]] VisibleCounts read_counts_of_tiles(const SectionReader& reader,
                                                  const VisibleCounts& whole,
                                                  std::span<const std::size_t> tiles,
                                                  std::size_t num_own);

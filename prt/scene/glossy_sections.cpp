@@ -229,4 +229,40 @@ std::vector<std::string> long_glossy_sections() {
     return names;
 }
 
+void check_highlights(const SceneCheck& check, const GlossyTransfer& glossy) {
+    // Larger than the transfer of the narrowest highlight at the most grazing angle, 1/sr.
+    constexpr float MaxTransfer = 1e9f;
+    for (const LobeCuts& lobe : glossy.lobes)
+        check.all(
+            fmt::format("highlights of a transfer within {}", MaxTransfer), lobe.scales,
+            [](float scale) { return scale >= 0.0f && scale * 255.0f * 255.0f <= MaxTransfer; });
+}
+
+const SectionGroup GlossySections = {
+    .add =
+        [](NewSections& sections, const Scene& scene) {
+            if (scene.transfer.glossy)
+                add_glossy_sections(sections, *scene.transfer.glossy);
+        },
+    .read =
+        [](const SectionReader& reader, Scene& scene) {
+            if (!has_glossy(reader))
+                return;
+            if (scene.receivers.to_eye.empty() || scene.receivers.surfaces.empty())
+                reader.fail(name_of(0, 'b'), "directions to the eye and surfaces with highlights");
+            scene.transfer.glossy = read_glossy(reader, scene.transfer.counts.num_blocks());
+        },
+    .check =
+        [](const SceneCheck& check, const Scene& scene) {
+            const bool is_glossy = scene.transfer.glossy.has_value();
+            // A plan knows how its highlights will be.
+            const bool is_plan = scene.transfer.counts.num_receivers == 0;
+            check.that(is_glossy == scene.settings.glossy_tolerance.has_value() ||
+                           (is_plan && !is_glossy),
+                       is_glossy ? "a tolerance of the highlights" : "highlights", "none");
+            if (is_glossy)
+                check_highlights(check, *scene.transfer.glossy);
+        },
+    .is_light = true};
+
 } // namespace relumine::prt

@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "prt/scene/section_file.h"
-#include "prt/scene/section_reader.h"
+#include "prt/scene/section_group.h"
 #include "prt/transfer/glossy_transfer.h"
 
 namespace relumine::prt {
@@ -36,6 +35,9 @@ struct BlockRange {
 /// Throws:  as SectionReader.
 [[nodiscard]] GlossyTransfer read_glossy_part(const SectionReader& reader, std::size_t num_blocks,
                                               std::span<const BlockRange> blocks);
+
+/// Checks that highlights can be lit.
+void check_highlights(const SceneCheck& check, const GlossyTransfer& glossy);
 
 /// The long glossy sections.
 [[nodiscard]] std::vector<std::string> long_glossy_sections();

@@ -1,9 +1,10 @@
-#include "prt/scene/material_sections.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
+
+#include "prt/scene/json_members.h"
+#include "prt/scene/section_group.h"
 
 namespace relumine::prt {
 
@@ -122,9 +123,12 @@ mesh::Texture texture_of(const Json& json, const std::vector<std::byte>& images,
     return texture;
 }
 
-} // namespace
-
-void add_material_sections(NewSections& sections, const mesh::TriangleMesh& mesh) {
+/// What gives a textured mesh its colours between the vertices: materials, the image files as they
+/// were, materials of triangles, uvs of corners. A mesh without textures adds nothing.
+void add_materials(NewSections& sections, const Scene& scene) {
+    if (!on_vertices(scene.layout) || scene.receivers.surfaces.empty())
+        return;
+    const mesh::TriangleMesh& mesh = scene.mesh;
     const auto has_texture = [&](const Material& material) {
         return material.base_color_texture && has_files(material, mesh.textures);
     };
@@ -164,7 +168,8 @@ void add_material_sections(NewSections& sections, const mesh::TriangleMesh& mesh
         sections["corner_uvs"] = SectionContent::view(mesh.corner_uvs);
 }
 
-void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mesh) {
+void read_materials(const SectionReader& reader, Scene& scene) {
+    mesh::TriangleMesh& mesh = scene.mesh;
     if (!reader.has("materials"))
         return;
     const std::vector<char> text = reader.elements<char>("materials");
@@ -193,5 +198,9 @@ void read_material_sections(const SectionReader& reader, mesh::TriangleMesh& mes
     mesh.corner_uvs =
         reader.elements<std::array<glm::vec2, 3>>("corner_uvs", mesh.num_triangles(), true);
 }
+
+} // namespace
+
+const SectionGroup MaterialSections = {.add = add_materials, .read = read_materials};
 
 } // namespace relumine::prt

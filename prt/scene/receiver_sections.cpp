@@ -1,60 +1,22 @@
-#include "prt/scene/receiver_sections.h"
-
 #include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "files/one_of_each.h"
+#include "prt/glossy/lobe_list.h"
 #include "prt/scene/bounce_sections.h"
+#include "prt/scene/json_members.h"
+#include "prt/scene/section_group.h"
 
 namespace relumine::prt {
 
 namespace {
 
-glm::vec3 vector(const files::Json& json) {
-    if (json.values().size() != 3)
-        throw std::out_of_range("expected three numbers");
-    return {real(json.values().at(0)), real(json.values().at(1)), real(json.values().at(2))};
-}
+const std::string Layout = "layout", Mask = "layout_mask";
 
-files::Json json_of(const PixelLayout& layout) {
-    return {{"kind", "pixels"},
-            {"width", layout.width},
-            {"height", layout.height},
-            {"samples_per_axis", layout.samples_per_axis},
-            {"eye", layout.camera.eye},
-            {"target", layout.camera.target},
-            {"fov_degrees", layout.camera.fov_degrees}};
-}
-
-files::Json json_of(const TexelLayout& layout) {
-    return {{"kind", "texels"}, {"width", layout.width}, {"height", layout.height}};
-}
-
-/// Returns the bits of the places that have a receiver.
-std::vector<std::byte> mask(const std::vector<std::uint32_t>& places, std::size_t num_places) {
-    std::vector<bool> bits(num_places);
-    for (const std::uint32_t place : places)
-        bits[place] = true;
-    return packed(bits);
-}
-
-std::size_t num_places(const PixelLayout& layout) {
-    return layout.num_samples();
-}
-std::size_t num_places(const TexelLayout& layout) {
-    return layout.num_texels();
-}
-const std::vector<std::uint32_t>& places(const PixelLayout& layout) {
-    return layout.samples;
-}
-const std::vector<std::uint32_t>& places(const TexelLayout& layout) {
-    return layout.texels;
-}
-
-template<typename Layout>
-void check(const Layout& layout, const Receivers& receivers) {
-    const std::vector<std::uint32_t>& own = places(layout);
+void check_fit(const ReceiverLayout& layout, const Receivers& receivers) {
+    const std::span<const std::uint32_t> own = places(layout);
     const bool ascending =
         std::adjacent_find(own.begin(), own.end(), std::greater_equal<>()) == own.end() &&
         (own.empty() || own.back() < num_places(layout));
@@ -62,18 +24,23 @@ void check(const Layout& layout, const Receivers& receivers) {
         throw std::invalid_argument(
             fmt::format("expected one place in the layout for each of {} receivers, got {} in {}",
                         receivers.num_own(), own.size(), num_places(layout)));
-}
-
-template<typename Layout>
-void add_layout(NewSections& sections, const Layout& layout, const Receivers& receivers) {
-    check(layout, receivers);
     if (receivers.normals.size() != receivers.size() || receivers.points.size() != receivers.size())
         throw std::invalid_argument(
             fmt::format("expected a normal and a point for each of {} receivers, got {} and {}",
                         receivers.size(), receivers.normals.size(), receivers.points.size()));
-    const std::string text = json_of(layout).text(2);
-    sections["layout"] = bytes_of(text);
-    sections["layout_mask"] = mask(places(layout), num_places(layout));
+}
+
+/// Of pixels and texels.
+void add_places(NewSections& sections, ReceiverLayout layout, const Receivers& receivers) {
+    check_fit(layout, receivers);
+    JsonMembers members;
+    members.json.set("kind", kind_of(layout).name);
+    std::visit([&](auto& own) { own.members(members); }, layout);
+    sections[Layout] = bytes_of(members.json.text(2));
+    std::vector<bool> bits(num_places(layout));
+    for (const std::uint32_t place : places(layout))
+        bits[place] = true;
+    sections[Mask] = packed(bits);
     sections["r_positions"] = SectionContent::view(receivers.positions);
     sections["r_normals"] = SectionContent::view(receivers.normals);
     std::vector<std::uint32_t> triangles;
@@ -110,8 +77,7 @@ std::vector<Surface> read_surfaces(const SectionReader& reader, std::size_t coun
     const std::vector<glm::vec3> specular = reader.elements<glm::vec3>("r_specular", count);
     const auto highlight = reader.elements<std::uint8_t>("r_highlight", count);
     const auto shape = reader.elements<float>("r_shape", count);
-    if (std::any_of(highlight.begin(), highlight.end(),
-                    [](auto h) { return h > static_cast<std::uint8_t>(Highlight::BlinnPhong); }))
+    if (std::any_of(highlight.begin(), highlight.end(), [](auto h) { return h >= NumHighlights; }))
         reader.fail("r_highlight", "highlights of known shapes");
     std::vector<Surface> surfaces(count);
     for (std::size_t i = 0; i < count; ++i)
@@ -141,52 +107,53 @@ std::vector<MeshPoint> read_points(const SectionReader& reader, std::size_t coun
     return points;
 }
 
-/// Returns a size, checked before anything is done with it.
-std::uint32_t size_of(const files::Json& json) {
-    const std::uint32_t size = natural(json);
-    if (size < 1 || size > MaxPictureSize)
-        throw std::out_of_range("expected a size of a picture");
-    return size;
-}
-
 ReceiverLayout layout_of(const files::Json& json) {
-    if (json.at("kind").string() == "texels") {
-        TexelLayout layout{.width = size_of(json.at("width")),
-                           .height = size_of(json.at("height"))};
-        if (layout.num_texels() > MaxLayoutPlaces)
-            throw std::out_of_range("expected fewer texels");
+    for (ReceiverLayout& layout : files::one_of_each<ReceiverLayout>()) {
+        if (on_vertices(layout) || kind_of(layout).name != json.at("kind").string())
+            continue;
+        JsonMembers members(json);
+        std::visit([&](auto& own) { own.members(members); }, layout);
+        check_size(layout);
         return layout;
     }
-    if (json.at("kind").string() != "pixels")
-        throw std::out_of_range("expected pixels or texels");
-    PixelLayout layout{.camera = {.eye = vector(json.at("eye")),
-                                  .target = vector(json.at("target")),
-                                  .fov_degrees = real(json.at("fov_degrees"))},
-                       .width = size_of(json.at("width")),
-                       .height = size_of(json.at("height")),
-                       .samples_per_axis = natural(json.at("samples_per_axis"))};
-    // Throws for a camera without a direction, and for sizes out of bounds.
-    static_cast<void>(
-        PictureRays(layout.camera, layout.width, layout.height, layout.samples_per_axis));
-    if (layout.num_samples() > MaxLayoutPlaces)
-        throw std::out_of_range("expected fewer samples");
-    return layout;
+    throw std::out_of_range("expected pixels or texels");
 }
 
-template<typename Layout>
-std::vector<std::uint32_t> read_places(const SectionReader& reader, const Layout& layout) {
-    const std::vector<bool> bits = reader.bits("layout_mask", num_places(layout));
-    std::vector<std::uint32_t> result;
-    for (std::size_t i = 0; i < bits.size(); ++i)
-        if (bits[i])
-            result.push_back(static_cast<std::uint32_t>(i));
-    return result;
+void check_surfaces(const SceneCheck& check, const std::vector<Surface>& surfaces) {
+    const auto is_color = [](const glm::vec3& color) {
+        return is_within(color, 0.0f, 1.0f + RangeSlack);
+    };
+    check.all("surfaces of albedo 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return s.albedo; });
+    check.all("surfaces of specular colour 0 to 1", surfaces, is_color,
+              [](const Surface& s) { return s.specular; });
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+        const LobeFacts& lobe = facts_of(surfaces[i].highlight);
+        const float shape = surfaces[i].roughness_or_exponent;
+        if (!(shape >= 0.0f && shape <= lobe.largest_shape + RangeSlack))
+            check.fail(fmt::format("{} of 0 to {}", lobe.shape.empty() ? "roughness" : lobe.shape,
+                                   lobe.largest_shape),
+                       fmt::format("element {}: {}", i, shape));
+    }
 }
 
-} // namespace
+void check_receivers(const SceneCheck& check, const Scene& scene) {
+    const Receivers& receivers = scene.receivers;
+    check.all("finite coordinates", receivers.positions, is_finite);
+    for (std::size_t i = 0; i < receivers.size(); ++i)
+        if (receivers.normals[i] != glm::vec3(0.0f) &&
+            !can_start_rays(scene, receivers.positions[i]))
+            check.fail(expected_place(scene), SceneCheck::text_of(receivers.positions[i]));
+    if (const Camera* camera = own_camera(scene.layout))
+        check_camera(check, scene, *camera);
+    check.all("receivers' normals of length 1 or 0", receivers.normals, is_unit_or_zero);
+    check.all("directions to the eye of length 1", receivers.to_eye, is_unit);
+    check_surfaces(check, receivers.surfaces);
+}
 
-void add_receiver_sections(NewSections& sections, const Receivers& receivers,
-                           const ReceiverLayout& layout) {
+/// What the mesh alone does not tell. Plain vertices add nothing.
+void add_receivers(NewSections& sections, const Scene& scene) {
+    const Receivers& receivers = scene.receivers;
     const auto fits = [&](std::size_t size) {
         return size == 0 || size == receivers.size();
     };
@@ -194,42 +161,41 @@ void add_receiver_sections(NewSections& sections, const Receivers& receivers,
         throw std::invalid_argument(
             fmt::format("expected none or {} directions to the eye and surfaces, got {} and {}",
                         receivers.size(), receivers.to_eye.size(), receivers.surfaces.size()));
-    if (const auto* pixels = std::get_if<PixelLayout>(&layout))
-        add_layout(sections, *pixels, receivers);
-    else if (const auto* texels = std::get_if<TexelLayout>(&layout))
-        add_layout(sections, *texels, receivers);
+    if (!on_vertices(scene.layout))
+        add_places(sections, scene.layout, receivers);
     if (!receivers.to_eye.empty())
         sections["r_to_eye"] = SectionContent::view(receivers.to_eye);
     if (!receivers.surfaces.empty())
         add_surfaces(sections, receivers.surfaces);
 }
 
+/// A file without a layout has vertices.
 ReceiverLayout read_layout(const SectionReader& reader) {
-    if (!reader.has("layout"))
-        return VertexLayout{};
-    const files::Json json = reader.json("layout");
     ReceiverLayout layout;
+    if (!reader.has(Layout))
+        return layout;
+    const files::Json json = reader.json(Layout);
     try {
         layout = layout_of(json);
     } catch (const std::exception&) {
-        reader.fail("layout", "JSON with the layout of the receivers");
+        reader.fail(Layout, "JSON with the layout of the receivers");
     }
-    if (auto* pixels = std::get_if<PixelLayout>(&layout))
-        pixels->samples = read_places(reader, *pixels);
-    else if (auto* texels = std::get_if<TexelLayout>(&layout))
-        texels->texels = read_places(reader, *texels);
+    std::vector<std::uint32_t>& own = *std::visit([](auto& kind) { return kind.places(); }, layout);
+    const std::vector<bool> bits = reader.bits(Mask, num_places(layout));
+    for (std::size_t i = 0; i < bits.size(); ++i)
+        if (bits[i])
+            own.push_back(static_cast<std::uint32_t>(i));
     return layout;
 }
 
-Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layout,
-                         const mesh::TriangleMesh& mesh) {
-    Receivers receivers;
-    if (std::holds_alternative<VertexLayout>(layout)) {
+void read_receivers(const SectionReader& reader, Scene& scene) {
+    const mesh::TriangleMesh& mesh = scene.mesh;
+    scene.layout = read_layout(reader);
+    Receivers& receivers = scene.receivers;
+    if (on_vertices(scene.layout)) {
         receivers = vertex_receivers(mesh);
     } else {
-        const auto* pixels = std::get_if<PixelLayout>(&layout);
-        const std::size_t num_own = pixels != nullptr ? pixels->samples.size()
-                                                      : std::get<TexelLayout>(layout).texels.size();
+        const std::size_t num_own = places(scene.layout).size();
         receivers.positions = reader.elements<glm::vec3>("r_positions");
         const std::size_t count = receivers.size();
         // A plan has no bounces yet.
@@ -244,7 +210,11 @@ Receivers read_receivers(const SectionReader& reader, const ReceiverLayout& layo
     }
     receivers.to_eye = reader.elements<glm::vec3>("r_to_eye", receivers.size(), true);
     receivers.surfaces = read_surfaces(reader, receivers.size());
-    return receivers;
 }
+
+} // namespace
+
+const SectionGroup ReceiverSections = {
+    .add = add_receivers, .read = read_receivers, .check = check_receivers};
 
 } // namespace relumine::prt

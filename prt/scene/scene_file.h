@@ -66,9 +66,9 @@ struct Scene {
 ///          std::invalid_argument when mesh, receivers, layout and transfer do not belong together.
 std::uint64_t save_scene(const std::filesystem::path& path, const Scene& scene);
 
-/// Reads a scene of any version and checks all of it: sizes against the file before anything is
-/// allocated, checksums, indices, the tree, the counts, the range of every number. A scene that was
-/// read can be lit and drawn. Counts of versions 1 and 2 become what a precompute finds now.
+/// Reads a scene and checks all of it: sizes against the file before anything is allocated,
+/// checksums, indices, the tree, the counts, the range of every number. A scene that was read can
+/// be lit and drawn.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Scene load_scene(const std::filesystem::path& path);

@@ -76,11 +76,8 @@ class Reader {
 public:
     explicit Reader(const std::filesystem::path& path) : path_(path), bytes_(files::read(path)) {}
 
-    Sections sections(std::uint32_t* version, std::span<const std::string> left_out) {
-        const Header header = checked_header();
-        if (version != nullptr)
-            *version = header.version;
-        std::vector<SectionEntry> table = checked_table(header);
+    Sections sections(std::span<const std::string> left_out) {
+        std::vector<SectionEntry> table = checked_table(checked_header());
         std::erase_if(table, [&](const SectionEntry& entry) {
             return std::find(left_out.begin(), left_out.end(), name(entry)) != left_out.end();
         });
@@ -101,30 +98,10 @@ public:
         });
         if (entry == table.end())
             fail(fmt::format("a section '{}'", wanted), "none");
-        const std::uint64_t size = entry->size;
-        if (wanted_size && size != *wanted_size)
+        if (wanted_size && entry->size != *wanted_size)
             fail(fmt::format("a section '{}' of {} bytes", wanted, *wanted_size), "another");
-        const std::byte* stored = bytes_.data() + entry->offset;
-        if (files::hash_of({stored, entry->stored_size}) != entry->checksum)
-            fail("a matching checksum", fmt::format("a damaged section '{}'", wanted));
-        const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
-                                                                              ZSTD_freeDCtx);
-        if (!context)
-            throw std::bad_alloc();
-        ZSTD_inBuffer in{.src = stored, .size = entry->stored_size, .pos = 0};
-        std::vector<std::byte> piece(SectionPiece);
-        for (std::uint64_t done = 0; done < size;) {
-            const std::size_t piece_size = std::min<std::uint64_t>(SectionPiece, size - done);
-            ZSTD_outBuffer out{.dst = piece.data(), .size = piece_size, .pos = 0};
-            while (out.pos < piece_size) {
-                const std::size_t before = out.pos + in.pos;
-                const std::size_t state = ZSTD_decompressStream(context.get(), &out, &in);
-                if (ZSTD_isError(state) != 0 || out.pos + in.pos == before)
-                    fail("zstd data", fmt::format("a damaged section '{}'", wanted));
-            }
-            on_piece(std::span(piece).first(piece_size));
-            done += piece_size;
-        }
+        check(*entry);
+        unpack(*entry, on_piece);
     }
 
 private:
@@ -143,11 +120,12 @@ private:
             fail("a little-endian .prt scene", "a big-endian one");
         if (header.byte_order_mark != ByteOrderMark)
             fail("a .prt scene", "a damaged header");
-        if (header.version > SceneFileVersion)
+        if (header.version != SceneFileVersion)
             fail(fmt::format(".prt version {}", SceneFileVersion),
-                 fmt::format("version {}, made by a newer relumine", header.version));
-        if (header.version == 0)
-            fail(fmt::format(".prt version 1 to {}", SceneFileVersion), "version 0");
+                 fmt::format("version {}, made by {}", header.version,
+                             header.version > SceneFileVersion
+                                 ? "a newer relumine"
+                                 : "an older relumine: run precompute again"));
         if (header.file_size != bytes_.size())
             fail(fmt::format("{} bytes", header.file_size),
                  fmt::format("{} (truncated or damaged)", bytes_.size()));
@@ -201,16 +179,24 @@ private:
         fail("zstd data", fmt::format("a damaged section '{}'", name(entry)));
     }
 
-    std::vector<std::byte> content(const SectionEntry& entry) const {
-        const std::byte* stored = bytes_.data() + entry.offset;
-        if (files::hash_of({stored, entry.stored_size}) != entry.checksum)
+    void check(const SectionEntry& entry) const {
+        if (files::hash_of({bytes_.data() + entry.offset, entry.stored_size}) != entry.checksum)
             fail("a matching checksum", fmt::format("a damaged section '{}'", name(entry)));
+    }
+
+    std::vector<std::byte> content(const SectionEntry& entry) const {
+        check(entry);
         const std::vector<Frame> frames = frames_of(entry);
         // An unlikely size is allocated as the data comes, so that a lie costs nothing.
         constexpr std::uint64_t Cheap = std::uint64_t{1} << 26, BelievableRatio = 256;
-        if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size))
-            return content_piecewise(entry, Cheap);
-        std::vector<std::byte> result(entry.size);
+        std::vector<std::byte> result;
+        if (entry.size > std::max(Cheap, BelievableRatio * entry.stored_size)) {
+            unpack(entry, [&](std::span<const std::byte> piece) {
+                result.insert(result.end(), piece.begin(), piece.end());
+            });
+            return result;
+        }
+        result.resize(entry.size);
         files::parallel_for(std::size_t{0}, frames.size(), [&](std::size_t i) {
             const Frame& frame = frames[i];
             const std::size_t size = ZSTD_decompress(result.data() + frame.begin, frame.size,
@@ -250,26 +236,26 @@ private:
         return frames;
     }
 
-    std::vector<std::byte> content_piecewise(const SectionEntry& entry,
-                                             std::uint64_t first_size) const {
+    /// Unpacks a section piece by piece.
+    void unpack(const SectionEntry& entry,
+                const std::function<void(std::span<const std::byte>)>& on_piece) const {
         const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
                                                                               ZSTD_freeDCtx);
         if (!context)
             throw std::bad_alloc();
         ZSTD_inBuffer in{.src = bytes_.data() + entry.offset, .size = entry.stored_size, .pos = 0};
-        std::vector<std::byte> result(std::min(first_size, entry.size));
-        for (std::size_t done = 0;;) {
-            ZSTD_outBuffer out{.dst = result.data(), .size = result.size(), .pos = done};
-            const std::size_t consumed = in.pos;
-            const std::size_t state = ZSTD_decompressStream(context.get(), &out, &in);
-            if (state == 0 && out.pos == entry.size && in.pos == in.size)
-                return result;
-            const bool has_progress = out.pos > done || in.pos > consumed;
-            if (ZSTD_isError(state) != 0 || !has_progress)
-                fail_unpacking(entry);
-            done = out.pos;
-            if (done == result.size() && done < entry.size)
-                result.resize(std::min(2 * result.size(), entry.size));
+        std::vector<std::byte> piece(SectionPiece);
+        for (std::uint64_t done = 0; done < entry.size;) {
+            const std::size_t size = std::min<std::uint64_t>(SectionPiece, entry.size - done);
+            ZSTD_outBuffer out{.dst = piece.data(), .size = size, .pos = 0};
+            while (out.pos < size) {
+                const std::size_t before = out.pos + in.pos;
+                if (ZSTD_isError(ZSTD_decompressStream(context.get(), &out, &in)) != 0 ||
+                    out.pos + in.pos == before)
+                    fail_unpacking(entry);
+            }
+            on_piece(std::span(piece).first(size));
+            done += size;
         }
     }
 
@@ -431,9 +417,8 @@ std::uint64_t write_sections(const std::filesystem::path& path, const NewSection
     return Writer(path, sections).write(sections);
 }
 
-Sections read_sections(const std::filesystem::path& path, std::uint32_t* version,
-                       std::span<const std::string> left_out) {
-    return Reader(path).sections(version, left_out);
+Sections read_sections(const std::filesystem::path& path, std::span<const std::string> left_out) {
+    return Reader(path).sections(left_out);
 }
 
 void stream_section(const std::filesystem::path& path, const std::string& name,

@@ -16,7 +16,7 @@
 
 namespace relumine::prt {
 
-/// The version that is written. All versions up to this one are read.
+/// The version that is written, and the only one that is read.
 inline constexpr std::uint32_t SceneFileVersion = 5;
 
 /// Sections of a file by name (1 to 16 ASCII letters), each a string of bytes.
@@ -73,12 +73,11 @@ using NewSections = std::map<std::string, SectionContent>;
 std::uint64_t write_sections(const std::filesystem::path& path, const NewSections& sections);
 
 /// Reads a file of sections, all but those in `left_out`. Refuses a file that is truncated, longer
-/// than it says, of an unknown version or byte order, or changed in any bit, before its sizes are
-/// believed. `version` receives the file's version, 1 to SceneFileVersion.
+/// than it says, of another version or byte order, or changed in any bit, before its sizes are
+/// believed.
 ///
 /// Throws:  std::runtime_error "path: expected X, got Y".
 [[nodiscard]] Sections read_sections(const std::filesystem::path& path,
-                                     std::uint32_t* version = nullptr,
                                      std::span<const std::string> left_out = {});
 
 /// Bytes of a piece that stream_section() gives; the last one may have fewer.

@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <span>
+#include <stdexcept>
+
+#include "prt/scene/json_members.h"
 
 namespace relumine::prt {
 
@@ -17,6 +20,16 @@ std::vector<std::byte> packed(const std::vector<bool>& flags) {
     for (std::size_t i = 0; i < flags.size(); ++i)
         bytes[i / 8] |= static_cast<std::byte>(static_cast<unsigned>(flags[i]) << (i % 8));
     return bytes;
+}
+
+std::vector<bool> unpacked(std::span<const std::byte> bytes, std::size_t count) {
+    if (bytes.size() != count / 8 + static_cast<std::size_t>(count % 8 != 0) ||
+        (count % 8 != 0 && (bytes.back() >> (count % 8)) != std::byte{0}))
+        throw std::length_error("expected as many bits");
+    std::vector<bool> flags(count);
+    for (std::size_t i = 0; i < count; ++i)
+        flags[i] = (bytes[i / 8] >> (i % 8) & std::byte{1}) != std::byte{0};
+    return flags;
 }
 
 void SectionReader::fail(std::string_view section, std::string_view expected) const {
@@ -44,15 +57,11 @@ files::Json SectionReader::json(const std::string& name) const {
 }
 
 std::vector<bool> SectionReader::bits(const std::string& name, std::size_t count) const {
-    const std::vector<std::byte>& stored = bytes(name);
-    if (stored.size() != count / 8 + static_cast<std::size_t>(count % 8 != 0))
+    try {
+        return unpacked(bytes(name), count);
+    } catch (const std::length_error&) {
         fail(name, fmt::format("{} bits", count));
-    std::vector<bool> result(count);
-    for (std::size_t i = 0; i < count; ++i)
-        result[i] = (stored[i / 8] >> (i % 8) & std::byte{1}) != std::byte{0};
-    if (count % 8 != 0 && (stored.back() >> (count % 8)) != std::byte{0})
-        fail(name, fmt::format("{} bits", count));
-    return result;
+    }
 }
 
 std::uint32_t natural(const files::Json& json) {

@@ -34,6 +34,10 @@ template<typename Element>
 /// Packs split flags or masks, eight to a byte, lowest bit first.
 [[nodiscard]] std::vector<std::byte> packed(const std::vector<bool>& flags);
 
+/// Undoes packed().
+/// Throws:  std::length_error for bytes of another size, and for bits behind the last.
+[[nodiscard]] std::vector<bool> unpacked(std::span<const std::byte> bytes, std::size_t count);
+
 /// Sections by name. Every message names the file and the section.
 class SectionReader {
 public:
@@ -84,11 +88,5 @@ private:
     std::filesystem::path path_;
     Sections sections_;
 };
-
-/// Numbers of a JSON object, checked for range, as 32 bits hold them.
-///
-/// Throws:  std::out_of_range for a number beyond the type, files::JsonError for another type.
-[[nodiscard]] std::uint32_t natural(const files::Json& json);
-[[nodiscard]] float real(const files::Json& json);
 
 } // namespace relumine::prt

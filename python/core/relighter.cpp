@@ -11,6 +11,7 @@
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/layers/layer_list.h"
 #include "files/json_reader.h"
+#include "files/one_of_each.h"
 #include "lights.h"
 #include "options.h"
 #include "relight/light_fit/transfer_lights.h"
@@ -171,6 +172,28 @@ py::tuple set_layers(Lit& own, const std::string& json) {
 py::tuple set_layer(Lit& own, std::size_t index, const std::string& json) {
     return tuple_of(change(
         own, [&](LitScene& lit) { return lit.set_layer(index, checked_layers(json).at(0)); }));
+}
+
+/// The shapes of layers: name, what they are, and of each field the name, what it holds, and the
+/// default or None.
+py::list layer_shapes() {
+    py::list result;
+    for (cubemap::Region& shape : files::one_of_each<cubemap::Region>()) {
+        py::list all;
+        for (const cubemap::LayerField& field : cubemap::fields(shape)) {
+            py::object value = py::none();
+            if (!field.required)
+                value = py::float_(values(field)[0]);
+            all.append(py::make_tuple(std::string(field.name),
+                                      field.points != nullptr      ? "points"
+                                      : field.direction != nullptr ? "direction"
+                                                                   : "number",
+                                      value));
+        }
+        const cubemap::ShapeWords& words = cubemap::words(shape);
+        result.append(py::make_tuple(std::string(words.name), std::string(words.about), all));
+    }
+    return result;
 }
 
 std::string layers_text(Lit& own) {
@@ -406,6 +429,7 @@ void bind_relighters(py::module_& module) {
     bind_editing(type);
     bind_questions(type);
     bind_pictures(module, type);
+    module.def("layer_shapes", &layer_shapes);
     module.def("load_layers", [](const Path& path, const std::optional<double>& frame) {
         const cubemap::LightLayers file = cubemap::load_layers(path);
         return cubemap::json_text(

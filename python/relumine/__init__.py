@@ -16,22 +16,14 @@ memory MemoryError. Ctrl-C raises KeyboardInterrupt within a tenth of a second.
 """
 
 import atexit as _atexit
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
 
 from . import _core
 from ._environment import Environment
 from ._files import FileError
-from ._layers import (
-    Disc,
-    Emit,
-    Gain,
-    Image,
-    Lasso,
-    Layer,
-    Rectangle,
-    Stroke,
-    load_layers,
-    save_layers,
-)
+from ._layers import SHAPES as _SHAPES
+from ._layers import Emit, Gain, Image, Layer, load_layers, save_layers
 from ._lights import LightList
 from ._mesh import Mesh, RelumineWarning
 from ._picture import Picture
@@ -45,16 +37,23 @@ from ._relighter import (
     Update,
     Verification,
 )
-from ._scene import Blinn, Ggx, Lambert, Scene, join, plan, precompute, precompute_part
+from ._scene import LOBES as _LOBES
+from ._scene import Scene, join, plan, precompute, precompute_part
 
 __version__: str = _core.__version__
 __all__ = [
-    "FACES", "Blinn", "Bounces", "Disc", "Emit", "Environment", "FileError", "Frame", "Gain", "Ggx",
-    "Image", "Lambert", "Lasso", "Layer", "LightList", "Mesh", "Picture", "Rectangle",
-    "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Stroke", "Update",
+    "FACES", "Bounces", "Emit", "Environment", "FileError", "Frame", "Gain",
+    "Image", "Layer", "LightList", "Mesh", "Picture",
+    "RelightTimes", "Relighter", "RelumineWarning", "Scene", "Share", "Update",
     "Verification", "join", "load_layers", "plan", "precompute", "precompute_part", "save_layers",
-    "set_threads",
+    "set_threads", *_SHAPES, *_LOBES,
 ]  # fmt: skip
+# Regions of layers (Disc, Rectangle, ...) and materials (Ggx, Blinn, Lambert).
+globals().update({**_SHAPES, **_LOBES})
+if _TYPE_CHECKING:
+
+    def __getattr__(name: str) -> _Any: ...
+
 
 
 def set_threads(count: int) -> None:

@@ -6,8 +6,20 @@ import json
 import os
 import re
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, fields
-from typing import Any, ClassVar, Dict, Iterator, List, Mapping, Optional, Sequence, Union
+from dataclasses import asdict, dataclass, fields, make_dataclass
+from dataclasses import field as dataclass_field
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    ClassVar,
+    Dict,
+    Iterator,
+    List,
+    Mapping,
+    Optional,
+    Sequence,
+    Union,
+)
 
 import numpy as np
 
@@ -18,45 +30,30 @@ Direction = Sequence[float]
 Rgb = Sequence[float]
 
 
-@dataclass
-class Disc:
-    """All directions within an angle of a centre."""
 
-    direction: Direction
-    radius_degrees: float
-    softness: float = 0.0
-    type: ClassVar[str] = "disc"
-
-
-@dataclass
-class Rectangle:
-    """A soft box: a rectangle on the plane that touches the unit sphere at `direction`."""
-
-    direction: Direction
-    width_degrees: float
-    height_degrees: float
-    roll_degrees: float = 0.0
-    softness: float = 0.0
-    type: ClassVar[str] = "rectangle"
+def _shapes() -> Dict[str, Any]:
+    """The classes of regions, by the names in layer files: Disc, Rectangle, ..."""
+    types: Dict[str, Any] = {"number": float, "direction": Direction, "points": Sequence[Direction]}
+    result = {}
+    for name, about, shape_fields in _core.layer_shapes():
+        members: List[Any] = [
+            (field, types[kind])
+            if default is None
+            else (field, types[kind], dataclass_field(default=default))
+            for field, kind, default in shape_fields
+        ]
+        result[name] = make_dataclass(
+            name.capitalize(), members, namespace={"type": name, "__doc__": about}
+        )
+    return result
 
 
-@dataclass
-class Lasso:
-    """A polygon of great-circle arcs."""
+_REGIONS = _shapes()
+SHAPES: Dict[str, Any] = {shape.__name__: shape for shape in _REGIONS.values()}
+globals().update(SHAPES)
+if TYPE_CHECKING:
 
-    points: Sequence[Direction]
-    softness_degrees: float = 0.0
-    type: ClassVar[str] = "lasso"
-
-
-@dataclass
-class Stroke:
-    """A brush stroke along great-circle arcs."""
-
-    points: Sequence[Direction]
-    radius_degrees: float
-    softness: float = 0.5
-    type: ClassVar[str] = "stroke"
+    def __getattr__(name: str) -> Any: ...
 
 
 @dataclass
@@ -85,9 +82,8 @@ class Image:
     effect: ClassVar[str] = "image"
 
 
-Region = Union[Disc, Rectangle, Lasso, Stroke]
+Region = Any
 Effect = Union[Emit, Gain, Image]
-_REGIONS: Dict[str, Any] = {"disc": Disc, "rectangle": Rectangle, "lasso": Lasso, "stroke": Stroke}
 _EFFECTS: Dict[str, Any] = {"emit": Emit, "gain": Gain, "image": Image}
 
 

@@ -9,8 +9,8 @@ namespace relumine::fuzz {
 namespace {
 
 // Where things are in the file: docs/prt-format.md.
-constexpr std::size_t VersionAt = 12, FileSizeAt = 16, NumSectionsAt = 24, ChecksumAt = 32,
-                      HeaderSize = 40, EntrySize = 48;
+constexpr std::size_t FileSizeAt = 16, NumSectionsAt = 24, ChecksumAt = 32, HeaderSize = 40,
+                      EntrySize = 48;
 
 std::uint64_t number_at(const std::vector<std::byte>& file, std::size_t at, std::size_t num_bytes) {
     std::uint64_t value = 0;
@@ -44,10 +44,6 @@ std::vector<std::byte> with_checksums(std::span<const std::byte> input) {
                  file.begin() + static_cast<std::ptrdiff_t>(HeaderSize + num_sections * EntrySize));
     put(file, ChecksumAt, XXH64(table.data(), table.size(), 0));
     return file;
-}
-
-void set_version(std::vector<std::byte>& file, std::uint32_t version) {
-    std::memcpy(file.data() + VersionAt, &version, sizeof version);
 }
 
 } // namespace relumine::fuzz

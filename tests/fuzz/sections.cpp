@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "prt/scene/scene_sections.h"
+#include "prt/scene/section_group.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/scene_target.h"
 #include "tests/fuzz/section_names.h"
@@ -23,10 +23,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             sections[std::string(fuzz::SectionNames[letter])].assign(content.begin(),
                                                                      content.end());
     }
-    // The last version that had bytes for counts.
-    const std::uint32_t version = sections.contains("counts") ? 4 : prt::SceneFileVersion;
-    if (const auto scene = fuzz::accepted(
-            [&] { return prt::scene_of("input.prt", std::move(sections), version); }))
+    if (const auto scene =
+            fuzz::accepted([&] { return prt::scene_of("input.prt", std::move(sections)); }))
         fuzz::require_sound(*scene);
     return 0;
 }

@@ -25,10 +25,8 @@
 #include "prt/scene/section_file.h"
 #include "prt/visibility/ray_scene.h"
 #include "tests/app/small_files.h"
-#include "tests/fuzz/prt_file.h"
 #include "tests/fuzz/section_names.h"
 #include "tests/mesh/texture_files.h"
-#include "tests/prt/older_sections.h"
 
 namespace {
 
@@ -247,15 +245,6 @@ void write_scenes(const fs::path& folder) {
     scene.receivers = prt::vertex_receivers(scene.mesh);
     scene.transfer = prt::precompute(scene.receivers, rays, options);
     save("vertices");
-    for (const std::uint32_t version : {1u, 2u, 4u}) {
-        const fs::path path = folder / fmt::format("prt/version_{}.prt", version);
-        prt::Sections sections = prt::read_sections(folder / "prt/vertices.prt");
-        scenes::use_bytes_for_counts(sections, scene.transfer.counts);
-        prt::write_sections(path, prt::to_write(std::move(sections)));
-        std::vector<std::byte> older = files::read(path);
-        fuzz::set_version(older, version);
-        write(path, fuzz::with_checksums(older));
-    }
     prt::look_from(scene.receivers, glm::vec3(0.0f, 1.0f, 3.0f));
     scene.receivers.surfaces.assign(scene.receivers.size(), {.specular = glm::vec3(0.5f),
                                                              .highlight = prt::Highlight::Ggx,

@@ -87,24 +87,6 @@ TEST(LightLayer, StrokeIsTheDistanceToItsLine) {
     EXPECT_EQ(coverage(stroke, {0, 1, -std::tan(radians(4.9))}), 1.0);
 }
 
-TEST(LightLayer, BoundingConeHoldsTheRegion) {
-    std::mt19937 generator(11);
-    std::normal_distribution<double> normal;
-    for (int round = 0; round < 200; ++round) {
-        const LightLayer layer = random_layer(generator);
-        const Cone cone = bounding_cone(layer.region);
-        EXPECT_NEAR(glm::length(cone.axis), 1.0, 1e-12);
-        for (int i = 0; i < 200; ++i) {
-            const glm::dvec3 w =
-                glm::normalize(glm::dvec3(normal(generator), normal(generator), normal(generator)));
-            if (std::acos(glm::clamp(glm::dot(w, cone.axis), -1.0, 1.0)) >
-                radians(cone.radius_degrees) + 1e-9) {
-                ASSERT_EQ(coverage(layer.region, w), 0.0);
-            }
-        }
-    }
-}
-
 TEST(LightLayer, RefusesWhatMakesNoSense) {
     const auto refused = [](const Region& region, const std::string& says) {
         const std::string message =
@@ -113,7 +95,6 @@ TEST(LightLayer, RefusesWhatMakesNoSense) {
         EXPECT_NE(message.find(says), std::string::npos) << message;
         EXPECT_EQ(message.find('\n'), std::string::npos);
         EXPECT_THROW((void)coverage(region, {0, 0, 1}), std::invalid_argument);
-        EXPECT_THROW((void)bounding_cone(region), std::invalid_argument);
     };
     refused(Disc{.direction = {0, 0, 0}}, "direction");
     refused(Disc{.direction = {0, NaN, 0}}, "direction");

@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "tests/prt/damaged_file.h"
-#include "tests/prt/older_sections.h"
 
 namespace relumine::prt {
 namespace {
@@ -55,16 +54,15 @@ protected:
     }
     void TearDown() override { fs::remove_all(folder_); }
 
-    VisibleCounts read(Sections sections, std::uint32_t version = SceneFileVersion) const {
+    VisibleCounts read(Sections sections) const {
         const SectionReader reader(file_, std::move(sections));
         VisibleCounts counts{.num_receivers = counts_.num_receivers,
                              .num_leaves = counts_.num_leaves};
-        read_counts(reader, version, counts);
+        read_counts(reader, counts);
         return counts;
     }
-    void refused(const std::string& reason, const Sections& sections,
-                 std::uint32_t version = SceneFileVersion) const {
-        scenes::expect_refused(file_, reason, [&] { static_cast<void>(read(sections, version)); });
+    void refused(const std::string& reason, const Sections& sections) const {
+        scenes::expect_refused(file_, reason, [&] { static_cast<void>(read(sections)); });
     }
 
     const VisibleCounts counts_ = random_counts();
@@ -84,45 +82,30 @@ TEST_F(CountSectionsTest, EveryValueComesBack) {
     EXPECT_EQ(good_.at("count_codes").size(), counts_.counts.size() / 2);
 }
 
-TEST_F(CountSectionsTest, BytesOfOlderVersionsAreRead) {
-    Sections older = good_;
-    scenes::use_bytes_for_counts(older, counts_);
-    EXPECT_EQ(read(older, 4).counts, counts_.counts);
-    older["counts"][7] = std::byte{17};
-    refused("'counts'", older, 4);
-}
-
 TEST_F(CountSectionsTest, TilesAreReadAlone) {
     const std::size_t num_tiles = counts_.num_tiles();
-    for (const bool is_older : {false, true}) {
-        Sections stored = good_;
-        if (is_older)
-            scenes::use_bytes_for_counts(stored, counts_);
-        write_sections(file_, to_write(stored));
-        const SectionReader reader(file_, read_sections(file_, nullptr, long_count_sections()));
-        for (const std::vector<std::size_t>& tiles : std::vector<std::vector<std::size_t>>{
-                 {0}, {1, 3}, {0, 2}, {num_tiles - 1}, {0, 1, 2, 3}}) {
-            std::vector<std::uint64_t> mixed;
-            std::vector<std::uint8_t> entries;
-            std::size_t num_own = 0;
-            for (const std::size_t tile : tiles) {
-                const std::size_t first = counts_.tile_begin(tile);
-                const std::size_t last = counts_.tile_begin(tile + 1);
-                num_own += std::min(last * BlockSize, counts_.num_receivers) - first * BlockSize;
-                for (std::size_t word = first * counts_.words_per_block();
-                     word < last * counts_.words_per_block(); ++word) {
-                    mixed.push_back(counts_.mixed[word]);
-                    const std::uint8_t* of_word = counts_.mixed_counts(word, 0);
-                    entries.insert(entries.end(), of_word,
-                                   of_word + BlockSize * static_cast<std::size_t>(
-                                                             std::popcount(mixed.back())));
-                }
+    const SectionReader reader(file_, read_sections(file_, long_count_sections()));
+    for (const std::vector<std::size_t>& tiles : std::vector<std::vector<std::size_t>>{
+             {0}, {1, 3}, {0, 2}, {num_tiles - 1}, {0, 1, 2, 3}}) {
+        std::vector<std::uint64_t> mixed;
+        std::vector<std::uint8_t> entries;
+        std::size_t num_own = 0;
+        for (const std::size_t tile : tiles) {
+            const std::size_t first = counts_.tile_begin(tile);
+            const std::size_t last = counts_.tile_begin(tile + 1);
+            num_own += std::min(last * BlockSize, counts_.num_receivers) - first * BlockSize;
+            for (std::size_t word = first * counts_.words_per_block();
+                 word < last * counts_.words_per_block(); ++word) {
+                mixed.push_back(counts_.mixed[word]);
+                const std::uint8_t* of_word = counts_.mixed_counts(word, 0);
+                entries.insert(entries.end(), of_word,
+                               of_word + BlockSize *
+                                             static_cast<std::size_t>(std::popcount(mixed.back())));
             }
-            const VisibleCounts part = read_counts_of_tiles(reader, is_older ? 4 : SceneFileVersion,
-                                                            counts_, tiles, num_own);
-            EXPECT_EQ(part.mixed, mixed);
-            EXPECT_EQ(part.counts, entries);
         }
+        const VisibleCounts part = read_counts_of_tiles(reader, counts_, tiles, num_own);
+        EXPECT_EQ(part.mixed, mixed);
+        EXPECT_EQ(part.counts, entries);
     }
 }
 

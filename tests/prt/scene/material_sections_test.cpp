@@ -1,8 +1,7 @@
-#include "prt/scene/material_sections.h"
-
 #include <gtest/gtest.h>
 
 #include "prt/glossy/surface_sampling.h"
+#include "prt/scene/section_group.h"
 #include "tests/prt/made_sections.h"
 #include "tests/prt/textured_square.h"
 
@@ -11,18 +10,22 @@ namespace {
 
 /// A mesh of the same triangles, read from the sections.
 mesh::TriangleMesh read(Sections sections, const mesh::TriangleMesh& from) {
-    mesh::TriangleMesh result;
+    Scene scene;
+    mesh::TriangleMesh& result = scene.mesh;
     result.positions = from.positions;
     result.normals = from.normals;
     result.triangles = from.triangles;
     result.uvs = from.uvs;
-    read_material_sections({"scene.prt", std::move(sections)}, result);
-    return result;
+    MaterialSections.read({"scene.prt", std::move(sections)}, scene);
+    return scene.mesh;
 }
 
 Sections written(const mesh::TriangleMesh& mesh) {
     NewSections sections;
-    add_material_sections(sections, mesh);
+    Scene scene;
+    scene.mesh = mesh;
+    scene.receivers.surfaces.resize(1); // textures are for surfaces
+    MaterialSections.add(sections, scene);
     return scenes::made(sections);
 }
 

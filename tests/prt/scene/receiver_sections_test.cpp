@@ -1,4 +1,4 @@
-#include "prt/scene/receiver_sections.h"
+#include "prt/scene/section_group.h"
 
 #include <cstring>
 #include <filesystem>
@@ -152,8 +152,8 @@ TEST_F(ReceiverSectionsTest, TheSameSceneGivesTheSameBytes) {
     Scene scene = pixel_scene();
     add_surfaces(scene);
     NewSections first, second;
-    add_receiver_sections(first, scene.receivers, scene.layout);
-    add_receiver_sections(second, scene.receivers, scene.layout);
+    ReceiverSections.add(first, scene);
+    ReceiverSections.add(second, scene);
     EXPECT_EQ(scenes::made(first), scenes::made(second));
 }
 
@@ -212,7 +212,7 @@ TEST_F(ReceiverSectionsTest, NumbersOutOfRange) {
     const std::vector<std::pair<const char*, const char*>> floats = {
         {"r_positions", "coordinates"},           {"r_normals", "normals of length 1 or 0"},
         {"r_to_eye", "to the eye of length 1"},   {"r_albedo", "albedo 0 to 1"},
-        {"r_specular", "specular colour 0 to 1"}, {"r_shape", "roughness of 0 to 1"},
+        {"r_specular", "specular colour 0 to 1"}, {"r_shape", "exponent of 0 to 1000000"},
         {"r_barycentric", "'r_barycentric'"}};
     for (const auto& [name, reason] : floats)
         for (const float value : {nan, std::numeric_limits<float>::infinity(), 3e38f, -1e20f})

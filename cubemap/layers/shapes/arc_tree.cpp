@@ -1,4 +1,4 @@
-#include "cubemap/layers/arc_tree.h"
+#include "cubemap/layers/shapes/arc_tree.h"
 
 #include <algorithm>
 #include <array>
@@ -187,11 +187,6 @@ double reach_of(double distance, double chord) {
 }
 
 } // namespace
-
-NearArcs::NearArcs(const ArcTree& tree, const glm::dvec3& w, double chord)
-    : tree_(&tree), distance_(std::sqrt(tree.squared_distance(w))) {
-    collect_from_tree(w, reach_of(distance_, chord));
-}
 
 NearArcs::NearArcs(const NearArcs& wider, const glm::dvec3& w, double chord) : tree_(wider.tree_) {
     if (wider.too_many()) {

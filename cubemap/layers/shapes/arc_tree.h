@@ -77,12 +77,13 @@ private:
 /// object.
 class NearArcs {
 public:
-    /// Takes the ball of all directions within a chord of a unit direction.
-    NearArcs(const ArcTree& tree, const glm::dvec3& w, double chord);
-    /// The same, from the arcs of a ball that holds this ball.
+    /// Takes all arcs.
+    explicit NearArcs(const ArcTree& tree) : tree_(&tree), count_(MaxArcs + 1) {}
+    /// Takes the ball of all directions within a chord of a unit direction, from the arcs of a ball
+    /// that holds this ball.
     NearArcs(const NearArcs& wider, const glm::dvec3& w, double chord);
 
-    /// Chord from the ball's centre to the nearest arc.
+    /// Chord from the ball's centre to the nearest arc, of a ball.
     [[nodiscard]] double distance() const { return distance_; }
 
     /// As ArcTree::squared_distance(), for directions in the ball.

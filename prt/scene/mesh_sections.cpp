@@ -1,0 +1,70 @@
+#include "prt/scene/section_group.h"
+
+namespace relumine::prt {
+
+namespace {
+
+void require_indices(const SectionReader& reader, const mesh::TriangleMesh& mesh,
+                     const std::string& section) {
+    for (const mesh::Triangle& triangle : mesh.triangles)
+        if (std::any_of(triangle.begin(), triangle.end(),
+                        [&](auto i) { return i >= mesh.num_vertices(); }))
+            reader.fail(section, "indices of vertices");
+}
+
+void add_mesh(NewSections& sections, const Scene& scene) {
+    sections["positions"] = SectionContent::view(scene.mesh.positions);
+    sections["triangles"] = SectionContent::view(scene.mesh.triangles);
+    sections["normals"] = SectionContent::view(scene.mesh.normals);
+    if (!scene.mesh.colors.empty())
+        sections["colors"] = SectionContent::view(scene.mesh.colors);
+    if (!scene.mesh.uvs.empty())
+        sections["uvs"] = SectionContent::view(scene.mesh.uvs);
+    if (scene.blockers) {
+        sections["block_positions"] = SectionContent::view(scene.blockers->positions);
+        sections["block_triangles"] = SectionContent::view(scene.blockers->triangles);
+    }
+}
+
+void read_mesh(const SectionReader& reader, Scene& scene) {
+    mesh::TriangleMesh& mesh = scene.mesh;
+    mesh.positions = reader.elements<glm::vec3>("positions");
+    mesh.triangles = reader.elements<mesh::Triangle>("triangles");
+    mesh.normals = reader.elements<glm::vec3>("normals", mesh.num_vertices());
+    mesh.colors = reader.elements<glm::vec3>("colors", mesh.num_vertices(), true);
+    mesh.uvs = reader.elements<glm::vec2>("uvs", mesh.num_vertices(), true);
+    require_indices(reader, mesh, "triangles");
+    if (!reader.has("block_triangles"))
+        return;
+    mesh::TriangleMesh& blockers = scene.blockers.emplace();
+    blockers.positions = reader.elements<glm::vec3>("block_positions");
+    blockers.triangles = reader.elements<mesh::Triangle>("block_triangles");
+    require_indices(reader, blockers, "block_triangles");
+}
+
+void check_mesh(const SceneCheck& check, const Scene& scene) {
+    check.that(!scene.mesh.triangles.empty(), "triangles", "none");
+    const auto check_places = [&](const mesh::TriangleMesh& mesh) {
+        check.all("finite coordinates", mesh.positions, is_finite);
+        for (const mesh::Triangle& triangle : mesh.triangles)
+            for (const std::uint32_t vertex : triangle)
+                if (!can_start_rays(scene, mesh.positions[vertex]))
+                    check.fail(expected_place(scene), SceneCheck::text_of(mesh.positions[vertex]));
+    };
+    check_places(scene.mesh);
+    if (scene.blockers)
+        check_places(*scene.blockers);
+    check.all("normals of length 1 or 0", scene.mesh.normals, is_unit_or_zero);
+    // Colours of a mesh file may be above 1, but what is multiplied with them must stay finite.
+    constexpr float MaxColor = 1e6f;
+    check.all(fmt::format("colours of 0 to {}", MaxColor), scene.mesh.colors,
+              [](const glm::vec3& color) { return is_within(color, 0.0f, MaxColor); });
+    check.all("finite uvs", scene.mesh.uvs,
+              [](const glm::vec2& uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); });
+}
+
+} // namespace
+
+const SectionGroup MeshSections = {.add = add_mesh, .read = read_mesh, .check = check_mesh};
+
+} // namespace relumine::prt

@@ -1,0 +1,107 @@
+#include <fmt/format.h>
+
+#include "prt/scene/json_members.h"
+#include "prt/scene/section_group.h"
+#include "prt/transfer/quadtree.h"
+#include "prt/visibility/ray_scene.h"
+
+namespace relumine::prt {
+
+namespace {
+
+const std::string Settings = "settings";
+
+void settings_members(JsonMembers& member, SceneSettings& settings) {
+    member("tolerance", settings.tolerance);
+    member("min_level", settings.min_level);
+    member("face_resolution", settings.face_resolution);
+    member("bias", settings.bias);
+    member("floor_vertices", settings.floor_vertices);
+    member("source", settings.source);
+    std::string hash = fmt::format("{:016x}", settings.source_hash);
+    member("source_hash", hash);
+    settings.source_hash = std::stoull(hash, nullptr, 16);
+    member.unusual("floor_added", settings.floor_added, 0u);
+    member.unusual("epsilon", settings.epsilon, {});
+    member.unusual("glossy_tolerance", settings.glossy_tolerance, {});
+    member.unusual("two_sided_bounces", settings.two_sided_bounces, false);
+    std::vector<float> view;
+    if (const auto& own = settings.view)
+        view = {own->eye.x,    own->eye.y,    own->eye.z,      own->target.x,
+                own->target.y, own->target.z, own->fov_degrees};
+    member.unusual("view", view, {});
+    if (view.empty())
+        return;
+    settings.view = Camera{.eye = {view.at(0), view.at(1), view.at(2)},
+                           .target = {view.at(3), view.at(4), view.at(5)},
+                           .fov_degrees = view.at(6)};
+    // Throws for a camera without a direction.
+    static_cast<void>(axes_of(*settings.view, 1.0f));
+}
+
+void add_settings(NewSections& sections, const Scene& scene) {
+    SceneSettings settings = scene.settings;
+    JsonMembers members;
+    settings_members(members, settings);
+    sections[Settings] = bytes_of(members.json.text(2));
+}
+
+void read_settings(const SectionReader& reader, Scene& scene) {
+    const files::Json json = reader.json(Settings);
+    try {
+        JsonMembers members(json);
+        settings_members(members, scene.settings);
+    } catch (const std::exception&) {
+        reader.fail(Settings, "JSON with the settings");
+    }
+}
+
+/// As a precompute accepts them.
+void check_settings(const SceneCheck& check, const Scene& scene) {
+    const SceneSettings& settings = scene.settings;
+    const auto is_number = [&](const std::string& what, float value) {
+        check.that(value >= 0.0f && std::isfinite(value), what, SceneCheck::text_of(value));
+    };
+    is_number("a tolerance >= 0", settings.tolerance);
+    is_number("an epsilon >= 0", settings.epsilon.value_or(0.0f));
+    is_number("a bias >= 0", settings.bias);
+    check.that(settings.face_resolution >= 1 && settings.face_resolution <= 1u << MaxLevel,
+               fmt::format("a face resolution from 1 to {}", 1u << MaxLevel),
+               fmt::format("{}", settings.face_resolution));
+    check.that(settings.min_level <= MaxLevel,
+               fmt::format("a minimum depth from 0 to {}", MaxLevel),
+               fmt::format("{}", settings.min_level));
+    const std::size_t floor =
+        std::size_t{settings.floor_vertices} * settings.floor_vertices + settings.floor_added;
+    check.that(floor <= scene.mesh.num_vertices(),
+               fmt::format("a floor among {} vertices", scene.mesh.num_vertices()),
+               fmt::format("one of {}", floor));
+    if (settings.view)
+        check_camera(check, scene, *settings.view);
+}
+
+float largest_place(const Scene& scene) {
+    return LargestCoordinate - 2.0f * scene.settings.bias;
+}
+
+} // namespace
+
+const SectionGroup SettingsSections = {
+    .add = add_settings, .read = read_settings, .check = check_settings};
+
+bool can_start_rays(const Scene& scene, const glm::vec3& place) {
+    return is_within(place, -largest_place(scene), largest_place(scene));
+}
+
+std::string expected_place(const Scene& scene) {
+    return fmt::format("coordinates within {}", std::max(largest_place(scene), 0.0f));
+}
+
+void check_camera(const SceneCheck& check, const Scene& scene, const Camera& camera) {
+    check.that(can_start_rays(scene, camera.eye) && can_start_rays(scene, camera.target),
+               expected_place(scene),
+               fmt::format("a camera at {} that looks at {}", SceneCheck::text_of(camera.eye),
+                           SceneCheck::text_of(camera.target)));
+}
+
+} // namespace relumine::prt
