@@ -20,6 +20,7 @@
 
 #include "files/output_file.h"
 #include "prt/precompute.h"
+#include "prt/team.h"
 
 namespace relumine::app {
 
@@ -111,6 +112,10 @@ Patience::Patience() {
 
 Patience::~Patience() {
     --shared().num_patient;
+}
+
+bool Session::is_first() const {
+    return team == nullptr || team->is_first();
 }
 
 void Session::add_common_options(Command& command) {

@@ -31,6 +31,9 @@ public:
 
     Session();
 
+    /// Whether this process writes the outputs.
+    [[nodiscard]] bool is_first() const;
+
     /// Adds --json, --threads, -q and -v to a subcommand.
     void add_common_options(Command& command);
 

@@ -61,8 +61,7 @@ viewer::Shading shading_of(const Scene& scene) {
             .bias = scene.settings.bias};
 }
 
-void report(const viewer::ViewReport& result, const relight::LightEditor& editor,
-            const Session& session) {
+void report(const viewer::ViewReport& result, const LitScene& lit, const Session& session) {
     const std::vector<double>& seconds = result.drag_seconds;
     double sum = 0.0;
     double worst = 0.0;
@@ -79,9 +78,9 @@ void report(const viewer::ViewReport& result, const relight::LightEditor& editor
     session.report({{"renderer", result.renderer},
                     {"frames", result.num_frames},
                     {"seconds_frame_mean", result.mean_frame_seconds},
-                    {"clusters", editor.relighter().transfer().num_clusters()},
-                    {"receivers", editor.radiance().size()},
-                    {"face_resolution", editor.environment().resolution},
+                    {"clusters", lit.relighter().transfer().num_clusters()},
+                    {"receivers", lit.radiance().size()},
+                    {"face_resolution", environment_of(lit).resolution},
                     {"drag_events", seconds.size()},
                     {"seconds_drag_mean", mean},
                     {"seconds_drag_worst", worst},
@@ -108,25 +107,20 @@ void run(const Options& options, Session& session) {
         EnvironmentOptions environment = options.environment;
         environment.path = path.string();
         environment.rotate_degrees = 0.0; // the window turns it itself
-        Environment loaded = load_environment(environment, session);
-        return viewer::LoadedEnvironment{.map = std::move(loaded.map),
-                                         .sharp = relight::backdrop_of(loaded.file)};
+        return load_environment(environment, session);
     };
-    relight::LightEditor& editor = lit.editor();
     const std::string& path = options.environment.path;
-    editor.set_rotation(options.environment.rotate_degrees);
-    viewer::LoadedEnvironment first =
-        path.empty() ? viewer::LoadedEnvironment{.map = plain_grey(), .sharp = {}} : load(path);
-    editor.set_base(std::move(first.map));
+    lit.edit({.base = base_of(path.empty()
+                                  ? Environment{.map = plain_grey(), .file = {}, .assumptions = {}}
+                                  : load(path)),
+              .rotation_degrees = options.environment.rotate_degrees});
     options.bounces.bounce(lit, {}, options.scene.path);
-    viewer::LightDesk desk(editor, path);
+    viewer::LightDesk desk(lit);
     viewer::ViewState state{.mesh = lit.scene().mesh,
-                            .rays = lit.rays(),
+                            .rays = lit.rays().of_mesh(),
                             .desk = desk,
                             .shading = shading_of(lit.scene()),
                             .load_environment = load};
-    if (first.sharp)
-        state.sharp.emplace_back(editor.base(), std::move(first.sharp));
     if (!options.layers.empty() && !viewer::open(state, options.layers))
         throw std::runtime_error(state.message);
     state.scene_look.exposure_ev = static_cast<float>(
@@ -134,7 +128,7 @@ void run(const Options& options, Session& session) {
     state.environment_look.exposure_ev = state.scene_look.exposure_ev;
     state.scene_look.tone = options.picture.tone;
     state.environment_look.tone = state.scene_look.tone;
-    report(viewer::view(state, view), editor, session);
+    report(viewer::view(state, view), lit, session);
     session.poll();
 }
 

@@ -1,19 +1,17 @@
 #include "mpi/greeting.h"
-#include "files/joined.h"
 
 #include <algorithm>
 
 #include <fmt/format.h>
-#include <hwy/targets.h>
+
+#include "files/joined.h"
+#include "prt/arithmetic.h"
 
 namespace relumine::mpi {
 
 Greeting greeting(const std::vector<std::string>& arguments) {
-    // The lowest bit is the best target.
-    const auto targets = static_cast<std::int64_t>(hwy::SupportedTargets());
-    return {.version = RELUMINE_VERSION,
-            .instruction_set = hwy::TargetName(targets & -targets),
-            .arguments = arguments};
+    return {
+        .version = RELUMINE_VERSION, .instruction_set = prt::arithmetic(), .arguments = arguments};
 }
 
 std::vector<std::byte> packed(const Greeting& greeting) {

@@ -10,7 +10,7 @@ namespace relumine::mpi {
 
 struct Greeting {
     std::string version;
-    /// The best that processor and program have
+    /// prt::arithmetic()
     std::string instruction_set;
     std::vector<std::string> arguments;
 };

@@ -220,6 +220,7 @@ Environment load_environment(const std::filesystem::path& path, const Environmen
     const double seconds_load = std::chrono::duration<double>(Clock::now() - start).count();
     Environment result = environment_of(image, options);
     result.seconds_load = seconds_load;
+    result.path = path;
     return result;
 }
 

@@ -79,6 +79,8 @@ struct Environment {
     double seconds_load = 0.0;
     /// With the turn
     double seconds_resample = 0.0;
+    /// Of the file
+    std::filesystem::path path = {};
 };
 
 /// Reads the image as the file has it: `layout`, `from` and `fix_bad_pixels` of the options count.

@@ -185,7 +185,7 @@ float lowest(std::span<const glm::vec3> positions) {
 
 } // namespace
 
-Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
+Mesh refined(Mesh mesh, const RefineOptions& options, const prt::Work& work, RefineReport* report) {
     const mesh::TriangleMesh& before = mesh.blockers ? *mesh.blockers : mesh.geometry;
     const std::size_t num_old = mesh.geometry.num_vertices();
     const std::size_t n = mesh.floor_vertices;
@@ -195,7 +195,7 @@ Mesh refined(Mesh mesh, const RefineOptions& options, RefineReport* report) {
     try {
         const prt::RayScene rays(before, prt::RayScene::Packets::Wide);
         const prt::BeamScene beams(before, rays);
-        after = prt::refine(mesh.geometry, beams, options, report);
+        after = prt::refine(mesh.geometry, beams, options, work, report);
     } catch (const std::invalid_argument& error) {
         throw std::runtime_error(prefix_of(mesh) + error.what());
     }

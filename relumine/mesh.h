@@ -82,7 +82,7 @@ using prt::RefineReport;
 ///
 /// Throws:  std::runtime_error "SOURCE: ..." where prt::refine() throws std::invalid_argument;
 ///          Cancelled.
-[[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {},
+[[nodiscard]] Mesh refined(Mesh mesh, const RefineOptions& options = {}, const prt::Work& work = {},
                            RefineReport* report = nullptr);
 
 /// Returns the mesh with so many vertices, its floor not counted: mesh::simplified(). The original

@@ -12,33 +12,14 @@
 #include "relight/pictures/backdrop.h"
 #include "relight/pictures/picture.h"
 #include "relight/pictures/picture_view.h"
-#include "relight/relighter.h"
-#include "relight/sharp/sharp_lights.h"
+#include "relumine/lighting.h"
+#include "relumine/lit_scene.h"
 #include "relumine/output_options.h"
 #include "relumine/scene.h"
 
 namespace relumine {
 
-class LitScene;
-
 using relight::Picture;
-
-/// What a picture is drawn of: the light of a scene's receivers.
-struct Lighting {
-    /// [num_receivers], as LitScene::radiance().
-    std::span<const glm::vec3> radiance;
-    /// Must outlive this object. Null: there is nothing behind the mesh but black.
-    const cubemap::CubeMap* environment = nullptr;
-    /// The environment from its own pixels. Empty: from the cube map.
-    relight::Backdrop sharp = {};
-    /// The lights that are traced one by one, and [num_receivers] radiance without them. Empty:
-    /// radiance has all light.
-    std::vector<relight::SharpLight> lights = {};
-    std::vector<glm::vec3> soft = {};
-};
-
-/// Returns the light of a Relighter, which must outlive it.
-[[nodiscard]] Lighting lighting_of(const relight::Relighter& relighter);
 
 /// Returns radiance times albedo, [num_receivers]. The floor has the albedo of the mesh.
 ///
@@ -66,7 +47,7 @@ struct Lighting {
                                                  const OutputOptions& options = {});
 
 /// Draws and writes many pictures of one scene from one camera. What the camera sees is found once,
-/// and one exposure is chosen for all. LitScene::draw() and save() are the short forms for one
+/// and one exposure is chosen for all. draw() and save() of a LitScene are the short forms for one
 /// picture.
 ///
 /// Throws:  std::invalid_argument where radiance does not fit the scene, an environment has no
@@ -113,6 +94,14 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// The scene in its light. For many pictures of one view see Painter.
+///
+/// Throws:  as Painter; std::logic_error before the first light().
+[[nodiscard]] Picture draw(const LitScene& lit, const OutputOptions& options = {});
+/// Writes the lit scene by extension, as Painter::save().
+void save(const LitScene& lit, const std::filesystem::path& path,
+          const OutputOptions& options = {});
 
 /// Returns true if save() can write the path's extension for this scene: ".png", ".exr" and ".npy"
 /// for all scenes, ".ply" and ".glb" for scenes of vertices. Capital letters are allowed.

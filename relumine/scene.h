@@ -32,6 +32,11 @@ using relight::Camera;
 /// shadow rays. Environments cannot light it.
 [[nodiscard]] Scene unclustered_scene(Mesh mesh);
 
+/// False for unclustered_scene().
+[[nodiscard]] inline bool has_clusters(const Scene& scene) {
+    return scene.transfer.num_receivers() != 0;
+}
+
 /// Returns the RMS tolerance of the scene's clusters, 1/sr, whichever form it was given in.
 [[nodiscard]] float rms_tolerance(const Scene& scene);
 

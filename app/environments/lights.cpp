@@ -114,7 +114,7 @@ struct Lit {
         std::vector<std::uint32_t> all(receivers.size());
         std::iota(all.begin(), all.end(), 0u);
         const std::vector<glm::vec3> under_lights =
-            relight::radiance_under(list, receivers.normals, scene.shadow_rays());
+            relight::radiance_under(list, receivers.normals, scene.relighter().shadow_rays());
         const std::span<const glm::vec3> environment = scene.radiance();
         return relight::compare(all,
                                 std::vector<glm::dvec3>(environment.begin(), environment.end()),

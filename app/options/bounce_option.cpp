@@ -38,55 +38,16 @@ bool BounceOption::applies_to(const Scene& scene, const std::string& path) const
     return scene.bounces.has_value();
 }
 
-namespace {
-
-/// The path belongs to messages about the scene's albedo.
-template<typename Function>
-auto naming(const std::string& path, const Function& function) {
-    try {
-        return function();
-    } catch (const std::invalid_argument& error) {
-        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
-    }
-}
-
-} // namespace
-
 std::optional<BounceReport> BounceOption::bounce(LitScene& lit,
                                                  const relumine::OutputOptions& output,
-                                                 const std::string& path,
-                                                 std::span<const glm::vec3> more) const {
+                                                 const std::string& path) const {
     if (!applies_to(lit.scene(), path))
         return std::nullopt;
-    return naming(path,
-                  [&] { return lit.bounce(bounce_albedo(lit.scene(), output), limits_, more); });
-}
-
-std::optional<BounceReport> BounceOption::bounce(SharedLight& light,
-                                                 const relumine::OutputOptions& output,
-                                                 const std::string& path,
-                                                 std::span<const glm::vec3> more) const {
-    if (!set(light, output, path))
-        return std::nullopt;
-    return light.bounce(more);
-}
-
-bool BounceOption::set(SharedLight& light, const relumine::OutputOptions& output,
-                       const std::string& path) const {
-    const Scene& scene = light.lit().scene();
-    if (!applies_to(scene, path))
-        return false;
-    naming(path,
-           [&] { light.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_)); });
-    return true;
-}
-
-void BounceOption::set(relight::Relighter& relighter, const Scene& scene,
-                       const relumine::OutputOptions& output, const std::string& path) const {
-    if (applies_to(scene, path))
-        naming(path, [&] {
-            relighter.set_bounces(bounces_of(scene, bounce_albedo(scene, output), limits_));
-        });
+    try {
+        return lit.bounce({.albedo = bounce_albedo(lit.scene(), output), .limits = limits_});
+    } catch (const std::invalid_argument& error) { // about the scene's albedo
+        throw std::runtime_error(fmt::format("{}: {}", path, error.what()));
+    }
 }
 
 std::string text_of(const std::optional<BounceReport>& bounces) {

@@ -56,19 +56,17 @@ auto naming_scene(const std::string& path, const Make& make) {
 
 } // namespace
 
-LitScene lit_scene(const SceneOptions& options) {
+LitScene lit_scene(const SceneOptions& options, prt::Team* team) {
+    const LightOptions light{
+        .clusters_only = options.clusters_only, .team = team, .path = options.path};
+    if (team != nullptr) {
+        prt::ScenePart part = prt::load_scene_part(options.path, team->part());
+        recolour(part.scene, options);
+        return LitScene(std::move(part), light);
+    }
     Scene scene = load(options);
     recolour(scene, options);
-    return naming_scene(options.path, [&] {
-        return LitScene(std::move(scene), {.clusters_only = options.clusters_only});
-    });
-}
-
-SharedLight shared_light(const SceneOptions& options, prt::Team& team) {
-    prt::ScenePart part = prt::load_scene_part(options.path, team.part());
-    recolour(part.scene, options);
-    return SharedLight(team, options.path, std::move(part),
-                       {.clusters_only = options.clusters_only});
+    return naming_scene(options.path, [&] { return LitScene(std::move(scene), light); });
 }
 
 } // namespace relumine::app

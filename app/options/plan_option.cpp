@@ -36,7 +36,7 @@ void PlanOption::add_to(Command& command) {
 }
 
 void PlanOption::run(const Command& command, const std::string& output, Engine engine,
-                     Session& session) const {
+                     const PrecomputeWork& work, Session& session) const {
     if (part_.count == 0)
         throw UsageError("--plan", "expected --part I/N with it");
     constexpr std::array<std::string_view, 8> Fitting = {
@@ -47,12 +47,7 @@ void PlanOption::run(const Command& command, const std::string& output, Engine e
     check_output(output, {plan_});
     Stopwatch watch;
     prt::PrecomputeStatistics statistics;
-    precompute_part({.plan = plan_,
-                     .part = part_,
-                     .output = output,
-                     .engine = engine,
-                     .stop = session.stop(),
-                     .on_progress = session.progress("precompute")},
+    precompute_part({.plan = plan_, .part = part_, .output = output, .engine = engine}, work,
                     &statistics);
     session.end_progress();
     const std::uintmax_t file_bytes = std::filesystem::file_size(output);

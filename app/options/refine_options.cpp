@@ -63,15 +63,15 @@ void RefineOptionGroup::check() const {
 Mesh RefineOptionGroup::refined(Mesh mesh, std::optional<float> bias, Session& session) const {
     RefineOptions options = options_;
     options.bias = bias;
-    options.stop = session.stop();
-    options.on_progress = session.progress("refine");
     if (is_command_ && !options.error && !options.max_edge)
         options.error = RefineOptions{}.error;
     if (!light_.empty())
         options.light = load_environment(light_).map;
     const std::size_t num_before = mesh.geometry.num_vertices();
     RefineReport found;
-    Mesh result = relumine::refined(std::move(mesh), options, &found);
+    Mesh result = relumine::refined(
+        std::move(mesh), options,
+        {.stop = session.stop(), .on_progress = session.progress("refine")}, &found);
     session.end_progress();
     const std::size_t num_after = result.geometry.num_vertices();
     if (num_after == num_before)

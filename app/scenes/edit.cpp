@@ -22,7 +22,6 @@
 #include "cubemap/image/environment.h"
 #include "cubemap/layers/layer_file.h"
 #include "cubemap/resample/save_environment.h"
-#include "relight/light_editor.h"
 
 namespace relumine::app {
 
@@ -97,20 +96,20 @@ class Edit {
 public:
     Edit(const EditArguments& options, cubemap::LightLayers layers, Session& session)
         : options_(options), session_(session), layers_(std::move(layers)),
-          lit_(lit_scene(options.scene)), editor_(lit_.editor()) {}
+          lit_(lit_scene(options.scene)) {}
 
     void run() {
         check_receivers();
         Environment environment = load_environment(options_.environment, session_);
-        RelightTimes full = lit_.light(std::move(environment));
+        UpdateReport full = lit_.light(std::move(environment));
         if (layers_.rotate_degrees)
-            full = editor_.set_rotation(*layers_.rotate_degrees);
-        seconds_full_ = full.seconds_bin + full.seconds_trace + full.seconds_relight;
+            full = set_rotation(lit_, *layers_.rotate_degrees);
+        seconds_full_ = full.seconds;
         apply_one_by_one();
         bounce();
         write_output();
         if (!options_.saved_environment.empty())
-            cubemap::save_environment(options_.saved_environment, editor_.environment());
+            cubemap::save_environment(options_.saved_environment, environment_of(lit_));
         if (options_.watch)
             watch();
         Report result = {{"clusters", lit_.scene().transfer.num_clusters()},
@@ -179,7 +178,7 @@ private:
         std::vector<cubemap::LightLayer> layers;
         for (const cubemap::LightLayer& layer : layers_.layers) {
             layers.push_back(layer);
-            record(layer.name, editor_.set_layers(layers));
+            record(layer.name, set_layers(lit_, layers));
             session_.poll();
         }
     }
@@ -189,7 +188,7 @@ private:
         const int last = static_cast<int>(std::floor(layers_.frames.back().frame));
         for (int frame = first; frame <= last; ++frame) {
             record(fmt::format("frame {}", frame),
-                   editor_.set_layers(cubemap::layers_at(layers_, frame)));
+                   set_layers(lit_, cubemap::layers_at(layers_, frame)));
             bounce();
             painter_->save(frame_names(options_.output.path).name(frame), lit_.lighting());
             session_.poll();
@@ -200,7 +199,7 @@ private:
     void save_who() const {
         const std::uint32_t receiver = nearest_receiver(lit_.scene(), *options_.who);
         const glm::vec3& nearest = lit_.scene().receivers.positions[receiver];
-        const cubemap::CubeMap map = lit_.contribution_map({&receiver, 1});
+        const cubemap::CubeMap map = contribution_map(lit_, {&receiver, 1});
         save_map(options_.output.path, map, options_.output.picture.exposure_ev.value_or(0.0));
         session_.say(fmt::format("{}: what lights {} {} ({}, {}, {})", options_.output.path,
                                  prt::kind_of(lit_.scene().layout).one, receiver, nearest.x,
@@ -209,7 +208,7 @@ private:
 
     /// The scene as a region of the environment lights it, with that region behind it.
     void save_lit_by() {
-        const Share part = lit_.lit_by(lit_by_region(options_.lit_by, editor_.layers()));
+        const Share part = lit_by(lit_, lit_by_region(options_.lit_by, lit_.state().layers));
         painter_->save(options_.output.path, part.lighting());
         lit_by_share_ = part.share;
         session_.say(
@@ -226,7 +225,7 @@ private:
             try {
                 Environment environment = load_environment(options_.environment, session_);
                 const double seconds_load = environment.seconds_load + environment.seconds_resample;
-                const relight::UpdateReport report = lit_.update(std::move(environment));
+                const relight::UpdateReport report = update(lit_, std::move(environment));
                 const double since_saved =
                     std::chrono::duration<double>(Clock::now() - *saved).count();
                 Stopwatch output;
@@ -255,7 +254,6 @@ private:
     Session& session_;
     cubemap::LightLayers layers_;
     LitScene lit_;
-    relight::LightEditor& editor_;
     /// Not for --who.
     std::optional<Painter> painter_;
     double seconds_full_ = 0.0;

@@ -20,7 +20,7 @@
 #include "app/options/refine_options.h"
 #include "mesh/floor.h"
 #include "mesh/half_edge/winding.h"
-#include "relumine/precompute_options.h"
+#include "relumine/precompute_table.h"
 
 namespace relumine::app {
 
@@ -40,18 +40,23 @@ struct PrecomputeArguments {
     PrecomputeOptions precompute;
 };
 
-/// Everything that the command line says of the work.
+/// Everything that the command line says of the scene.
 PrecomputeOptions precompute_options(const PrecomputeArguments& options,
-                                     const mesh::TriangleMesh& mesh, Session& session) {
+                                     const mesh::TriangleMesh& mesh) {
     PrecomputeOptions result = options.precompute;
     set_materials(result, options.materials, mesh);
     result.output = options.output;
-    result.team = session.team;
-    result.stop = session.stop();
-    result.on_progress = [&session, clusters = session.progress("precompute"),
-                          highlights = session.progress("highlights"),
-                          bounces = session.progress("bounces"),
-                          last = Stage::Clusters](Stage stage, double fraction) mutable {
+    return result;
+}
+
+/// What the session says of the work.
+PrecomputeWork precompute_work(Session& session) {
+    PrecomputeWork work{.team = session.team != nullptr ? *session.team : prt::alone(),
+                        .stop = session.stop()};
+    work.on_progress = [&session, clusters = session.progress("precompute"),
+                        highlights = session.progress("highlights"),
+                        bounces = session.progress("bounces"),
+                        last = Stage::Clusters](Stage stage, double fraction) mutable {
         if (std::exchange(last, stage) != stage)
             session.end_progress();
         if (const auto& show = stage == Stage::Clusters     ? clusters
@@ -59,13 +64,13 @@ PrecomputeOptions precompute_options(const PrecomputeArguments& options,
                                                             : bounces)
             show(fraction);
     };
-    result.on_warning = [&session](Warning kind, const std::string& message) {
+    work.on_warning = [&session](Warning kind, const std::string& message) {
         session.warn(kind == Warning::HighlightsWithoutView ? message + " (see --view)" : message);
     };
-    result.on_note = [&session](const std::string& message) {
+    work.on_note = [&session](const std::string& message) {
         session.detail(message);
     };
-    return result;
+    return work;
 }
 
 /// The option that helps where the memory does not suffice.
@@ -79,7 +84,9 @@ std::string advice(MemoryLimitExceeded::Part part) {
     return "";
 }
 
-Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport& report) {
+Scene precomputed(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                  PrecomputeReport& report) {
+    const Patience for_checkpoints;
     const auto with_checkpoint = [&](const std::string& message) {
         return report.checkpoint.empty()
                    ? message
@@ -87,7 +94,7 @@ Scene precomputed(Mesh mesh, const PrecomputeOptions& options, PrecomputeReport&
                                  report.checkpoint.string());
     };
     try {
-        return precompute(std::move(mesh), options, &report);
+        return precompute(std::move(mesh), options, work, &report);
     } catch (const TooMuchWork& error) {
         throw UsageError(error.cause == TooMuchWork::Cause::MinLevel ? "--min-depth"
                          : options.epsilon                           ? "--epsilon"
@@ -238,15 +245,16 @@ void warn_of_winding(const mesh::TriangleMesh& mesh, const std::string& path,
 }
 
 /// What there is to say of a plan.
-void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch,
-                Session& session) {
+void write_plan(Mesh mesh, const PrecomputeOptions& options, const PrecomputeWork& work,
+                const Stopwatch& watch, Session& session) {
     PrecomputeReport facts;
-    plan(std::move(mesh), work, &facts);
+    plan(std::move(mesh), options, work, &facts);
     session.end_progress();
     const double seconds = watch.total();
     session.say(fmt::format("{}: {} receivers, {} clusters in {:.1f} s, {:.1f} MB",
-                            work.output.string(), facts.num_receivers, facts.clusters.num_clusters,
-                            seconds, static_cast<double>(facts.file_bytes) * 1e-6));
+                            options.output.string(), facts.num_receivers,
+                            facts.clusters.num_clusters, seconds,
+                            static_cast<double>(facts.file_bytes) * 1e-6));
     session.report({{"vertices", facts.num_vertices},
                     {"receivers", facts.num_receivers},
                     {"triangles", facts.num_triangles},
@@ -258,33 +266,15 @@ void write_plan(Mesh mesh, const PrecomputeOptions& work, const Stopwatch& watch
                     {"seconds", seconds}});
 }
 
-void run(const PrecomputeArguments& options, const Command& command, Session& session) {
-    if (options.parts.is_given() && session.team != nullptr)
-        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
-                                   "precompute` does them without mpirun");
-    if (options.parts.is_given())
-        return options.parts.run(command, options.output, options.precompute.engine, session);
-    if (options.mesh.empty())
-        throw UsageError("MESH", "expected a mesh, got none");
-    if (session.team != nullptr && session.team->part().index != 0) {
-        const Patience for_checkpoints;
-        return assist(*session.team, session.stop());
-    }
-    Stopwatch watch;
-    // Found out now, not after a minute of work.
-    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
-    check_output(options.output, {options.mesh});
-    check(options.precompute);
-    options.refine.check();
-    if ((options.refine.is_wanted() || options.simplify != 0) &&
-        !std::holds_alternative<Vertices>(options.precompute.receivers))
-        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
-                         "expected vertices as receivers");
+/// Whether the mesh is turned up by the custom of its format, which has Z up.
+bool turns_by_custom(const PrecomputeArguments& options) {
+    return !options.mesh_options.up && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
+}
 
+/// Loads the mesh, says what is odd about it, and gives it the vertices that are asked for.
+Mesh made_mesh(const PrecomputeArguments& options, Session& session) {
     Mesh mesh = load_mesh(options.mesh, options.mesh_options);
-    const std::optional<mesh::UpAxis> up = options.mesh_options.up;
-    const bool turns_by_custom = !up && mesh::customary_up(options.mesh) == mesh::UpAxis::Z;
-    if (turns_by_custom)
+    if (turns_by_custom(options))
         session.say(fmt::format("{}: +Z is up, by the custom of .stl; --up y where it is not",
                                 options.mesh));
     for (const std::string& warning : mesh.geometry.warnings)
@@ -294,29 +284,23 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
     warn_of_winding(mesh.geometry, options.mesh, session);
     session.detail(fmt::format("{}: {} vertices, {} triangles", options.mesh,
                                mesh.geometry.num_vertices(), mesh.geometry.num_triangles()));
-
     if (options.simplify != 0)
         mesh = simplified_to(std::move(mesh), options.simplify, session);
     if (options.refine.is_wanted())
         mesh = options.refine.refined(std::move(mesh), options.precompute.bias, session);
+    return mesh;
+}
 
-    const PrecomputeOptions work = precompute_options(options, mesh.geometry, session);
-    if (options.is_plan)
-        return write_plan(std::move(mesh), work, watch, session);
-    PrecomputeReport facts;
-    const Scene scene = [&] {
-        const Patience for_checkpoints;
-        return precomputed(std::move(mesh), work, facts);
-    }();
-    session.end_progress();
-
+/// What there is to say of a scene.
+void write_report(const PrecomputeArguments& options, const PrecomputeOptions& work,
+                  const PrecomputeReport& facts, const Scene& scene, double seconds,
+                  Session& session) {
     Report report = report_of(work, facts, scene, session);
     const std::string others = prt::on_vertices(scene.layout)
                                    ? ""
                                    : fmt::format(", {} receivers ({})", scene.receivers.num_own(),
                                                  prt::description(scene.layout));
     const prt::PrecomputeStatistics& clusters = facts.clusters;
-    const double seconds = watch.total();
     session.say(fmt::format("{}: {} vertices, {} triangles{} -> {} clusters in {:.1f} s ({}; "
                             "{:.1f} M rays/s), {:.1f} MB",
                             options.output, facts.num_vertices, facts.num_triangles, others,
@@ -327,12 +311,47 @@ void run(const PrecomputeArguments& options, const Command& command, Session& se
         report.set("floor", floor_report(scene, session));
     if (facts.bounces)
         report.set("bounces", bounce_report(*facts.bounces, scene, session));
-    if (!facts.processes.empty())
+    if (session.team != nullptr)
         report.set("processes", process_report(facts.processes, session));
-    report.set("up",
-               turns_by_custom ? "z" : ValueText<mesh::UpAxis>::show(up.value_or(mesh::UpAxis::Y)));
+    report.set("up", turns_by_custom(options)
+                         ? "z"
+                         : ValueText<mesh::UpAxis>::show(
+                               options.mesh_options.up.value_or(mesh::UpAxis::Y)));
     report.set("seconds", seconds);
     session.report(report);
+}
+
+void run(const PrecomputeArguments& options, const Command& command, Session& session) {
+    if (options.parts.is_given() && session.team != nullptr)
+        throw UsageError("--plan", "expected a mesh: parts of a plan share nothing, `relumine "
+                                   "precompute` does them without mpirun");
+    const PrecomputeWork work = precompute_work(session);
+    if (options.parts.is_given())
+        return options.parts.run(command, options.output, options.precompute.engine, work, session);
+    if (options.mesh.empty())
+        throw UsageError("MESH", "expected a mesh, got none");
+    if (!work.team.is_first()) {
+        const Patience for_checkpoints;
+        return assist(work);
+    }
+    const Stopwatch watch;
+    // Found out now, not after a minute of work.
+    require_extension("--output", options.output, {options.is_plan ? ".plan" : ".prt"});
+    check_output(options.output, {options.mesh});
+    check(options.precompute);
+    options.refine.check();
+    if ((options.refine.is_wanted() || options.simplify != 0) &&
+        !std::holds_alternative<Vertices>(options.precompute.receivers))
+        throw UsageError(options.simplify != 0 ? "--simplify" : "--refine",
+                         "expected vertices as receivers");
+    Mesh mesh = made_mesh(options, session);
+    const PrecomputeOptions asked = precompute_options(options, mesh.geometry);
+    if (options.is_plan)
+        return write_plan(std::move(mesh), asked, work, watch, session);
+    PrecomputeReport facts;
+    const Scene scene = precomputed(std::move(mesh), asked, work, facts);
+    session.end_progress();
+    write_report(options, asked, facts, scene, watch.total(), session);
 }
 
 /// Everything that decides which light reaches what.

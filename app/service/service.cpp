@@ -187,7 +187,7 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
         binned.splice(binned.begin(), binned, found);
     } else {
         Environment environment = load_environment(options, session);
-        binned.push_front({key, target.bin(std::move(environment.map)), environment.file});
+        binned.push_front({key, bin(target, std::move(environment.map)), environment.file});
         std::size_t bytes = 0;
         for (auto each = binned.begin(); each != binned.end();) {
             bytes += (each->environment.map->texels.size() + each->file.image->pixels.size()) *
@@ -196,8 +196,8 @@ void Service::Impl::set_environment(const EnvironmentOptions& options) {
                 bytes > MaxBytes && each != binned.begin() ? binned.erase(each) : std::next(each);
         }
     }
-    target.light(binned.front().environment, binned.front().file);
-    report = {{"face_resolution", target.environment().resolution}, {"was_kept", is_kept}};
+    target.light(Light(binned.front().environment, binned.front().file));
+    report = {{"face_resolution", environment_of(target).resolution}, {"was_kept", is_kept}};
     bounce();
 }
 
@@ -217,7 +217,7 @@ void Service::Impl::set_layers(const std::string& path) {
     else
         list = cubemap::load_layers(path).layers;
     const std::size_t count = list.size();
-    const UpdateReport update = lit().set_layers(std::move(list));
+    const UpdateReport update = relumine::set_layers(lit(), std::move(list));
     report = {
         {"layers", count}, {"clusters", update.num_clusters}, {"receivers", update.num_receivers}};
     bounce();

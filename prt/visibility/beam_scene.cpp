@@ -22,15 +22,14 @@ namespace {
 /// Then the exact tracer answers alone.
 constexpr float LargestReach = 1e12f;
 
-/// Asks the exact tracer for rays in doubt, with their whole packets: Embree's answer for a ray
-/// right through an edge may depend on the packet's other rays.
+/// Asks the exact tracer for rays in doubt.
 void ask(const Blockers& exact, const glm::vec3& origin, const DirectionPatch& patch,
-         std::uint64_t doubts, std::uint64_t asked, std::uint64_t& rays) {
+         std::uint64_t doubts, std::uint64_t& rays) {
     for (std::size_t p = 0; doubts != 0 && p < DirectionPatch::NumPackets; ++p) {
         constexpr std::uint64_t PacketBits = 0xffff;
-        if ((doubts >> (p * PacketSize) & PacketBits) == 0)
+        const auto active = static_cast<std::uint32_t>(doubts >> (p * PacketSize) & PacketBits);
+        if (active == 0)
             continue;
-        const auto active = static_cast<std::uint32_t>(asked >> (p * PacketSize) & PacketBits);
         const std::uint64_t blocked = exact.occluded(origin, patch.packets[p], active);
         rays &= ~(blocked << (p * PacketSize));
     }
@@ -87,8 +86,8 @@ void clear_by_direction(const TriangleTree& tree, const Blockers& exact, const R
     transpose_squares(lit);
     transpose_squares(doubts);
     for (std::size_t i = 0; i < rays.size(); ++i) {
-        const std::uint64_t asked = std::exchange(rays[i], lit[i]);
-        ask(exact, group.origins[i], patch, doubts[i], asked, rays[i]);
+        rays[i] = lit[i];
+        ask(exact, group.origins[i], patch, doubts[i], rays[i]);
     }
 }
 
@@ -133,12 +132,11 @@ void BeamScene::clear_blocked(const ReceiverGroup& group, const DirectionPatch& 
     }
     if (leaves.found.empty())
         return;
-    RayWords asked{}, doubts{};
-    std::copy(rays.begin(), rays.end(), asked.begin());
+    RayWords doubts{};
     clear_certain(tree, {patch, plane, shaft}, leaves, origins, cones, rays,
                   std::span(doubts).first(rays.size()));
     for (std::size_t i = 0; i < rays.size(); ++i)
-        ask(exact, group.origins[i], patch, doubts[i], asked[i], rays[i]);
+        ask(exact, group.origins[i], patch, doubts[i], rays[i]);
 }
 
 } // namespace relumine::prt

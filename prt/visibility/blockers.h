@@ -26,6 +26,9 @@ struct alignas(64) DirectionPacket {
         y[lane] = direction.y;
         z[lane] = direction.z;
     }
+    [[nodiscard]] glm::vec3 direction(std::size_t lane) const {
+        return {x[lane], y[lane], z[lane]};
+    }
 };
 
 /// Up to 64 directions inside one narrow cone. Direction j is lane j % 16 of packet j / 16. Unused
@@ -39,8 +42,7 @@ struct DirectionPatch {
 
     [[nodiscard]] bool full() const { return num_directions == Size; }
     [[nodiscard]] glm::vec3 direction(std::size_t j) const {
-        const DirectionPacket& packet = packets[j / PacketSize];
-        return {packet.x[j % PacketSize], packet.y[j % PacketSize], packet.z[j % PacketSize]};
+        return packets[j / PacketSize].direction(j % PacketSize);
     }
     /// Adds one more direction. Must not be full.
     void add(const glm::vec3& direction);
@@ -100,9 +102,7 @@ protected:
                                              std::uint32_t candidates) {
     std::uint32_t above = 0;
     for (std::uint32_t i = 0; i < PacketSize; ++i)
-        above |= static_cast<std::uint32_t>(
-                     is_above(normal, {directions.x[i], directions.y[i], directions.z[i]}))
-                 << i;
+        above |= static_cast<std::uint32_t>(is_above(normal, directions.direction(i))) << i;
     above &= candidates;
     return above == 0 ? 0 : above & ~blockers.occluded(origin, directions, above);
 }

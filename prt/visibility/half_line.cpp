@@ -1,5 +1,6 @@
 #include "prt/visibility/half_line.h"
 
+#include <algorithm>
 #include <cstddef>
 
 #include <glm/common.hpp>
@@ -53,6 +54,16 @@ bool edge_passes_by(glm::dvec3 a, glm::dvec3 b, const glm::dvec3& w, double dist
 bool meets(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w) {
     const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
     return go_round(corners, w) && glm::dot(normal, corners[0]) * glm::dot(normal, w) >= 0.0;
+}
+
+Meeting meeting_of(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w) {
+    const glm::dvec3 normal = glm::cross(corners[1] - corners[0], corners[2] - corners[0]);
+    const double along = glm::dot(normal, w);
+    if (along == 0.0)
+        return {.distance = std::max(glm::dot(corners[0], w) / glm::dot(w, w), 0.0)};
+    return {.distance = std::max(glm::dot(normal, corners[0]) / along, 0.0),
+            .barycentric = {glm::dot(glm::cross(corners[2], corners[0]), w) / along,
+                            glm::dot(glm::cross(corners[0], corners[1]), w) / along}};
 }
 
 bool passes_by(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w, double distance) {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include <embree3/rtcore.h>
@@ -15,6 +16,7 @@
 #include <glm/geometric.hpp>
 
 #include "prt/visibility/half_line.h"
+#include "prt/visibility/triangle_verdict.h"
 
 namespace relumine::prt {
 
@@ -63,36 +65,124 @@ struct Buffers {
     const mesh::Triangle* triangles = nullptr;
 };
 
-/// Drops hits that lie beside their triangle.
-///
-/// Embree moves corners by a rounding of their distance d. Where a ray runs along a triangle's
-/// plane it compares noise with noise. It then finds hits far beside the triangle, up to the boxes
-/// of its tree. Such a hit would be a shadow that nothing casts. The remaining hits are no farther
-/// off than a ray's own rounding.
-void drop_hits_beside(const RTCFilterFunctionNArguments* hits) {
-    constexpr double Roundings = 16.0 * 0x1p-24;
-    const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
-    for (unsigned int i = 0; i < hits->N; ++i) {
-        if (hits->valid[i] == 0)
-            continue;
+/// The nearest hit of a ray so far.
+struct Nearest {
+    Meeting meeting;
+    std::uint32_t triangle = 0;
+    /// Embree looks for hits up to here.
+    float reach = Infinity;
+};
+
+/// Rays that Embree traces. Starts with what Embree hands on to the filters below.
+struct Query {
+    RTCIntersectContext context;
+    /// Rays of a packet that must be traced one by one.
+    ///
+    /// The other rays of a packet decide which boxes of Embree's tree are opened for a ray. So they
+    /// decide whether a hit is found that is one by a rounding only.
+    std::uint32_t doubtful = 0;
+    bool is_packet = false;
+    /// [number of rays] where the nearest hits are asked for
+    Nearest* nearest = nullptr;
+
+    explicit Query(bool packet) : is_packet(packet) { rtcInitIntersectContext(&context); }
+};
+
+/// A ray, and a triangle that Embree says it hits.
+struct Candidate {
+    /// From the ray's start
+    std::array<glm::dvec3, 3> corners;
+    glm::dvec3 direction;
+    /// Its number in the query
+    std::uint32_t ray;
+
+    Candidate(const RTCFilterFunctionNArguments* hits, unsigned int i)
+        : direction(RTCRayN_dir_x(hits->ray, hits->N, i), RTCRayN_dir_y(hits->ray, hits->N, i),
+                    RTCRayN_dir_z(hits->ray, hits->N, i)),
+          ray(RTCRayN_id(hits->ray, hits->N, i)) {
         const glm::dvec3 origin(RTCRayN_org_x(hits->ray, hits->N, i),
                                 RTCRayN_org_y(hits->ray, hits->N, i),
                                 RTCRayN_org_z(hits->ray, hits->N, i));
-        const glm::dvec3 direction(RTCRayN_dir_x(hits->ray, hits->N, i),
-                                   RTCRayN_dir_y(hits->ray, hits->N, i),
-                                   RTCRayN_dir_z(hits->ray, hits->N, i));
+        const auto& buffers = *static_cast<const Buffers*>(hits->geometryUserPtr);
         const mesh::Triangle& triangle = buffers.triangles[RTCHitN_primID(hits->hit, hits->N, i)];
-        std::array<glm::dvec3, 3> corners;
         for (std::size_t k = 0; k < 3; ++k)
             corners[k] = glm::dvec3(buffers.positions[triangle[k]]) - origin;
+    }
+
+    /// Whether the hit lies beside the triangle.
+    ///
+    /// Embree moves corners by a rounding of their distance d. Where a ray runs along a triangle's
+    /// plane it compares noise with noise. It then finds hits far beside the triangle, up to the
+    /// boxes of its tree. Such a hit would be a shadow that nothing casts. The remaining hits are
+    /// no farther off than a ray's own rounding.
+    [[nodiscard]] bool is_beside() const {
+        constexpr double Roundings = 16.0 * 0x1p-24;
         if (meets(corners, direction)) // as nearly all do
-            continue;
+            return false;
         double squared_distance = 0.0;
         for (const glm::dvec3& corner : corners)
             squared_distance = std::max(squared_distance, glm::dot(corner, corner));
-        if (passes_by(corners, glm::normalize(direction), Roundings * std::sqrt(squared_distance)))
+        return passes_by(corners, glm::normalize(direction),
+                         Roundings * std::sqrt(squared_distance));
+    }
+
+    [[nodiscard]] bool is_in_doubt(const Query& query) const {
+        return query.is_packet && !hits_for_certain(corners, direction);
+    }
+};
+
+/// What Embree asks of each hit of a ray that may be blocked.
+void keep_blockers(const RTCFilterFunctionNArguments* hits) {
+    auto& query = *reinterpret_cast<Query*>(hits->context);
+    for (unsigned int i = 0; i < hits->N; ++i) {
+        if (hits->valid[i] == 0)
+            continue;
+        const Candidate candidate(hits, i);
+        const bool is_in_doubt = candidate.is_in_doubt(query);
+        if (query.is_packet && !is_in_doubt)
+            continue;
+        const bool is_beside = candidate.is_beside();
+        if (is_in_doubt && !is_beside)
+            query.doubtful |= 1u << candidate.ray;
+        if (is_in_doubt || is_beside) // something else may block the ray for certain
             hits->valid[i] = 0;
     }
+}
+
+/// What Embree asks of each hit of a ray whose nearest hit is looked for.
+///
+/// Embree's distances come from the processor's approximation of a reciprocal, which not all
+/// processors share. So what is about as near is looked at, too, and distances in double choose.
+void keep_nearest(const RTCFilterFunctionNArguments* hits) {
+    constexpr float AboutAsNear = 1.0f + 0x1p-12f;
+    auto& query = *reinterpret_cast<Query*>(hits->context);
+    for (unsigned int i = 0; i < hits->N; ++i) {
+        if (hits->valid[i] == 0)
+            continue;
+        const Candidate candidate(hits, i);
+        if (candidate.is_beside()) {
+            hits->valid[i] = 0;
+            continue;
+        }
+        if (candidate.is_in_doubt(query))
+            query.doubtful |= 1u << candidate.ray;
+        Nearest& nearest = query.nearest[candidate.ray];
+        const Meeting meeting = meeting_of(candidate.corners, candidate.direction);
+        const std::uint32_t triangle = RTCHitN_primID(hits->hit, hits->N, i);
+        if (std::tie(meeting.distance, triangle) <
+            std::tie(nearest.meeting.distance, nearest.triangle)) {
+            nearest.meeting = meeting;
+            nearest.triangle = triangle;
+        }
+        float& reach = RTCRayN_tfar(hits->ray, hits->N, i);
+        reach = nearest.reach = std::min(nearest.reach, AboutAsNear * reach);
+    }
+}
+
+Hit hit_of(const Nearest& nearest) {
+    return {.triangle = nearest.triangle,
+            .barycentric = glm::vec2(nearest.meeting.barycentric),
+            .distance = static_cast<float>(nearest.meeting.distance)};
 }
 
 } // namespace
@@ -138,8 +228,8 @@ RayScene::RayScene(const mesh::TriangleMesh& mesh, Packets packets)
         .positions = fill_buffer(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, positions),
         .triangles = fill_buffer(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, triangles)};
     rtcSetGeometryUserData(geometry, &impl_->buffers);
-    rtcSetGeometryOccludedFilterFunction(geometry, drop_hits_beside);
-    rtcSetGeometryIntersectFilterFunction(geometry, drop_hits_beside);
+    rtcSetGeometryOccludedFilterFunction(geometry, keep_blockers);
+    rtcSetGeometryIntersectFilterFunction(geometry, keep_nearest);
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(impl_->scene.get(), geometry);
     rtcReleaseGeometry(geometry);
@@ -166,6 +256,7 @@ void fill_rays(const glm::vec3& origin, const DirectionPacket& directions, std::
         rays.tfar[i] = Infinity;
         rays.time[i] = 0.0f;
         rays.mask[i] = ~0u;
+        rays.id[i] = static_cast<unsigned int>(i);
         rays.flags[i] = 0;
     }
     std::memcpy(rays.dir_x, directions.x.data(), sizeof rays.dir_x);
@@ -173,26 +264,7 @@ void fill_rays(const glm::vec3& origin, const DirectionPacket& directions, std::
     std::memcpy(rays.dir_z, directions.z.data(), sizeof rays.dir_z);
 }
 
-} // namespace
-
-std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
-                                 std::uint32_t active) const {
-    alignas(64) Valid valid;
-    RTCRay16 rays;
-    fill_rays(origin, directions, active, valid, rays);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = impl_->packets;
-    rtcOccluded16(valid.data(), impl_->scene.get(), &context, &rays);
-
-    // Embree marks a blocked ray by tfar = -infinity.
-    std::uint32_t blocked = 0;
-    for (std::size_t i = 0; i < PacketSize; ++i)
-        blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
-    return blocked & active;
-}
-
-bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) const {
+RTCRay ray_of(const glm::vec3& origin, const glm::vec3& direction) {
     RTCRay ray{};
     ray.org_x = origin.x;
     ray.org_y = origin.y;
@@ -202,52 +274,76 @@ bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) con
     ray.dir_z = direction.z;
     ray.tfar = Infinity;
     ray.mask = ~0u;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(impl_->scene.get(), &context, &ray);
+    return ray;
+}
+
+} // namespace
+
+std::uint32_t RayScene::occluded(const glm::vec3& origin, const DirectionPacket& directions,
+                                 std::uint32_t active) const {
+    alignas(64) Valid valid;
+    RTCRay16 rays;
+    fill_rays(origin, directions, active, valid, rays);
+    Query query(true);
+    query.context.flags = impl_->packets;
+    rtcOccluded16(valid.data(), impl_->scene.get(), &query.context, &rays);
+
+    // Embree marks a blocked ray by tfar = -infinity.
+    std::uint32_t blocked = 0;
+    for (std::size_t i = 0; i < PacketSize; ++i)
+        blocked |= static_cast<std::uint32_t>(rays.tfar[i] < 0.0f) << i;
+    for (std::uint32_t rest = query.doubtful & active & ~blocked; rest != 0; rest &= rest - 1) {
+        const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+        blocked |= static_cast<std::uint32_t>(occluded(origin, directions.direction(i))) << i;
+    }
+    return blocked & active;
+}
+
+bool RayScene::occluded(const glm::vec3& origin, const glm::vec3& direction) const {
+    RTCRay ray = ray_of(origin, direction);
+    Query query(false);
+    rtcOccluded1(impl_->scene.get(), &query.context, &ray);
     return ray.tfar < 0.0f;
 }
 
 std::optional<Hit> RayScene::closest_hit(const glm::vec3& origin,
                                          const glm::vec3& direction) const {
-    RTCRayHit query{};
-    query.ray.org_x = origin.x;
-    query.ray.org_y = origin.y;
-    query.ray.org_z = origin.z;
-    query.ray.dir_x = direction.x;
-    query.ray.dir_y = direction.y;
-    query.ray.dir_z = direction.z;
-    query.ray.tfar = Infinity;
-    query.ray.mask = ~0u;
-    query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcIntersect1(impl_->scene.get(), &context, &query);
-    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID)
+    RTCRayHit ray{};
+    ray.ray = ray_of(origin, direction);
+    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    Query query(false);
+    Nearest nearest;
+    query.nearest = &nearest;
+    rtcIntersect1(impl_->scene.get(), &query.context, &ray);
+    if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID)
         return std::nullopt;
-    return Hit{.triangle = query.hit.primID,
-               .barycentric = {query.hit.u, query.hit.v},
-               .distance = query.ray.tfar};
+    return hit_of(nearest);
 }
 
 std::uint32_t RayScene::closest_hits(const glm::vec3& origin, const DirectionPacket& directions,
                                      std::uint32_t active, std::span<Hit, PacketSize> hits) const {
     alignas(64) Valid valid;
-    RTCRayHit16 query;
-    fill_rays(origin, directions, active, valid, query.ray);
-    std::fill(std::begin(query.hit.geomID), std::end(query.hit.geomID), RTC_INVALID_GEOMETRY_ID);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid.data(), impl_->scene.get(), &context, &query);
+    RTCRayHit16 rays;
+    fill_rays(origin, directions, active, valid, rays.ray);
+    std::fill(std::begin(rays.hit.geomID), std::end(rays.hit.geomID), RTC_INVALID_GEOMETRY_ID);
+    Query query(true);
+    std::array<Nearest, PacketSize> nearest;
+    query.nearest = nearest.data();
+    query.context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid.data(), impl_->scene.get(), &query.context, &rays);
     std::uint32_t found = 0;
     for (std::size_t i = 0; i < PacketSize; ++i) {
-        if ((active >> i & 1u) == 0 || query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+        if ((active >> i & 1u) == 0)
+            continue;
+        std::optional<Hit> hit;
+        if ((query.doubtful >> i & 1u) != 0)
+            hit = closest_hit(origin, directions.direction(i));
+        else if (rays.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID)
+            hit = hit_of(nearest[i]);
+        if (!hit)
             continue;
         found |= 1u << i;
-        hits[i] = {.triangle = query.hit.primID[i],
-                   .barycentric = {query.hit.u[i], query.hit.v[i]},
-                   .distance = query.ray.tfar[i]};
+        hits[i] = *hit;
     }
     return found;
 }

@@ -30,11 +30,13 @@ struct Hit {
 /// Triangles prepared for ray queries; immutable. Triangles block from both sides. Rays are traced
 /// watertight (Embree's robust mode): no ray slips through a shared edge.
 ///
+/// A ray's answer does not depend on the rays that are asked with it. x86 processors from AVX2 on
+/// give the same answers.
+///
 /// Threads: all queries may run from any number of threads at once.
 class RayScene final : public Blockers {
 public:
-    /// Whether the directions of most packets lie close together. Answers may depend on it for
-    /// rays right through an edge.
+    /// Whether the directions of most packets lie close together. Answers are the same.
     enum class Packets { Narrow, Wide };
 
     /// Builds the accelerator. The mesh need not outlive this object.

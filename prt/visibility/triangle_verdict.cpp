@@ -7,6 +7,13 @@
 
 namespace relumine::prt {
 
+namespace {
+
+constexpr double Roundings = 0x1p-24;
+constexpr double Tiny = 1e-35; // products below are lost in float
+
+} // namespace
+
 /// Rounding errors of the exact tracer and their bounds: docs/error-bounds.md, rows V1 to V5. The
 /// errors of double precision do not count beside them.
 Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3& origin,
@@ -23,8 +30,7 @@ Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3&
     }
     const double l =
         std::max({glm::distance(v[0], v[1]), glm::distance(v[1], v[2]), glm::distance(v[2], v[0])});
-    constexpr double u = 0x1p-24;
-    constexpr double Tiny = 1e-35; // products below are lost in float
+    constexpr double u = Roundings;
     const double side = glm::dot(glm::cross(v[1] - v[0], v[2] - v[1]), v[0]);
     const bool has_side = std::abs(side) > u * (6.0 * l * d * d + 12.0 * l * l * d) + Tiny;
     int num_positive = 0;
@@ -43,6 +49,24 @@ Verdict judge(const TriangleTree::Leaf& leaf, std::size_t lane, const glm::vec3&
     if ((side > 0.0 ? num_negative : num_positive) > 0)
         return Verdict::Miss;
     return (side > 0.0 ? num_positive : num_negative) == 3 ? Verdict::Hit : Verdict::Doubt;
+}
+
+/// As judge(). Where a ray hits, each corner is at most l from its line. So rows V1 to V3 are 16 l
+/// d
+/// + 4 l d + 4 l^2 together.
+bool hits_for_certain(const std::array<glm::dvec3, 3>& corners, const glm::dvec3& w) {
+    const auto& [a, b, c] = corners;
+    const glm::dvec3 ab = b - a, bc = c - b, ca = a - c;
+    const double side = glm::dot(glm::cross(ab, bc), a);
+    const double sign = side > 0.0 ? 1.0 : -1.0;
+    const double least =
+        std::min({sign * glm::dot(glm::cross(a, b), w), sign * glm::dot(glm::cross(b, c), w),
+                  sign * glm::dot(glm::cross(c, a), w)});
+    const double ll = std::max({glm::dot(ab, ab), glm::dot(bc, bc), glm::dot(ca, ca)});
+    const double dd = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)});
+    const double l = std::sqrt(ll), d = std::sqrt(dd);
+    return least > Roundings * (20.0 * l * d + 4.0 * ll) + Tiny &&
+           sign * side > Roundings * (6.0 * l * dd + 12.0 * ll * d) + Tiny;
 }
 
 } // namespace relumine::prt

@@ -167,9 +167,9 @@ TEST(RayScene, TrianglesBlockFromBothSides) {
     EXPECT_FALSE(scene.occluded({0, 1, 0}, {0, 1, 0}));
     const std::optional<Hit> hit = scene.closest_hit({0, 2, 0}, {0, -1, 0});
     ASSERT_TRUE(hit);
-    EXPECT_EQ(hit->distance, 2.0f);
-    EXPECT_EQ(scene.closest_hit({0, 2, 0}, {0, -4, 0})->distance,
-              0.5f); // in units of the direction's length
+    EXPECT_FLOAT_EQ(hit->distance, 2.0f);
+    EXPECT_FLOAT_EQ(scene.closest_hit({0, 2, 0}, {0, -4, 0})->distance,
+                    0.5f); // in units of the direction's length
 }
 
 TEST(RayScene, DegenerateTrianglesBlockNothingAndHarmNothing) {

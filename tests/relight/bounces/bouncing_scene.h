@@ -9,9 +9,11 @@
 #include "prt/bounces/bounce_precompute.h"
 #include "prt/precompute.h"
 #include "prt/receivers/receivers.h"
+#include "prt/visibility/beam_scene.h"
 #include "prt/visibility/ray_scene.h"
 #include "relight/bounces/bounce_light.h"
 #include "relight/probe_lights.h"
+#include "tests/prt/all_bounces.h"
 
 namespace relumine::relight {
 
@@ -22,10 +24,11 @@ struct BouncingScene {
         : mesh(given), receivers(prt::vertex_receivers(mesh)), rays(mesh),
           bias(prt::automatic_bias(mesh)),
           transfer(prt::precompute(
-              receivers, rays,
+              receivers, prt::BeamScene(mesh, rays),
               {.tolerance = transfer_tolerance, .face_resolution = 256, .bias = bias})),
           matrix(prt::precompute_bounces(mesh, receivers, transfer, probe_radiance(transfer), rays,
-                                         {.tolerance = tolerance, .bias = bias}, &statistics)) {}
+                                         {.tolerance = tolerance, .bias = bias}, {}, &statistics)) {
+    }
 
     /// Returns one bounce of the emitters' radiance, [num_vertices].
     [[nodiscard]] std::vector<float> bounce(const std::vector<float>& radiance) const {

@@ -1,4 +1,4 @@
-#include "relumine/precompute_options.h"
+#include "relumine/precompute_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,14 +2,17 @@
 
 #include <gtest/gtest.h>
 
-#include "prt/progress.h"
+#include "prt/steps.h"
 
 namespace relumine::prt {
 namespace {
 
 TEST(Progress, GoesOnWhereAnEarlierStageThoughtThatMoreWasDone) {
     std::vector<double> fractions;
-    Progress progress({}, [&](double fraction) { fractions.push_back(fraction); });
+    const Work work{.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }};
+    Progress progress(work);
     progress.start_stage(0.0, 0.6);
     progress.report(1.0);
     progress.start_stage(0.2, 0.4); // a fifth of the work is done, no more
@@ -25,7 +28,10 @@ TEST(Progress, GoesOnWhereAnEarlierStageThoughtThatMoreWasDone) {
 
 TEST(Progress, JumpsToWhereALaterEstimateIs) {
     std::vector<double> fractions;
-    Progress progress({}, [&](double fraction) { fractions.push_back(fraction); });
+    const Work work{.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }};
+    Progress progress(work);
     progress.start_stage(0.0, 0.1);
     progress.report(1.0);
     progress.start_stage(0.6, 0.8);
@@ -35,7 +41,10 @@ TEST(Progress, JumpsToWhereALaterEstimateIs) {
 
 TEST(Progress, NeverFalls) {
     std::vector<double> fractions;
-    Progress progress({}, [&](double fraction) { fractions.push_back(fraction); });
+    const Work work{.on_progress = [&](double fraction) {
+        fractions.push_back(fraction);
+    }};
+    Progress progress(work);
     progress.start_stage(0.0, 1.0);
     for (const double part : {0.5, 0.25, 0.75})
         progress.report(part);

@@ -1,5 +1,5 @@
 // Options of a precompute as text.
-#include "relumine/precompute_options.h"
+#include "relumine/precompute_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,85 @@
+// One precompute on several instruction sets: the scene is the same, byte by byte.
+// docs/robustness.md says which processors that is promised for.
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "tests/app/command.h"
+
+namespace relumine::app {
+namespace {
+
+/// Runs the program as on a processor with less, while it lives.
+class Limit {
+public:
+    explicit Limit(const char* processor) {
+        ::setenv("RELUMINE_PROCESSOR", processor, 1);
+        ::setenv("LD_PRELOAD", RELUMINE_PROCESSOR_LIBRARY, 1);
+    }
+    ~Limit() {
+        ::unsetenv("RELUMINE_PROCESSOR");
+        ::unsetenv("LD_PRELOAD");
+    }
+    Limit(const Limit&) = delete;
+    Limit& operator=(const Limit&) = delete;
+};
+
+class ProcessorsTest : public AppTest {
+protected:
+    void SetUp() override {
+        if (SanitizerFactor > 1)
+            GTEST_SKIP() << "sanitizers must be loaded first";
+        if (std::getenv("LD_PRELOAD") != nullptr)
+            GTEST_SKIP() << "the processor is limited already";
+#ifdef __x86_64__
+        if (__builtin_cpu_supports("avx2") == 0)
+#endif
+            GTEST_SKIP() << "the processor has no AVX2";
+        AppTest::SetUp();
+        succeed({"generate", "painted_room", "-o", ".", "--vertices", "2000", "-q"});
+        succeed({"generate", "colonnade", "-o", ".", "--vertices", "2000", "-q"});
+    }
+
+    /// Walls are parallel to axes, so many rays lie in planes of triangles and on their edges.
+    void expect_the_same(const std::vector<std::string>& arguments) {
+        std::vector<std::string> command = {"precompute"};
+        command.insert(command.end(), arguments.begin(), arguments.end());
+        command.insert(command.end(), {"--tolerance", "0.06", "-q", "-o", "scene.prt"});
+        succeed(command);
+        const std::string best = read("scene.prt");
+        const Limit limit("avx2");
+        succeed(command);
+        EXPECT_TRUE(read("scene.prt") == best);
+    }
+};
+
+TEST_F(ProcessorsTest, BouncesOfVertices) {
+    expect_the_same({"painted_room.ply", "--bounces", "0.05"});
+}
+
+TEST_F(ProcessorsTest, BouncesToPixels) {
+    expect_the_same(
+        {"painted_room.ply", "--receivers", "pixels:60x40", "--view", "auto", "--bounces", "0.05"});
+}
+
+TEST_F(ProcessorsTest, HighlightsWithEitherEngine) {
+    for (const char* engine : {"beam", "embree"})
+        expect_the_same({"colonnade.ply", "--view", "auto", "--material", "ggx:roughness=0.4",
+                         "--engine", engine});
+}
+
+TEST_F(ProcessorsTest, OfOtherKindsShareNoWork) {
+    succeed({"plan", "colonnade.ply", "-o", "scene.plan", "--tolerance", "0.06", "-q"});
+    const std::vector<std::string> part = {"precompute", "--plan", "scene.plan", "--part",
+                                           "1/2",        "-o",     "part",       "-q"};
+    succeed(part);
+    {
+        const Limit limit("avx2");
+        succeed(part);
+    }
+    const Limit limit("sse4");
+    fail(part, {"scene.plan: expected the plan of a processor that computes as this one"});
+}
+
+} // namespace
+} // namespace relumine::app
