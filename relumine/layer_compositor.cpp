@@ -8,7 +8,6 @@
 #include <utility>
 #include <variant>
 
-#include "cubemap/layers/shapes/sphere_lines.h"
 #include "files/parallel.h"
 #include "relight/binned_environment.h"
 

@@ -4,7 +4,6 @@
 #include <cstring>
 #include <stdexcept>
 #include <utility>
-#include <variant>
 
 #include <glm/geometric.hpp>
 
@@ -146,7 +145,7 @@ Verification verify(const LitScene& lit, const VerifyOptions& options) {
     if (!lit.bounces().bounced().empty())
         result.noise = add_traced(lit, result.receivers, options, exact);
     result.error = relight::compare(result.receivers, exact, lit.radiance());
-    if (options.num_surface_points != 0 && std::holds_alternative<prt::VertexLayout>(scene.layout))
+    if (options.num_surface_points != 0 && prt::on_vertices(scene.layout))
         result.surface = verify_surface(lit, options);
     return result;
 }

@@ -81,10 +81,10 @@ Given given_light(const RelightArguments& options, Session& session) {
         given.text =
             fmt::format("environment {:.0f}, resample {:.0f}, ", 1e3 * environment.seconds_load,
                         1e3 * environment.seconds_resample);
-        given.report.set("face_resolution", environment.map.resolution);
-        given.report.set("environment", environment.assumptions);
-        given.report.set("seconds_load", environment.seconds_load);
-        given.report.set("seconds_resample", environment.seconds_resample);
+        files::update(given.report, {{"face_resolution", environment.map.resolution},
+                                     {"environment", environment.assumptions},
+                                     {"seconds_load", environment.seconds_load},
+                                     {"seconds_resample", environment.seconds_resample}});
         given.light = Light(std::move(environment));
     }
     given.light.lights = std::move(list);
@@ -155,12 +155,10 @@ void light_scene(const RelightArguments& options, Session& session) {
                      {"exposure", painter.exposure_ev(options.output.path)},
                      {"seconds_output", seconds_output},
                      {"seconds", watch.total()}};
-    for (const auto& [name, value] : given.report.members())
-        report.set(name, value);
-    if (session.team != nullptr) {
-        report.set("processes", session.team->part().count);
-        report.set("peak_bytes", peak_bytes());
-    }
+    files::update(report, given.report);
+    if (session.team != nullptr)
+        files::update(report,
+                      {{"processes", session.team->part().count}, {"peak_bytes", peak_bytes()}});
     session.report(report);
 }
 

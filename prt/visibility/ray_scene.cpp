@@ -68,6 +68,8 @@ struct Buffers {
 /// The nearest hit of a ray so far.
 struct Nearest {
     Meeting meeting;
+    /// The least of all candidates'
+    double order = std::numeric_limits<double>::infinity();
     std::uint32_t triangle = 0;
     /// Embree looks for hits up to here.
     float reach = Infinity;
@@ -119,11 +121,14 @@ struct Candidate {
         constexpr double Roundings = 16.0 * 0x1p-24;
         if (meets(corners, direction)) // as nearly all do
             return false;
-        double squared_distance = 0.0;
-        for (const glm::dvec3& corner : corners)
-            squared_distance = std::max(squared_distance, glm::dot(corner, corner));
-        return passes_by(corners, glm::normalize(direction),
-                         Roundings * std::sqrt(squared_distance));
+        return passes_by(corners, glm::normalize(direction), Roundings * farthest());
+    }
+
+    /// Distance of the farthest corner
+    [[nodiscard]] double farthest() const {
+        return std::sqrt(
+            std::max({glm::dot(corners[0], corners[0]), glm::dot(corners[1], corners[1]),
+                      glm::dot(corners[2], corners[2])}));
     }
 
     [[nodiscard]] bool is_in_doubt(const Query& query) const {
@@ -151,10 +156,12 @@ void keep_blockers(const RTCFilterFunctionNArguments* hits) {
 
 /// What Embree asks of each hit of a ray whose nearest hit is looked for.
 ///
-/// Embree's distances come from the processor's approximation of a reciprocal, which not all
-/// processors share. So what is about as near is looked at, too, and distances in double choose.
+/// Embree's distances come from the processor's approximation of a reciprocal, and the order in
+/// which it looks at triangles depends on the processor, too. So what is about as near is looked
+/// at, and distances in double choose. Where a ray grazes a triangle, Embree's distance may be far
+/// from that in double. The larger one counts, so that the order does not matter.
 void keep_nearest(const RTCFilterFunctionNArguments* hits) {
-    constexpr float AboutAsNear = 1.0f + 0x1p-12f;
+    constexpr double OfDistance = 0x1p-12, OfFarthest = 0x1p-18; // far above Embree's roundings
     auto& query = *reinterpret_cast<Query*>(hits->context);
     for (unsigned int i = 0; i < hits->N; ++i) {
         if (hits->valid[i] == 0)
@@ -166,16 +173,19 @@ void keep_nearest(const RTCFilterFunctionNArguments* hits) {
         }
         if (candidate.is_in_doubt(query))
             query.doubtful |= 1u << candidate.ray;
-        Nearest& nearest = query.nearest[candidate.ray];
         const Meeting meeting = meeting_of(candidate.corners, candidate.direction);
-        const std::uint32_t triangle = RTCHitN_primID(hits->hit, hits->N, i);
-        if (std::tie(meeting.distance, triangle) <
-            std::tie(nearest.meeting.distance, nearest.triangle)) {
-            nearest.meeting = meeting;
-            nearest.triangle = triangle;
-        }
         float& reach = RTCRayN_tfar(hits->ray, hits->N, i);
-        reach = nearest.reach = std::min(nearest.reach, AboutAsNear * reach);
+        const auto embree = static_cast<double>(reach);
+        const double about = OfDistance * meeting.distance +
+                             OfFarthest * candidate.farthest() / glm::length(candidate.direction);
+        const double order = std::abs(embree - meeting.distance) <= about
+                                 ? meeting.distance
+                                 : std::max(embree, meeting.distance);
+        Nearest& nearest = query.nearest[candidate.ray];
+        const std::uint32_t triangle = RTCHitN_primID(hits->hit, hits->N, i);
+        if (std::tie(order, triangle) < std::tie(nearest.order, nearest.triangle))
+            nearest = {meeting, order, triangle, nearest.reach};
+        reach = nearest.reach = std::min(nearest.reach, static_cast<float>(order + about));
     }
 }
 

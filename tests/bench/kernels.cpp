@@ -1,8 +1,8 @@
 // Times of the steps that run when an environment changes, on a generated scene. See `./dev bench
 // kernels --help`.
 #include <cmath>
-#include <numbers>
 #include <memory>
+#include <numbers>
 #include <string>
 #include <vector>
 

@@ -267,7 +267,7 @@ void restore(Relighter& relighter, const cubemap::CubeMap& environment) {
     const std::uint32_t r = environment.resolution;
     for (const cubemap::Face face : cubemap::AllFaces)
         update_region(relighter, {.face = face, .x1 = r, .y1 = r},
-                                std::span(&environment.at(face, 0, 0), std::size_t{r} * r));
+                      std::span(&environment.at(face, 0, 0), std::size_t{r} * r));
 }
 
 void expect_a_thousand_edits_without_drift(const ShadowRays& rays, std::uint32_t r) {
