@@ -18,8 +18,8 @@
 #include "prt/scene/count_sections.h"
 #include "prt/scene/glossy_sections.h"
 #include "prt/scene/json_members.h"
-#include "prt/scene/section_group.h"
 #include "prt/scene/section_file.h"
+#include "prt/scene/section_group.h"
 #include "prt/scene/section_reader.h"
 
 namespace relumine::prt {
